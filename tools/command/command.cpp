@@ -135,19 +135,6 @@ std::string& command_line() {
   return line;
 }
 
-/// The page of the results, with the case that the verb wrote into --out.
-std::string page_of(const CommonOptions& options, const Delivery& delivery, const std::vector<DrawnFigure>& figures) {
-  const auto written = *options.out / "case.toml";
-  return result_page_html({.verb = options.verb,
-                           .status = delivery.status,
-                           .version = library_version(),
-                           .command = collected != nullptr ? collected_command : command_line(),
-                           .case_text = std::filesystem::exists(written) ? read_file(written) : "",
-                           .report = delivery.report(),
-                           .results = delivery.results,
-                           .figures = figures});
-}
-
 }  // namespace
 
 std::string shell_words(const std::vector<std::string>& words) {
@@ -188,8 +175,34 @@ void hand_over(std::vector<ResultArray> arrays) {
   if (arrays_wanted()) std::ranges::move(arrays, std::back_inserter(collected->arrays));
 }
 
-void hand_over(Assembly&& assembly) {
-  if (arrays_wanted()) collected->assembly = std::make_shared<const Assembly>(std::move(assembly));
+void hand_over(std::shared_ptr<const Assembly> assembly) {
+  if (arrays_wanted()) collected->assembly = std::move(assembly);
+}
+
+void hand_over(FigureWriter figures) {
+  if (arrays_wanted()) collected->figures = std::move(figures);
+}
+
+std::string Delivery::page(const std::filesystem::path& folder, const std::vector<DrawnFigure>& drawn) const {
+  const auto written = folder / "case.toml";
+  return result_page_html({.verb = verb,
+                           .status = status,
+                           .version = library_version(),
+                           .command = command,
+                           .case_text = std::filesystem::exists(written) ? read_file(written) : "",
+                           .report = report(),
+                           .results = results,
+                           .figures = drawn});
+}
+
+std::string Delivery::page_drawn_in(const std::filesystem::path& folder) const {
+  CommonOptions options;
+  options.verb = verb;
+  options.out = folder;
+  options.overwrite = true;
+  const DrawnFigures drawn;
+  if (figures) figures(options);
+  return page(folder, drawn.list());
 }
 
 std::string Delivery::report() const {
@@ -221,11 +234,15 @@ std::string Delivery::json() const {
 
 void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,
              const std::vector<DrawnFigure>& figures) {
-  const Delivery delivery{status, results, times};
+  Delivery delivery{status, results, times};
+  delivery.verb = options.verb;
+  delivery.command = collected != nullptr ? collected_command : command_line();
   if (collected != nullptr) {
     collected->status = status;
     collected->results = results;
     collected->times = times;
+    collected->verb = delivery.verb;
+    collected->command = delivery.command;
   }
   const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
   if (printed && !to_stdout && !options.quiet) print(delivery.report());
@@ -236,7 +253,7 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
     if (options.json && !to_stdout) write_file(*options.json, json, true);
     if (options.out && !options.dry_run) {
       write_file(*options.out / "result.json", json, true);
-      if (has_page(options.verb)) write_file(*options.out / page_name, page_of(options, delivery, figures), true);
+      if (has_page(options.verb)) write_file(*options.out / page_name, delivery.page(*options.out, figures), true);
       say(options, fmt::format("written to {}", options.out->string()));
     }
   }

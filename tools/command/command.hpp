@@ -111,6 +111,9 @@ struct ResultArray {
   std::size_t stride = 1;  ///< numbers from one row to the next
 };
 
+/// Writes the case and the figures of a verb into the folder --out of the options. It owns what it needs.
+using FigureWriter = std::function<void(const CommonOptions& options)>;
+
 /// Results as they are given to deliver, and what hand_over adds.
 struct Delivery {
   std::string status;
@@ -118,6 +121,9 @@ struct Delivery {
   StageTimes times;
   std::vector<ResultArray> arrays = {};
   std::shared_ptr<const Assembly> assembly = {};  ///< made by the verb, or null
+  FigureWriter figures = {};                      ///< none: the verb draws nothing
+  std::string verb = {};
+  std::string command = {};  ///< that leads to the results
 
   /// The report, with the times.
   [[nodiscard]] std::string report() const;
@@ -127,6 +133,10 @@ struct Delivery {
   [[nodiscard]] Results texts() const;
   /// Numbers and texts: result.json.
   [[nodiscard]] std::string json() const;
+  /// The page with the case of the folder.
+  [[nodiscard]] std::string page(const std::filesystem::path& folder, const std::vector<DrawnFigure>& drawn) const;
+  /// The page; the case and the figures are written into an empty folder for it.
+  [[nodiscard]] std::string page_drawn_in(const std::filesystem::path& folder) const;
 };
 enum class Arrays { wanted, not_wanted };
 /// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on
@@ -141,7 +151,8 @@ std::string shell_words(const std::vector<std::string>& words);
 /// Whether the caller of the verb takes arrays: only then hand_over has an effect.
 bool arrays_wanted();
 void hand_over(std::vector<ResultArray> arrays);
-void hand_over(Assembly&& assembly);
+void hand_over(std::shared_ptr<const Assembly> assembly);
+void hand_over(FigureWriter figures);
 
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case

@@ -3,26 +3,30 @@
 
 #include <cstddef>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 namespace equidem {
 
-std::vector<ResultArray> motion_arrays(const std::string& prefix, std::vector<DiscMotion> motions) {
+std::vector<ResultArray> motion_arrays(const std::string& prefix,
+                                       const std::shared_ptr<const std::vector<DiscMotion>>& owner) {
   constexpr std::size_t stride = sizeof(DiscMotion) / sizeof(double);
   static_assert(sizeof(DiscMotion) == 3 * sizeof(double));
-  const auto owner = std::make_shared<const std::vector<DiscMotion>>(std::move(motions));
   const auto* first = reinterpret_cast<const double*>(owner->data());
   return {{prefix + "displacements", "m", owner, first, owner->size(), 2, stride},
           {prefix + "rotations", "rad", owner, first + 2, owner->size(), 1, stride}};
 }
 
-std::vector<ResultArray> state_arrays(const std::string& prefix, Equilibrium equilibrium) {
-  std::vector<ResultArray> arrays = motion_arrays(prefix, std::move(equilibrium.motions));
-  arrays.push_back(array_of(prefix + "contact_forces", "N/m", std::move(equilibrium.contact_forces), 2));
+std::vector<ResultArray> state_arrays(const std::string& prefix,
+                                      const std::shared_ptr<const Equilibrium>& equilibrium) {
+  const auto& [motions, contact_forces] = std::tie(equilibrium->motions, equilibrium->contact_forces);
+  std::vector<ResultArray> arrays = motion_arrays(prefix, {equilibrium, &motions});
+  arrays.push_back(array_of(prefix + "contact_forces", "N/m",
+                            std::shared_ptr<const std::vector<ContactForce>>(equilibrium, &contact_forces), 2));
   std::vector<std::int32_t> discs;
   std::vector<Vec2> forces;
   std::vector<double> moments;
-  for (const Reaction& reaction : equilibrium.reactions) {
+  for (const Reaction& reaction : equilibrium->reactions) {
     discs.push_back(reaction.disc);
     forces.push_back(reaction.force);
     moments.push_back(reaction.moment);

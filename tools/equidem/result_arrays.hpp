@@ -3,7 +3,9 @@
 /// The states of assemblies as arrays, for callers who keep results in memory (hand_over).
 #pragma once
 
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
@@ -14,11 +16,11 @@
 
 namespace equidem {
 
-/// Arrays in the memory of `numbers`, which they own.
+/// Arrays in the memory of `owner` or `numbers`, which they keep.
 /// \param columns numbers in a row
 template <class Row>
-ResultArray array_of(std::string name, std::string unit, std::vector<Row> numbers, std::size_t columns) {
-  const auto owner = std::make_shared<const std::vector<Row>>(std::move(numbers));
+ResultArray array_of(std::string name, std::string unit, const std::shared_ptr<const std::vector<Row>>& owner,
+                     std::size_t columns) {
   static_assert(sizeof(Row) % sizeof(double) == 0);
   return {std::move(name),
           std::move(unit),
@@ -29,11 +31,18 @@ ResultArray array_of(std::string name, std::string unit, std::vector<Row> number
           sizeof(Row) / sizeof(double)};
 }
 
+template <class Row>
+ResultArray array_of(std::string name, std::string unit, std::vector<Row> numbers, std::size_t columns) {
+  return array_of(std::move(name), std::move(unit), std::make_shared<const std::vector<Row>>(std::move(numbers)),
+                  columns);
+}
+
 /// PREFIXdisplacements (n, 2) in m and PREFIXrotations (n) in rad.
-std::vector<ResultArray> motion_arrays(const std::string& prefix, std::vector<DiscMotion> motions);
+std::vector<ResultArray> motion_arrays(const std::string& prefix,
+                                       const std::shared_ptr<const std::vector<DiscMotion>>& motions);
 /// The motions of all discs, PREFIXcontact_forces (contacts, 2), normal and tangential, in N/m, and of the discs that
 /// supports hold PREFIXsupported_discs, PREFIXreactions (2 columns) in N/m and PREFIXreaction_moments in N.
-std::vector<ResultArray> state_arrays(const std::string& prefix, Equilibrium equilibrium);
+std::vector<ResultArray> state_arrays(const std::string& prefix, const std::shared_ptr<const Equilibrium>& equilibrium);
 /// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
 /// dispersion/squared_frequencies, ascending, in 1/s².
 std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey);

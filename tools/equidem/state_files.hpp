@@ -14,6 +14,13 @@
 namespace equidem {
 
 /// \throws Error (bad_input) where a file could not be written
+/// The pictures alone of what is to be written.
+inline OutputCase pictures_of(OutputCase wanted) {
+  wanted.csv = wanted.vtk = false;
+  wanted.assembly.reset();
+  return wanted;
+}
+
 void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix);
 
 /// Tables and files for ParaView that [output] asks for.

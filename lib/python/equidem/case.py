@@ -3,11 +3,8 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import os
-import pathlib
-import tempfile
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -158,21 +155,11 @@ class Case:
         text, file, native, overrides = self._inputs()
         if native is not None and options.get("out") is not None:
             return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
-        numbers, arrays, made, seconds, texts = _core.run_verb(verb, text, file, native, overrides, words)
+        numbers, arrays, made, seconds, delivered = _core.run_verb(verb, text, file, native, overrides, words)
         assembly = self._assembly if made is None else Assembly._of(made)
-        result = Result(json.loads(without_memory_names(numbers)), arrays, assembly, texts.json,
-                        functools.partial(self.copy()._page, verb, options))
+        result = Result(json.loads(without_memory_names(numbers)), arrays, assembly, delivered)
         result.elapsed = seconds
         return result
-
-    def _page(self, verb: str, options: Mapping[str, Any]) -> str:
-        """The page of a verb: that of its folder, or of one that is made for it."""
-        out = options.get("out")
-        if out is not None:
-            return (pathlib.Path(out) / "index.html").read_text(encoding="utf-8")
-        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
-            self.run_verb(verb, **{**options, "out": folder, "quiet": True})
-            return (pathlib.Path(folder) / "index.html").read_text(encoding="utf-8")
 
     def _with_file(self, folder: str) -> Case:
         """The case with its assembly in a file of the folder, so that the case file written there can be run again."""

@@ -7,17 +7,18 @@ import html
 import json
 import math
 import os
-from collections.abc import Callable, Iterator, Mapping
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from .errors import without_memory_names
+from .errors import BadInput, without_memory_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from . import _core
     from .assembly import Assembly
-
-from .errors import BadInput
 
 
 class Result(Mapping[str, Any]):
@@ -36,16 +37,15 @@ class Result(Mapping[str, Any]):
     """
 
     def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
-                 assembly: Assembly | None = None, texts: Callable[[], str] | None = None,
-                 page: Callable[[], str] | None = None) -> None:
+                 assembly: Assembly | None = None, delivered: _core.Delivered | None = None) -> None:
         own = dict(values)
-        self._texts = texts
+        self._texts_read = False
         self._units: dict[str, str] = {}
         self._labels: dict[str, str] = {}
         self._report = ""
         self.assembly = assembly
         self.elapsed = math.nan
-        self._page = page
+        self._delivered = delivered
         self._plain: dict[str, Any] = own
         self._arrays: dict[str, Any] = {}
         nested: dict[str, dict[str, tuple[Any, str]]] = {}
@@ -64,12 +64,11 @@ class Result(Mapping[str, Any]):
 
     def _read_texts(self) -> None:
         """Take over report, units and labels, which are not made before they are asked for."""
-        texts = self._texts
-        if texts is not None:
-            found = json.loads(without_memory_names(texts()))
+        if not self._texts_read and self._delivered is not None:
+            found = json.loads(without_memory_names(self._delivered.texts()))
             self._units = {**found["units"], **self._units}
             self._labels, self._report = found["labels"], found["report"]
-            self._texts = None
+        self._texts_read = True
 
     @property
     def units(self) -> dict[str, str]:
@@ -91,7 +90,7 @@ class Result(Mapping[str, Any]):
 
     def __getstate__(self) -> dict[str, Any]:
         self._read_texts()
-        return self.__dict__
+        return {**self.__dict__, "_delivered": None}
 
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
@@ -121,20 +120,22 @@ class Result(Mapping[str, Any]):
         """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts, figures,
         warnings and the way to repeat it.
 
-        It is the page that the verb writes with ``out="folder"``. Where the verb was carried out without a folder it is
-        carried out once more for the files of the figures: give long runs a folder.
+        It is the page that the verb writes with ``out="folder"``; the figures are drawn now.
 
         Raises
         ------
         BadInput
-            Where the file exists and `overwrite` is false, and where the result is only a part of one.
+            Where the file exists and `overwrite` is false, and where the result is only a part of one, or was unpickled.
         """
-        if self._page is None:
-            raise BadInput("this result has no page", "pages are of the results of whole verbs",
+        if self._delivered is None:
+            raise BadInput("this result has no page", "pages are of the results of whole verbs, before they are pickled",
                            "Save the page of what solve, homogenize, run, ... returned")
         if not overwrite and os.path.exists(path):
             raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost", "Choose another name, or give overwrite=True")
-        text = self._page()
+        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
+            text = self._delivered.page(folder)
+        # The name of an assembly in memory is that of no file.
+        text = re.sub(r"(&quot;)?[^ &\n]*assembly#\d+(&quot;)?", "&quot;assembly.json&quot;", text)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 

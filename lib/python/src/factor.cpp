@@ -50,7 +50,7 @@ class Factor {
     values["iterations"] = result.iterations;
     values["unstable_modes"] = result.unstable_modes;
     values["solver"] = result.solver;
-    return py::make_tuple(values, arrays_of(state_arrays("", std::move(result))));
+    return py::make_tuple(values, arrays_of(state_arrays("", std::make_shared<const Equilibrium>(std::move(result)))));
   }
   [[nodiscard]] std::int64_t unknowns() const { return solver_->unknowns(); }
 

@@ -17,18 +17,21 @@
 namespace equidem::python {
 namespace {
 
-/// Report, units and labels of a result, as JSON: made when they are asked for, since they take as long as its numbers.
-class Texts {
- public:
-  explicit Texts(Delivery delivery) : delivery_(std::move(delivery)) {}
-  [[nodiscard]] std::string json() const { return delivery_.texts().json(); }
+/// A result as it was delivered, which its texts and a page can be made of.
+struct Delivered {
+  Delivery delivery;
 
- private:
-  Delivery delivery_;
+  /// Report, units and labels, as JSON: made when they are asked for, since they take as long as the numbers.
+  [[nodiscard]] std::string texts() const { return delivery.texts().json(); }
+  /// The page; its case and figures are written into the folder.
+  [[nodiscard]] std::string page(const std::string& folder) const {
+    const LongWork working;
+    return delivery.page_drawn_in(folder);
+  }
 };
 
 /// Carry out a verb. Returns (JSON of the numbers, arrays, assembly or None where it is the given one, wall clock of
-/// the verb in s, texts).
+/// the verb in s, Delivered).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
                    const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
                    std::vector<std::string> options) {
@@ -49,7 +52,7 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
   }
   const py::dict arrays = arrays_of(std::exchange(delivery.arrays, {}));
   auto made = std::const_pointer_cast<Assembly>(std::exchange(delivery.assembly, nullptr));
-  return py::make_tuple(json, arrays, std::move(made), seconds, Texts(std::move(delivery)));
+  return py::make_tuple(json, arrays, std::move(made), seconds, Delivered{std::move(delivery)});
 }
 
 }  // namespace
@@ -72,7 +75,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 }
 
 void bind_verbs(py::module_& module) {
-  py::class_<Texts>(module, "Texts").def("json", &Texts::json);
+  py::class_<Delivered>(module, "Delivered").def("texts", &Delivered::texts).def("page", &Delivered::page);
   module.def("run_verb", run_verb);
   module.def("case_reference", case_file_page);
 }

@@ -168,6 +168,7 @@ int calibrate(const CalibrateVerb& options) {
     if (common.out) write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite);
     write_case(common, resolved);
   });
+  hand_over([kept = resolved](const CommonOptions& into) { write_case(into, kept); });
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;
 }

@@ -223,6 +223,10 @@ void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result
     for (const auto& [name, plot] : ensemble_plots(result))
       out.block(write_plot(*options.out, name, plot, true).message + "\n");
   });
+  if (!arrays_wanted()) return;
+  hand_over([plots = ensemble_plots(result)](const CommonOptions& into) {
+    for (const auto& [name, plot] : plots) write_plot(*into.out, name, plot, into.overwrite);
+  });
 }
 
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {

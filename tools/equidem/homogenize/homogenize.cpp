@@ -75,9 +75,9 @@ BoundedStiffness homogenize(const Problem& problem) {
   }
 }
 
-void write_states(const CommonOptions& options, const Problem& problem, const EffectiveStiffness& result) {
+void write_states(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
+                  const EffectiveStiffness& result) {
   const Assembly& assembly = problem.assembly;
-  const OutputCase& wanted = problem.resolved.output;
   const bool cells_known = cells_hold_area(assembly);
   const std::vector<StrainedState> states = strained_states(assembly, problem.springs.springs, result, written_strain);
   for (std::size_t k = 0; k < states.size(); ++k) {
@@ -128,10 +128,12 @@ int homogenize(const HomogenizeVerb& options) {
   check_outputs(common, resolved.output);
   const auto lock = lock_out(common);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
-  Problem problem = problem_of(std::move(resolved));
+  const auto shared_problem = std::make_shared<const Problem>(problem_of(std::move(resolved)));
+  const Problem& problem = *shared_problem;
   if (common.dry_run) return dry_run_homogenization(common, problem);
 
-  const BoundedStiffness homogenized = homogenize(problem);
+  const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem));
+  const BoundedStiffness& homogenized = *shared_stiffness;
   const EffectiveStiffness& result = homogenized.result;
   StageTimes times = problem.times;
   times.add(result.times);
@@ -153,13 +155,17 @@ int homogenize(const HomogenizeVerb& options) {
           std::move(results), std::move(times), [&](Results&) {
             if (!common.out) return;
             write_assembly(common, problem.resolved.output, problem.assembly);
-            write_states(common, problem, result);
+            write_states(common, problem.resolved.output, problem, result);
             write_case(common, problem.resolved);
           });
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
-    hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), result.fluctuations[k]));
-  hand_over(std::move(problem.assembly));
+    hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));
+  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+  hand_over([shared_problem, shared_stiffness](const CommonOptions& into) {
+    write_states(into, pictures_of(shared_problem->resolved.output), *shared_problem, shared_stiffness->result);
+    write_case(into, shared_problem->resolved);
+  });
   return 0;
 }
 

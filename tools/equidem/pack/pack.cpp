@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -33,6 +34,19 @@ void check_outputs(const CommonOptions& common, const PackCase& resolved) {
   if (resolved.picture) plan.expect("picture.png");
 }
 
+void draw(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing) {
+  if (!resolved.picture) return;
+  const std::vector<Wall> walls = walls_of(packing.box);
+  write_grain_picture(*common.out, "picture",
+                      {.title = resolved.title,
+                       .time = packing.settling.time,
+                       .grains = packing.grains,
+                       .clumps = packing.clumps,
+                       .bonds = packing.bonds,
+                       .walls = walls},
+                      common.overwrite);
+}
+
 /// \param density kg/m³, of the bodies; not written where the case leaves it open
 void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
                  const Assembly& network, double density) {
@@ -51,17 +65,7 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     const HeldNetwork held = held_network_of(packing, resolved.network);
     if (!held.bodies.empty()) write_assembly(place("assembly_with_walls"), held.assembly, common.overwrite);
   }
-  if (resolved.picture) {
-    const std::vector<Wall> walls = walls_of(packing.box);
-    write_grain_picture(folder, "picture",
-                        {.title = resolved.title,
-                         .time = packing.settling.time,
-                         .grains = packing.grains,
-                         .clumps = packing.clumps,
-                         .bonds = packing.bonds,
-                         .walls = walls},
-                        common.overwrite);
-  }
+  draw(common, resolved, packing);
 }
 
 /// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
@@ -72,7 +76,8 @@ auto located(const PackCase& resolved, const char* usual, const Task& task) {
 
 int run(const CommonOptions& common) {
   prepare(common);
-  const PackCase resolved = read_pack_case(common.case_file, overrides_of(common));
+  const auto shared_case = std::make_shared<const PackCase>(read_pack_case(common.case_file, overrides_of(common)));
+  const PackCase& resolved = *shared_case;
   check_outputs(common, resolved);
   located(resolved, "method", [&] { check(resolved.packing); });
   if (common.dry_run) {
@@ -84,7 +89,9 @@ int run(const CommonOptions& common) {
   const auto lock = lock_out(common);
   StageTimes times;
   Stopwatch watch;
-  const GrainPacking packing = located(resolved, "method", [&] { return pack(resolved.packing); });
+  const auto shared_packing =
+      std::make_shared<const GrainPacking>(located(resolved, "method", [&] { return pack(resolved.packing); }));
+  const GrainPacking& packing = *shared_packing;
   times.add("packing", watch.lap());
   Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
@@ -98,7 +105,11 @@ int run(const CommonOptions& common) {
             if (common.out) write_files(common, resolved, packing, network, density);
             write_case(common, resolved.document);
           });
-  hand_over(std::move(network));
+  hand_over(std::make_shared<const Assembly>(std::move(network)));
+  hand_over([shared_case, shared_packing](const CommonOptions& into) {
+    draw(into, *shared_case, *shared_packing);
+    write_case(into, shared_case->document);
+  });
   return 0;
 }
 

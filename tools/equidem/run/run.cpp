@@ -38,20 +38,22 @@ void check_outputs(const RunVerb& options, const RunJob& job) {
 
 /// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
 /// long.
-bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = nullptr) {
+bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, StepSearch* search = nullptr) {
   const CommonOptions& common = options.common;
+  RunJob& job = *shared_job;
   RunPlan plan = job.plan();
-  if (common.out) plan.film_frames = frames_of_film(job.simulation().motions().size());
-  const RunResult result = [&] {
+  if (common.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
+  const auto shared_result = [&] {
     try {
-      return run_through(job.simulation(), plan,
-                         {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume});
+      return std::make_shared<const RunResult>(run_through(
+          job.simulation(), plan, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume}));
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
       throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
                     "Run the same command with --resume to do the rest");
     }
   }();
+  const RunResult& result = *shared_result;
   if (search != nullptr && !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
     return false;
   StageTimes times = job.times();
@@ -61,10 +63,14 @@ bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = null
   deliver(common, "done", std::move(results), std::move(times), [&](Results&) {
     if (common.out) job.write_files(*common.out, result, common.overwrite || options.resume);
   });
+  hand_over([shared_job, shared_result](const CommonOptions& into) {
+    shared_job->write_files(*into.out, *shared_result, into.overwrite);
+  });
   return true;
 }
 
-void relax_to_rest(const RunVerb& options, RunJob& job) {
+void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job) {
+  RunJob& job = *shared_job;
   if (options.resume) {
     bad_input("--resume of a run to rest", "it keeps no checkpoints: it ends where it ends", "Run it anew");
   }
@@ -74,6 +80,7 @@ void relax_to_rest(const RunVerb& options, RunJob& job) {
   deliver(common, "at_rest", std::move(results), std::move(times), [&](Results&) {
     if (common.out) job.write_files(*common.out, {}, common.overwrite);
   });
+  hand_over([shared_job](const CommonOptions& into) { shared_job->write_files(*into.out, {}, into.overwrite); });
 }
 
 int run_to_accuracy(RunVerb options, double accuracy) {
@@ -84,7 +91,7 @@ int run_to_accuracy(RunVerb options, double accuracy) {
   }();
   const auto lock = lock_out(options.common);
   for (;;) {
-    BondedRun job(search.propose());
+    const auto job = std::make_shared<BondedRun>(search.propose());
     if (step_through(options, job, &search)) return 0;
     options.common.overwrite = true;  // files of the step that was too long
   }
@@ -114,15 +121,15 @@ int run(const RunVerb& options) {
   const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
-  const std::unique_ptr<RunJob> job = make_run_job(options.common, options.resume);
+  const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume);
   check_outputs(options, *job);
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
     deliver(options.common, "dry_run", dry_run_results(*job), job->times());
   } else if (job->goes_to_rest()) {
-    relax_to_rest(options, *job);
+    relax_to_rest(options, job);
   } else {
-    step_through(options, *job);
+    step_through(options, job);
   }
   return 0;
 }

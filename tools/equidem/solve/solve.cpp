@@ -34,9 +34,8 @@ void check_outputs(const CommonOptions& options, const Case& resolved) {
   for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
 }
 
-void write_outputs(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
-                   const SolvedCase& result) {
-  const OutputCase& wanted = problem.resolved.output;
+void write_state_of(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
+                    const LoadCase& loads, const SolvedCase& result) {
   std::vector<Tensor2> stresses;
   if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, result.equilibrium.contact_forces);
   const AssemblyState state{.assembly = problem.assembly,
@@ -55,6 +54,14 @@ void write_outputs(const CommonOptions& options, const Problem& problem, const L
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
+void write_outputs(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
+                   const std::vector<SolvedCase>& results) {
+  write_assembly(options, wanted, problem.assembly);
+  for (std::size_t k = 0; k < results.size(); ++k)
+    write_state_of(options, wanted, problem, problem.load_cases[k].loads, results[k]);
+  write_case(options, problem.resolved);
+}
+
 /// The worst of all load cases.
 ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy, double seconds) {
   const auto worst = std::max_element(results.begin(), results.end(), [](const SolvedCase& a, const SolvedCase& b) {
@@ -64,13 +71,15 @@ ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy
 }
 
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
-bool solve_once(const CommonOptions& options, const Problem& problem, const std::optional<double>& accuracy,
-                BlockSearch* search) {
+bool solve_once(const CommonOptions& options, const std::shared_ptr<const Problem>& shared_problem,
+                const std::optional<double>& accuracy, BlockSearch* search) {
+  const Problem& problem = *shared_problem;
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
   if (accuracy && search == nullptr) solver_options.solver.accuracy = 0.5 * *accuracy;
   solver_options.solver.right_hand_sides = static_cast<int>(problem.load_cases.size());
-  std::vector<SolvedCase> results;
+  const auto shared_results = std::make_shared<std::vector<SolvedCase>>();
+  std::vector<SolvedCase>& results = *shared_results;
   Effects effects;
   {  // the factorization is not needed beyond the load cases
     const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, solver_options);
@@ -95,15 +104,17 @@ bool solve_once(const CommonOptions& options, const Problem& problem, const std:
   Results all = solve_results(problem, effects, results);
   if (reached) all.append(accuracy_results(*reached));
   deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
-    if (!options.out) return;
-    write_assembly(options, problem.resolved.output, problem.assembly);
-    for (std::size_t k = 0; k < results.size(); ++k)
-      write_outputs(options, problem, problem.load_cases[k].loads, results[k]);
-    write_case(options, problem.resolved);
+    if (options.out) write_outputs(options, problem.resolved.output, problem, results);
   });
   if (!arrays_wanted()) return true;
-  for (SolvedCase& result : results)
-    hand_over(state_arrays(result.name.empty() ? "" : result.name + "/", std::move(result.equilibrium)));
+  for (const SolvedCase& result : results) {
+    hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",
+                           std::shared_ptr<const Equilibrium>(shared_results, &result.equilibrium)));
+  }
+  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+  hand_over([shared_problem, shared_results](const CommonOptions& into) {
+    write_outputs(into, pictures_of(shared_problem->resolved.output), *shared_problem, *shared_results);
+  });
   return true;
 }
 
@@ -114,20 +125,16 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   const auto lock = lock_out(options);
   if (accuracy && BlockSearch::serves(resolved)) {
     BlockSearch search(options, resolved, *accuracy);
-    for (bool done = false; !done;) {
-      Problem problem = build_problem(search.propose());
-      done = solve_once(options, problem, accuracy, &search);
-      if (done) hand_over(std::move(problem.assembly));
+    while (!solve_once(options, std::make_shared<const Problem>(build_problem(search.propose())), accuracy, &search)) {
     }
     return 0;
   }
-  Problem problem = build_problem(std::move(resolved));
+  const auto problem = std::make_shared<const Problem>(build_problem(std::move(resolved)));
   if (options.dry_run) {
-    deliver(options, "dry_run", dry_run_results(problem, 1), problem.times);
+    deliver(options, "dry_run", dry_run_results(*problem, 1), problem->times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);
-  hand_over(std::move(problem.assembly));
   return 0;
 }
 

@@ -78,10 +78,13 @@ int stability(const StabilityCommand& options) {
   expect_survey(plan);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
-  Problem problem = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
+  const auto shared_problem = std::make_shared<const Problem>(acts(resolved) ? build_problem(std::move(resolved))
+                                                                             : problem_of(std::move(resolved)));
+  const Problem& problem = *shared_problem;
   if (options.dry_run) return dry_run_survey(options, problem);
-  const Stability result =
-      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options));
+  const auto shared_result = std::make_shared<const Stability>(
+      analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options)));
+  const Stability& result = *shared_result;
   StageTimes times = problem.times;
   times.add(result.times);
   deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {
@@ -91,7 +94,11 @@ int stability(const StabilityCommand& options) {
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
   for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k)
     hand_over(motion_arrays(fmt::format("modes/{}/", k), result.natural.motions[k]));
-  hand_over(std::move(problem.assembly));
+  hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
+  hand_over([shared_problem, shared_result](const CommonOptions& into) {
+    write_survey(*into.out, shared_problem->resolved.title, *shared_result, into.overwrite);
+    write_case(into, shared_problem->resolved);
+  });
   return 0;
 }
 

@@ -237,6 +237,12 @@ int run_verb(const StudyVerb& verb) {
               out.block(std::visit(write, plot).message + "\n");
             }
           });
+  if (arrays_wanted()) {
+    hand_over([plots = study_plots(report)](const CommonOptions& into) {
+      for (const auto& [name, plot] : plots)
+        std::visit([&, &file = name](const auto& one) { write_plot(*into.out, file, one, into.overwrite); }, plot);
+    });
+  }
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");
