@@ -137,7 +137,7 @@ TEST_CASE("an_animation_is_one_well_formed_page") {
   const std::string html = grain_animation_html(scene.animation("a < b & c > d"));
   CHECK(html.starts_with("<!DOCTYPE html>"));
   CHECK(html.ends_with("</html>\n"));
-  CHECK(count_of(html, "a &lt; b &amp; c &gt; d") == 2);
+  CHECK(count_of(html, "a &lt; b &amp; c &gt; d") == 3);
   CHECK(count_of(html, "colours &lt; 3") == 1);
   for (const char* tag : {"html", "head", "body", "title", "script", "canvas", "button", "span", "p", "h1", "style"}) {
     CAPTURE(tag);

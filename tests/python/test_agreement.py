@@ -92,6 +92,21 @@ def test_effective_stiffness_is_that_of_dense_matrices(kind):
     assert abs(np.array(eq.homogenize(cell, (KN, KT)).stiffness) - expected).max() <= 1e-11 * abs(expected).max()
 
 
+def test_natural_frequencies_are_those_of_dense_matrices():
+    block, density = BLOCKS["delaunay"](), 2500.0
+    left = block.groups["left"]
+    free = np.setdiff1d(np.arange(3 * len(block)), np.concatenate([3 * left, 3 * left + 1]))
+    mass = density * np.pi * block.radii**2
+    inertia = np.stack([mass, mass, 0.5 * mass * block.radii**2], axis=1).ravel()[free]
+    root = np.sqrt(inertia)
+    K = dense.stiffness(block, KN, KT)[np.ix_(free, free)] / root[:, None] / root
+    squared, vectors = np.linalg.eigh(K)
+    result = eq.stability(block, (KN, KT), supports=[{"group": "left", "ux": 0, "uy": 0}], density=density)
+    assert np.allclose(result.natural_omegas, np.sqrt(squared[:4]), rtol=1e-6)
+    mode = np.column_stack([result.modes["0"].displacements, result.modes["0"].rotations]).ravel()[free] * root
+    assert abs(abs(mode @ vectors[:, 0]) / np.linalg.norm(mode) - 1) < 1e-6
+
+
 def test_calibrated_springs_give_the_wanted_moduli():
     cell = CELLS["delaunay"]()
     springs = eq.calibrate(cell, young_modulus=30e9, poisson_ratio=0.15, plane="strain")

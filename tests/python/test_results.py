@@ -60,6 +60,35 @@ def test_random_cells_are_sampled():
     assert result.status == "done" or result.status == "solved"
 
 
+def test_springs_that_are_given_replace_those_of_a_packing():
+    packing = {"method": "growth", "sides": "periodic", "grains": 60, "solid_fraction": 0.8, "gap_tolerance": 0.1,
+               "radii": {"smallest": 1e-3, "largest": 2e-3}}
+    packed = eq.pack(packing, (1e9, 0.5e9)).assembly
+    own = eq.homogenize(packed)
+    assert own.stiffness == eq.homogenize(packed, (1e9, 0.5e9)).stiffness
+    assert np.allclose(eq.homogenize(packed, (2e9, 1e9)).stiffness, 2 * np.array(own.stiffness), rtol=1e-12)
+    each = eq.Springs(np.full(len(packed.contacts), 3e9), np.full(len(packed.contacts), 1.5e9))
+    assert np.allclose(eq.homogenize(packed, each).stiffness, 3 * np.array(own.stiffness), rtol=1e-12)
+    assert eq.calibrate(packed, young_modulus=1e9, poisson_ratio=0.2).status == "calibrated"
+
+
+def test_a_verb_says_how_long_it_took():
+    result = eq.tension_test(BLOCK, SPRINGS)
+    assert 0.5 * sum(result.times.values()) < result.elapsed < 60
+    assert np.isnan(eq.factorize(BLOCK, SPRINGS, [{"group": "left", "ux": 0, "uy": 0}])
+                    .solve(np.zeros((len(BLOCK), 3))).elapsed)
+
+
+def test_refusals_of_an_ensemble_do_not_name_cases_in_memory():
+    packing = {"method": "growth", "sides": "periodic", "grains": 100, "solid_fraction": 0.84, "gap_tolerance": 0.05,
+               "radii": {"smallest": 0.5e-3, "largest": 1e-3}}
+    result = eq.Case(assembly={"kind": "packing"}, packing=packing, springs=SPRINGS,
+                     ensemble={"discs": [400], "samples": 5}).homogenize()
+    print(result.report)
+    assert 0 < len(result.refusals) < 5
+    assert "#" not in result.report and all(refusal.why.startswith("packing.") for refusal in result.refusals)
+
+
 def test_a_study_shows_the_price_of_accuracy():
     result = eq.study("integrators", accuracy=1e-3)
     assert result.status == "done" and len(result.settings) > 5

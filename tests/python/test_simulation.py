@@ -52,6 +52,26 @@ def test_momentum_of_bodies_that_collide_is_kept():
         simulation.displacements
 
 
+def test_velocities_are_given_to_discs_by_number():
+    block = eq.hexagonal(columns=20, rows=5, radius=1e-3)
+    named = eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-5},
+                          velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
+    numbered = eq.simulation(block, (1e9, 0.5e9), density=2500.0, run={"duration": 1e-5},
+                             velocity=[{"group": block.groups["left"], "velocity": (0.1, 0.0)}])
+    assert np.array_equal(named.run().velocities, numbered.run().velocities)
+
+
+def test_a_simulation_is_drawn_where_its_discs_are():
+    pytest.importorskip("matplotlib")
+    simulation = pulse()
+    first = simulation.frame
+    simulation.advance(50)
+    axes = simulation.plot(values=simulation.velocities[:, 0], label="velocity, m/s")
+    assert np.allclose(axes.collections[0].get_offsets(), simulation.positions)
+    drawn = simulation.plot(frame=first).collections[0]
+    assert np.allclose(drawn.get_offsets(), first.positions)
+
+
 def test_a_callback_sees_the_run_and_ends_it():
     seen = []
 

@@ -41,6 +41,24 @@ def test_results_have_the_same_bits_for_any_number_of_threads():
     assert np.array_equal(results[0], results[1]) and np.array_equal(results[0], results[2])
 
 
+def test_a_verb_with_its_own_threads_leaves_those_of_the_user():
+    eq.set_threads(2)
+    eq.study("integrators", quick=True, rounds=3, budget=1)
+    case = eq.Case(assembly=eq.hexagonal(columns=5, rows=5, radius=1e-3), springs=(1e9, 0.5e9),
+                   test={"kind": "uniaxial_tension"})
+    case.solve(threads=1)
+    assert eq.threads() == 2
+
+
+def test_progress_is_shown_only_where_it_is_wanted():
+    script = ("import sys, equidem as eq; eq.show_progress(sys.argv[1] == 'shown')\n"
+              "eq._core.display_progress_by(lambda line: print(line))\n"
+              "eq.study('integrators', quick=True, budget=2, rounds=50)")
+    lines = {word: subprocess.run([sys.executable, "-c", script, word], capture_output=True, text=True, check=True)
+             for word in ("shown", "hidden")}
+    assert "integrators" in lines["shown"].stdout and lines["hidden"].stdout + lines["hidden"].stderr == ""
+
+
 def test_other_threads_run_during_a_solution():
     block = eq.hexagonal(columns=300, rows=301, radius=1e-3)
     longest, last, stop = 0.0, time.monotonic(), threading.Event()

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,8 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/output/page/answers.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/output/quantities.hpp"
 
 #include "option_checks.hpp"
@@ -22,6 +25,7 @@
 namespace equidem {
 
 void add_result_options(CLI::App& command, CommonOptions& options) {
+  options.verb = command.get_name();
   command.add_option("--out", options.out, "write tables, pictures and files for ParaView into this folder")
       ->check(file_name())
       ->type_name("DIR");
@@ -101,6 +105,7 @@ void OutputPlan::expect_json() const {
 void OutputPlan::expect_results() const {
   expect_json();
   for (const char* name : {"result.json", "case.toml"}) expect(name);
+  if (has_page(options_.verb)) expect(page_name);
 }
 
 void OutputPlan::expect_plot(const std::string& name) const {
@@ -122,16 +127,53 @@ namespace {
 /// Where deliver and hand_over put the results of a verb on this thread; null: deliver prints and writes them.
 thread_local Delivery* collected = nullptr;
 thread_local bool arrays_collected = false;
+/// The command that leads to what is collected.
+thread_local std::string collected_command;
+/// The command of the program, written once before its verb begins.
+std::string& command_line() {
+  static std::string line;
+  return line;
+}
+
+/// The page of the results, with the case that the verb wrote into --out.
+std::string page_of(const CommonOptions& options, const Delivery& delivery, const std::vector<DrawnFigure>& figures) {
+  const auto written = *options.out / "case.toml";
+  return result_page_html({.verb = options.verb,
+                           .status = delivery.status,
+                           .version = library_version(),
+                           .command = collected != nullptr ? collected_command : command_line(),
+                           .case_text = std::filesystem::exists(written) ? read_file(written) : "",
+                           .report = delivery.report(),
+                           .results = delivery.results,
+                           .figures = figures});
+}
 
 }  // namespace
 
-Delivery collect(const std::function<void()>& verb, Arrays arrays) {
+std::string shell_words(const std::vector<std::string>& words) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+.,:/@%";
+  const auto quoted = [&](const std::string& word) {
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+  };
+  return joined(words, quoted, " ");
+}
+
+void set_command_line(const std::vector<std::string>& words) {
+  command_line() = shell_words(words);
+}
+
+Delivery collect(const std::function<void()>& verb, Arrays arrays, const std::string& command) {
   struct Restored {
     Delivery* const delivery = collected;
     const bool arrays = arrays_collected;
-    ~Restored() { collected = delivery, arrays_collected = arrays; }
+    const std::string command = collected_command;
+    ~Restored() { collected = delivery, arrays_collected = arrays, collected_command = command; }
   } const restored;
   Delivery delivery;
+  collected_command = command;
   collected = &delivery;
   arrays_collected = arrays == Arrays::wanted;
   verb();
@@ -163,15 +205,22 @@ std::string Delivery::report() const {
   return all.report();
 }
 
-std::string Delivery::json() const {
+Results Delivery::numbers() const {
   Results seconds, object;
   for (const auto& [stage, time] : times.stages()) seconds.set(stage, time);
-  object.set("status", status).set("report", report()).set("times", seconds).set("version", library_version());
-  object.append(results);
-  return object.append(units_and_labels(object)).json();
+  return object.set("status", status).set("times", seconds).set("version", library_version()).append(results);
 }
 
-void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times) {
+Results Delivery::texts() const {
+  return Results().set("report", report()).append(units_and_labels(numbers()));
+}
+
+std::string Delivery::json() const {
+  return numbers().append(texts()).json();
+}
+
+void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,
+             const std::vector<DrawnFigure>& figures) {
   const Delivery delivery{status, results, times};
   if (collected != nullptr) {
     collected->status = status;
@@ -187,6 +236,7 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
     if (options.json && !to_stdout) write_file(*options.json, json, true);
     if (options.out && !options.dry_run) {
       write_file(*options.out / "result.json", json, true);
+      if (has_page(options.verb)) write_file(*options.out / page_name, page_of(options, delivery, figures), true);
       say(options, fmt::format("written to {}", options.out->string()));
     }
   }
@@ -201,6 +251,7 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
   CommonOptions delivered = options;
   std::optional<Error> failure;
   const Stopwatch watch;
+  const DrawnFigures drawn;
   try {
     write_files(results);
   } catch (const Error& error) {
@@ -208,7 +259,7 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
     delivered.out.reset();
   }
   if (options.out) times.add("files", watch.seconds());
-  deliver(delivered, status, results, times);
+  deliver(delivered, status, results, times, drawn.list());
   if (failure) throw *failure;
 }
 

@@ -18,6 +18,7 @@
 #include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/json.hpp"
+#include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/results.hpp"
 
 namespace CLI {
@@ -28,6 +29,7 @@ namespace equidem {
 
 /// The options that every verb takes.
 struct CommonOptions {
+  std::string verb;  ///< its name
   std::filesystem::path case_file;
   std::vector<std::string> set;
   std::optional<std::filesystem::path> out;
@@ -85,11 +87,14 @@ class OutputPlan {
 [[nodiscard]] std::optional<FolderLock> lock_out(const CommonOptions& options);
 
 /// Report and JSON of a list of results, with the times of the stages: the report to stdout, unless quiet or --json is
-/// "-"; the JSON to --json and OUT/result.json; then the folder on stderr. A dry run does not write to the folder.
+/// "-"; the JSON to --json and OUT/result.json; the page to OUT/index.html; then the folder on stderr. A dry run does
+/// not write to the folder.
+/// \param figures that the page shows
 /// \param status the first key of the JSON: "solved", "dry_run", ...
 /// \throws Error (bad_input) where they cannot be written; (computation_failed) afterwards with --require-stable, where
 ///         the status is "unstable", "unjudged" or "mechanism"
-void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times);
+void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,
+             const std::vector<DrawnFigure>& figures = {});
 /// Write files, which may add to the results, then deliver. Where a file cannot be written (the disk is full), report
 /// and --json are delivered before the error is thrown.
 void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
@@ -116,13 +121,23 @@ struct Delivery {
 
   /// The report, with the times.
   [[nodiscard]] std::string report() const;
-  /// The results with status, report, times, version, units and labels: result.json.
+  /// The results with status, times and version.
+  [[nodiscard]] Results numbers() const;
+  /// Report, units and labels.
+  [[nodiscard]] Results texts() const;
+  /// Numbers and texts: result.json.
   [[nodiscard]] std::string json() const;
 };
 enum class Arrays { wanted, not_wanted };
 /// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on
 /// to here. \throws Error as the verb does
-Delivery collect(const std::function<void()>& verb, Arrays arrays = Arrays::not_wanted);
+/// \param command that the page of the results names
+Delivery collect(const std::function<void()>& verb, Arrays arrays = Arrays::not_wanted,
+                 const std::string& command = {});
+/// The command line of the program, which pages name.
+void set_command_line(const std::vector<std::string>& words);
+/// The words as a shell takes them, with spaces between them.
+std::string shell_words(const std::vector<std::string>& words);
 /// Whether the caller of the verb takes arrays: only then hand_over has an effect.
 bool arrays_wanted();
 void hand_over(std::vector<ResultArray> arrays);

@@ -163,6 +163,9 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     if (verb != commands.end()) parse_failure(program, **verb, error);
     bad_input(fmt::format("unknown option '{}'", arguments[0]), "", examples);
   }
+  std::vector<std::string> words{program.name};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  set_command_line(words);
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 

@@ -24,10 +24,13 @@ class VerbRun {
           const std::vector<std::string>& options);
 
   /// \throws Error as the verb does
-  [[nodiscard]] Delivery operator()(Arrays arrays = Arrays::not_wanted) const { return collect(run_, arrays); }
+  [[nodiscard]] Delivery operator()(Arrays arrays = Arrays::not_wanted) const {
+    return collect(run_, arrays, command_line_);
+  }
 
  private:
   CLI::App command_;
+  std::string command_line_;
   std::function<void()> run_;
 };
 

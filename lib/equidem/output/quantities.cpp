@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 #include "equidem/core/table_file.hpp"
@@ -88,16 +89,26 @@ std::string finite_text(const ResultValue& value) {
   return number != nullptr && std::isfinite(*number) ? fmt::format("{}", *number) : "";
 }
 
+/// The quantity with the most keys from the front of a path; null: none.
+const Quantity* longest_match(std::string_view path) {
+  static const std::unordered_map<std::string_view, const Quantity*> by_path = [] {
+    std::unordered_map<std::string_view, const Quantity*> found;
+    for (const Quantity& quantity : quantities) found.emplace(quantity.path, &quantity);
+    return found;
+  }();
+  for (std::string_view front = path;;) {
+    if (const auto found = by_path.find(front); found != by_path.end()) return found->second;
+    const std::size_t slash = front.rfind('/');
+    if (slash == std::string_view::npos) return nullptr;
+    front = front.substr(0, slash);
+  }
+}
+
 }  // namespace
 
 std::optional<NumberMeaning> meaning_of(std::string_view path) {
   for (std::string_view rest = path;;) {
-    const Quantity* best = nullptr;
-    for (const Quantity& quantity : quantities) {
-      const std::string_view own = quantity.path;
-      if (!rest.starts_with(own) || (rest.size() > own.size() && rest[own.size()] != '/')) continue;
-      if (best == nullptr || own.size() > std::string_view(best->path).size()) best = &quantity;
-    }
+    const Quantity* best = longest_match(rest);
     if (best != nullptr) {
       std::string label = best->label;
       for (const std::string_view word : parts_of(rest.substr(std::string_view(best->path).size()), '/'))

@@ -21,7 +21,9 @@ inline constexpr Quantity quantities[] = {
     {"coordination_number_without_rattlers", "", "mean number of contacts of a body that is held"},
     {"area", "m²", "area of the assembly"},
     {"solid_fraction", "", "areas of the bodies over the area that they fill"},
-    {"largest_overlap", "", "largest overlap at a contact, of the sum of the radii; by pack of the smaller radius"},
+    {"largest_overlap", "",
+     "largest overlap at a contact, of the sum of the radii; by pack, and of bodies that collide, of the smaller "
+     "radius"},
     {"largest_gap", "", "largest gap at a contact, of the sum of the radii"},
     {"largest_void/radius", "m", "radius of the largest circle that no disc reaches into"},
     {"largest_void/over_mean_radius", "", "radius of the largest void over the mean radius of the discs"},

@@ -317,6 +317,30 @@ std::string Results::report() const {
   return report;
 }
 
+const Result* find_result(const Results& results, std::string_view path) {
+  const Result* found = nullptr;
+  for (const Result& part : results.parts()) {
+    if (part.key.empty() || !path.starts_with(part.key)) continue;
+    const Result* here = &part;
+    if (path.size() > part.key.size()) {
+      if (path[part.key.size()] != '/') continue;
+      std::string_view rest = path.substr(part.key.size() + 1);
+      const auto& value = part.value.value;
+      here = nullptr;
+      if (const auto* nested = std::get_if<std::shared_ptr<const Results>>(&value)) {
+        here = find_result(**nested, rest);
+      } else if (const auto* list = std::get_if<std::shared_ptr<const std::vector<Results>>>(&value)) {
+        const std::string_view word = rest.substr(0, rest.find('/'));
+        const auto position = word == "$" ? std::optional((*list)->size() - 1) : number_from<std::size_t>(word);
+        rest.remove_prefix(std::min(rest.size(), word.size() + 1));
+        if (position && *position < (*list)->size()) here = find_result((**list)[*position], rest);
+      }
+    }
+    if (here != nullptr) found = here;
+  }
+  return found;
+}
+
 void add_effects(Results& results, const Effects& effects) {
   std::vector<std::string> active;
   Results inactive;

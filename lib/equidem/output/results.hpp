@@ -146,6 +146,10 @@ class Results {
   std::vector<Result> parts_;
 };
 
+/// The last value of a key in nested objects and lists; null where there is none.
+/// \param path keys and positions in lists with '/' between them; '$' is the last position
+const Result* find_result(const Results& results, std::string_view path);
+
 /// effects {active: [names], inactive: {name: why}}.
 void add_effects(Results& results, const Effects& effects);
 

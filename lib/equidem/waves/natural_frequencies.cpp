@@ -11,6 +11,7 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
@@ -135,9 +136,10 @@ class Vibration {
         column[c] = a.over_root_mass(c) > 0 ? motion[c] / a.over_root_mass(c) : 0;
       }
     }
-    const std::size_t independent = make_orthonormal(null, {0, null.columns()});
-    assert(independent == null.columns());
-    static_cast<void>(independent);
+    if (make_orthonormal(null, {0, null.columns()}) < null.columns()) {
+      computation_failed("zero-energy modes are alike to working precision", "they cannot be left out one by one",
+                         "Hold what moves freely");
+    }
     return null;
   }
 
@@ -219,6 +221,10 @@ LowestEigenvalues lowest_of_all(const VibrationOperator& a, const TallMatrix& nu
   return result;
 }
 
+std::string too_many(std::size_t modes) {
+  return fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", modes);
+}
+
 LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, const NaturalFrequencyOptions& options,
                               NaturalFrequencies& result) {
   const std::int64_t unknowns = vibration.network().unknowns.unknowns;
@@ -226,8 +232,7 @@ LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, 
   const TallMatrix null = vibration.zero_energy_modes_of(a);
   result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(null.columns());
   if (null.columns() > most_null) {
-    result.why_none =
-        fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", null.columns());
+    result.why_none = too_many(null.columns());
     return {};
   }
   const std::int64_t others = unknowns - static_cast<std::int64_t>(null.columns());
@@ -238,6 +243,9 @@ LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, 
     return {};
   }
   if (a.size() <= options.dense_limit) return lowest_of_all(a, null, iterations.wanted);
+  const double columns_kept = 7.0 * static_cast<double>(iterations.wanted + iterations.guards);
+  require_memory(sizeof(double) * columns_kept * static_cast<double>(a.size()), "natural frequencies need about",
+                 "Ask for fewer frequencies, or take a machine with more memory");
   const SymmetricOperator k{
       .size = a.size(),
       .multiply = [&](const TallMatrix& x, ColumnRange columns, TallMatrix& y) { a.multiply(x, columns, y); },
@@ -256,8 +264,7 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
   const SpringNetwork network = vibration.network();
   result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(vibration.held());
   if (vibration.held() > most_null) {
-    result.why_none =
-        fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", vibration.held());
+    result.why_none = too_many(vibration.held());
     return result;
   }
   const VibrationOperator a(network, inertia);
@@ -282,6 +289,7 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
     result.why_none = error.problem();
     return result;
   }
+  if (found.values.empty() && result.why_none.empty()) result.why_none = "the iterations broke down";
   result.squared = found.values;
   result.error_bounds = found.error_bounds;
   result.converged = found.converged;

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import sys
 
-from . import _core
+from . import _core, plot
 from .assembly import Assembly, assembly, delaunay, hexagonal, read, square
 from .case import Case
 from .errors import BadInput, ComputationFailed, EquidemError, Interrupted
@@ -28,9 +28,9 @@ __version__: str = _core.version
 
 __all__ = [
     "Assembly", "BadInput", "Case", "ComputationFailed", "EquidemError", "Factor", "Frame", "Interrupted", "Result",
-    "Simulation", "Springs", "assembly", "calibrate", "delaunay", "factorize", "hexagonal", "homogenize", "pack", "read",
-    "run", "set_threads", "show_progress", "simulation", "solve", "square", "stability", "stiffness_matrix", "study",
-    "sweep", "tension_test", "threads",
+    "Simulation", "Springs", "assembly", "calibrate", "delaunay", "factorize", "hexagonal", "homogenize", "pack",
+    "plot", "read", "run", "set_threads", "show_progress", "simulation", "solve", "square", "stability",
+    "stiffness_matrix", "study", "sweep", "tension_test", "threads",
 ]
 
 

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
+import pathlib
+import tempfile
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -13,7 +16,7 @@ import numpy as np
 from . import _core, _toml
 from ._arrays import integers
 from .assembly import Assembly
-from .errors import BadInput
+from .errors import BadInput, without_memory_names
 from .result import Result
 from .simulation import Simulation
 from .springs import springs_from
@@ -29,6 +32,7 @@ class Case:
     assembly : Assembly, optional
         In place of a table `assembly`; only without a file.
     springs : Springs, (kN, kT) or dict, optional
+        In place of those that the assembly has.
     supports : sequence of dict
         ``{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}``, in m and rad; what is left out stays free. A group is
         a name, or an array of disc numbers.
@@ -36,7 +40,8 @@ class Case:
         ``{"group": "right", "force": (1e6, 0), "moment": 0, "kind": "traction"}``; kinds "per_disc" (N/m), "total" (N/m)
         and "traction" (Pa).
     tables
-        Further tables by their names in the case file: ``effects={"rotation": "restrained"}``.
+        Further tables by their names in the case file: ``effects={"rotation": "restrained"}``. Groups of `velocity` and
+        `probe` may be arrays too.
 
     Examples
     --------
@@ -63,9 +68,12 @@ class Case:
         self._set_assembly(assembly, springs)
         self._groups: list[dict[str, Any]] = list(self._tables.pop("group", []))
         for name, entries in (("support", supports), ("load", loads)):
-            listed = [*self._tables.pop(name, []), *(self._with_group(name, entry) for entry in entries)]
+            listed = [*self._tables.get(name, []), *entries]
             if listed:
                 self._tables[name] = listed
+        for name in ("support", "load", "velocity", "probe"):
+            if name in self._tables:
+                self._tables[name] = [self._with_group(name, entry) for entry in self._tables[name]]
         if self._groups:
             self._tables["group"] = self._groups
 
@@ -75,11 +83,14 @@ class Case:
             density = self._tables.pop("density", None)
             if density is not None:
                 table["density"] = density
+            if springs is not None or "material" in self._tables:
+                table["own_springs"] = False
             self._tables["assembly"] = table
             self._assembly = assembly
             given = springs_from(springs)
             if given is not None and not given.uniform:
                 self._assembly = Assembly._of(assembly._native.with_springs(given.at_contacts(assembly)))
+                table["own_springs"] = True
                 springs = None
         elif assembly is not None:
             self._tables["assembly"] = dict(assembly)
@@ -147,11 +158,21 @@ class Case:
         text, file, native, overrides = self._inputs()
         if native is not None and options.get("out") is not None:
             return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
-        values, arrays, made = _core.run_verb(verb, text, file, native, overrides, words)
-        own = self._assembly
-        if made is None or (own is not None and len(own) == len(made)):
-            return Result(json.loads(values), arrays, own)
-        return Result(json.loads(values), arrays, Assembly._of(made))
+        numbers, arrays, made, seconds, texts = _core.run_verb(verb, text, file, native, overrides, words)
+        assembly = self._assembly if made is None else Assembly._of(made)
+        result = Result(json.loads(without_memory_names(numbers)), arrays, assembly, texts.json,
+                        functools.partial(self.copy()._page, verb, options))
+        result.elapsed = seconds
+        return result
+
+    def _page(self, verb: str, options: Mapping[str, Any]) -> str:
+        """The page of a verb: that of its folder, or of one that is made for it."""
+        out = options.get("out")
+        if out is not None:
+            return (pathlib.Path(out) / "index.html").read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
+            self.run_verb(verb, **{**options, "out": folder, "quiet": True})
+            return (pathlib.Path(folder) / "index.html").read_text(encoding="utf-8")
 
     def _with_file(self, folder: str) -> Case:
         """The case with its assembly in a file of the folder, so that the case file written there can be run again."""
@@ -184,9 +205,10 @@ class Case:
         return self.run_verb("calibrate", **options)
 
     def stability(self, **options: Any) -> Result:
-        """Mechanisms, waves, the critical kT/kN, the highest frequency and time steps.
+        """Mechanisms, waves, the critical kT/kN, natural frequencies and time steps.
 
-        Arrays: dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
+        Arrays: modes["0"].displacements, modes["0"].rotations, ... of the lowest natural frequencies; of small periodic
+        cells dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
         """
         return self.run_verb("stability", **options)
 

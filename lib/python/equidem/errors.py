@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 
 class _Sentence(BaseException):
     """An error with the parts of its sentence.
@@ -14,7 +16,7 @@ class _Sentence(BaseException):
     """
 
     def __init__(self, problem: str, why: str = "", remedy: str = "", where: str = "") -> None:
-        where = _place(where)
+        where = without_memory_names(where)
         self.problem, self.why, self.remedy, self.where = problem, why, remedy, where
         text = (f"{where}: " if where else "") + problem + (f" ({why})" if why else "") + "."
         stop = "" if remedy.endswith((".", "?", "!")) else "."
@@ -24,9 +26,9 @@ class _Sentence(BaseException):
         return type(self), (self.problem, self.why, self.remedy, self.where)
 
 
-def _place(where: str) -> str:
+def without_memory_names(text: str) -> str:
     """Without the names of cases and assemblies in memory: "case#3:2: springs.kT" is "springs.kT"."""
-    return ": ".join(part for part in where.split(": ") if "case#" not in part and "assembly#" not in part)
+    return text if "#" not in text else re.sub(r"(--set [\w.]+=\")?\b(case|assembly)#\d+(:\d+)*\"?(: |$)", "", text)
 
 
 class EquidemError(Exception):

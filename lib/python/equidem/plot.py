@@ -28,9 +28,9 @@ def discs(assembly: Assembly, ax: Axes | None = None, *, displacements: npt.Arra
     scale : float, optional
         By which displacements are multiplied; left out: as large as is easily seen.
     values : array (n,), optional
-        Colours of the discs, with a colour bar named `label`.
+        Colours of the discs; with a `label` a colour bar has its name.
     """
-    from matplotlib.collections import EllipseCollection, LineCollection
+    from matplotlib.collections import LineCollection
 
     axes = _axes(ax)
     places = np.array(assembly.centres)
@@ -42,19 +42,29 @@ def discs(assembly: Assembly, ax: Axes | None = None, *, displacements: npt.Arra
             scale = 0.05 * float(np.max(high - low)) / largest if largest > 0 else 1.0
         places = places + scale * moves
         axes.set_title(f"displacements x {scale:.3g}")
-    width = 2 * np.asarray(assembly.radii)
-    bodies = EllipseCollection(width, width, np.zeros(len(places)), units="x", offsets=places,
-                               transOffset=axes.transData, facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
-    if values is not None:
-        bodies.set_array(np.asarray(values))
-        bodies.set_cmap(cmap)
-    axes.add_collection(bodies)
-    if values is not None:
-        axes.figure.colorbar(bodies, ax=axes, label=label)
+    bodies(places, assembly.radii, axes, values=values, label=label, cmap=cmap)
     if contacts:
         inside = ~np.asarray(assembly.shifts).any(axis=1)
         pairs = np.asarray(assembly.contacts)[inside]
         axes.add_collection(LineCollection(list(places[pairs]), colors="#3b5b7a", linewidths=0.5))
+    return axes
+
+
+def bodies(centres: npt.ArrayLike, radii: npt.ArrayLike, ax: Axes | None = None, *, values: npt.ArrayLike | None = None,
+           label: str = "", cmap: str = "viridis") -> Axes:
+    """Discs at places (n, 2), in m, such as those of a frame; the other parameters as of `discs`."""
+    from matplotlib.collections import EllipseCollection
+
+    axes = _axes(ax)
+    places, width = np.asarray(centres), 2 * np.asarray(radii)
+    drawn = EllipseCollection(width, width, np.zeros(len(places)), units="x", offsets=places,
+                              transOffset=axes.transData, facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
+    axes.add_collection(drawn)
+    if values is not None:
+        drawn.set_array(np.asarray(values))
+        drawn.set_cmap(cmap)
+        if label:
+            axes.figure.colorbar(drawn, ax=axes, label=label)
     margin = float(width.max())
     axes.set_xlim(float(places[:, 0].min()) - margin, float(places[:, 0].max()) + margin)
     axes.set_ylim(float(places[:, 1].min()) - margin, float(places[:, 1].max()) + margin)

@@ -4,13 +4,20 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Iterator, Mapping
+import json
+import math
+import os
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
+
+from .errors import without_memory_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .assembly import Assembly
+
+from .errors import BadInput
 
 
 class Result(Mapping[str, Any]):
@@ -22,21 +29,23 @@ class Result(Mapping[str, Any]):
 
     Attributes
     ----------
-    units, labels : dict
-        Unit and meaning of each number and array by its name, nested names joined by ".".
-    report : str
-        The text that the command line prints.
+    elapsed : float
+        s, wall clock of the verb in C++; nan where a result is not that of a verb.
     assembly : Assembly or None
         What was computed on, without discs that carry no load; of `pack`: what was made.
     """
 
     def __init__(self, values: Mapping[str, Any], arrays: Mapping[str, tuple[Any, str]] = {},
-                 assembly: Assembly | None = None) -> None:
+                 assembly: Assembly | None = None, texts: Callable[[], str] | None = None,
+                 page: Callable[[], str] | None = None) -> None:
         own = dict(values)
-        self.units: dict[str, str] = own.pop("units", {})
-        self.labels: dict[str, str] = own.pop("labels", {})
-        self.report: str = own.pop("report", "")
+        self._texts = texts
+        self._units: dict[str, str] = {}
+        self._labels: dict[str, str] = {}
+        self._report = ""
         self.assembly = assembly
+        self.elapsed = math.nan
+        self._page = page
         self._plain: dict[str, Any] = own
         self._arrays: dict[str, Any] = {}
         nested: dict[str, dict[str, tuple[Any, str]]] = {}
@@ -46,12 +55,43 @@ class Result(Mapping[str, Any]):
                 nested.setdefault(first, {})[rest] = (array, unit)
             else:
                 self._arrays[first] = array
-                self.units[first] = unit
+                self._units[first] = unit
         self._values: dict[str, Any] = {name: _wrapped(value) for name, value in own.items()}
         self._values.update(self._arrays)
         for name, parts in nested.items():
             inner = own.get(name, {})
             self._arrays[name] = self._values[name] = Result(inner if isinstance(inner, Mapping) else {}, parts)
+
+    def _read_texts(self) -> None:
+        """Take over report, units and labels, which are not made before they are asked for."""
+        texts = self._texts
+        if texts is not None:
+            found = json.loads(without_memory_names(texts()))
+            self._units = {**found["units"], **self._units}
+            self._labels, self._report = found["labels"], found["report"]
+            self._texts = None
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each number and array by its name, nested names joined by "."."""
+        self._read_texts()
+        return self._units
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Meaning of each number by its name."""
+        self._read_texts()
+        return self._labels
+
+    @property
+    def report(self) -> str:
+        """The text that the command line prints."""
+        self._read_texts()
+        return self._report
+
+    def __getstate__(self) -> dict[str, Any]:
+        self._read_texts()
+        return self.__dict__
 
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
@@ -76,6 +116,27 @@ class Result(Mapping[str, Any]):
     def to_dict(self) -> dict[str, Any]:
         """The numbers as plain dictionaries and lists, as in result.json; arrays are left out."""
         return dict(self._plain)
+
+    def save_page(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts, figures,
+        warnings and the way to repeat it.
+
+        It is the page that the verb writes with ``out="folder"``. Where the verb was carried out without a folder it is
+        carried out once more for the files of the figures: give long runs a folder.
+
+        Raises
+        ------
+        BadInput
+            Where the file exists and `overwrite` is false, and where the result is only a part of one.
+        """
+        if self._page is None:
+            raise BadInput("this result has no page", "pages are of the results of whole verbs",
+                           "Save the page of what solve, homogenize, run, ... returned")
+        if not overwrite and os.path.exists(path):
+            raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost", "Choose another name, or give overwrite=True")
+        text = self._page()
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
 
     def __repr__(self) -> str:
         if self.report:

@@ -5,11 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._arrays import Floats
 from .assembly import Assembly
 from .errors import BadInput
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,6 +158,23 @@ class Simulation:
             self.advance(min(every, left))
             left -= every
             yield self.frame
+
+    def plot(self, ax: Axes | None = None, *, frame: Frame | None = None, **options: Any) -> Axes:
+        """Draw the discs at present, or at a frame, with matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib axes, optional
+        options
+            Of `equidem.plot.bodies`, such as ``values``.
+        """
+        from . import plot
+
+        places = self.positions if frame is None else frame.positions
+        if self._assembly is None or len(self._assembly) != len(places):
+            raise BadInput("bodies of several discs are not drawn", "a simulation has only their centres of mass",
+                           "Draw the frames that the verb run writes")
+        return plot.bodies(places, self._assembly.radii, ax, **options)
 
     def run(self, callback: Callable[[Simulation], object] | None = None, every: int = 100,
             steps: int | None = None) -> Simulation:

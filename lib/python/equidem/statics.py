@@ -83,8 +83,8 @@ def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = 
 
 
 def stability(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tables] = (), **tables: Any) -> Result:
-    """Mechanisms, waves, the critical kT/kN, the highest frequency and time steps. `density` in kg/m³ is that of the
-    discs."""
+    """Mechanisms, waves, the critical kT/kN, natural frequencies and time steps; arrays as of `Case.stability`.
+    `density` in kg/m³ is that of the discs."""
     return Case(assembly=assembly, springs=springs, supports=supports, **tables).stability()
 
 

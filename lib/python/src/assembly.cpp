@@ -82,6 +82,8 @@ Shared from_text(std::string text) {
 
 Shared with_springs(const Assembly& assembly, const Floats& springs) {
   Assembly result = assembly;
+  result.contact_kN.clear();
+  result.contact_kT.clear();
   for (py::ssize_t c = 0; c < springs.shape(0); ++c) {
     result.contact_kN.push_back(springs.at(c, 0));
     result.contact_kT.push_back(springs.at(c, 1));

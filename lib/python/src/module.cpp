@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "module.hpp"
 
+#include <atomic>
 #include <mutex>
 #include <string>
 
@@ -15,6 +16,13 @@ namespace {
 bool on_main_thread() {
   const py::module_ threading = py::module_::import("threading");
   return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+std::atomic<bool> progress_is_wanted{true};
+
+void show_progress(bool shown) {
+  progress_is_wanted = shown;
+  set_progress_shown(shown);
 }
 
 std::mutex blas_mutex;
@@ -34,6 +42,17 @@ OneBlasThread::~OneBlasThread() {
   if (--blas_users == 0) openblas_set_num_threads(blas_threads_before);
 }
 
+bool progress_wanted() {
+  return progress_is_wanted;
+}
+
+KeptSettings::KeptSettings() : threads_(thread_count()) {}
+
+KeptSettings::~KeptSettings() {
+  if (thread_count() != threads_) set_thread_count(threads_);
+  set_progress_shown(progress_wanted());
+}
+
 LongWork::LongWork() : catcher_(on_main_thread() ? std::make_unique<InterruptCatcher>() : nullptr) {}
 
 }  // namespace equidem::python
@@ -44,7 +63,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("version") = equidem::library_version();
   module.def("set_threads", &equidem::set_thread_count);
   module.def("threads", &equidem::thread_count);
-  module.def("show_progress", &equidem::set_progress_shown);
+  module.def("show_progress", &show_progress);
   module.def("display_progress_by", [](const py::object& display) {
     if (display.is_none()) return equidem::set_progress_display({});
     // never destroyed: the interpreter may be gone by then

@@ -47,6 +47,21 @@ class LongWork {
   py::gil_scoped_release released_;
 };
 
+/// Whether progress is shown; verbs of the program decide by their option --quiet.
+bool progress_wanted();
+
+/// Threads and progress are afterwards as the user has set them: verbs set their own.
+class KeptSettings {
+ public:
+  KeptSettings();
+  ~KeptSettings();
+  KeptSettings(const KeptSettings&) = delete;
+  KeptSettings& operator=(const KeptSettings&) = delete;
+
+ private:
+  int threads_;
+};
+
 /// Do a task as LongWork.
 template <class Task>
 auto without_lock(const Task& task) {

@@ -23,7 +23,9 @@ class Steps {
         std::vector<std::string> overrides)
       : inputs_(case_text, case_file, assembly, std::move(overrides)) {
     const LongWork working;
+    const KeptSettings settings;
     CommonOptions options;
+    options.quiet = !progress_wanted();
     options.case_file = inputs_.case_file();
     options.set = inputs_.overrides();
     job_ = make_run_job(options, false);

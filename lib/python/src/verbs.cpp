@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <variant>
@@ -7,6 +8,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 #include "case_inputs.hpp"
 #include "result.hpp"
@@ -15,19 +17,39 @@
 namespace equidem::python {
 namespace {
 
-/// Carry out a verb. Returns (JSON of the result, arrays, assembly or None).
+/// Report, units and labels of a result, as JSON: made when they are asked for, since they take as long as its numbers.
+class Texts {
+ public:
+  explicit Texts(Delivery delivery) : delivery_(std::move(delivery)) {}
+  [[nodiscard]] std::string json() const { return delivery_.texts().json(); }
+
+ private:
+  Delivery delivery_;
+};
+
+/// Carry out a verb. Returns (JSON of the numbers, arrays, assembly or None where it is the given one, wall clock of
+/// the verb in s, texts).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
                    const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides,
-                   const std::vector<std::string>& options) {
+                   std::vector<std::string> options) {
+  if (!progress_wanted() && std::ranges::find(options, "--quiet") == options.end()) options.emplace_back("--quiet");
   const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
   Delivery delivery;
   std::string json;
+  double seconds = 0;
   {
     const LongWork working;
+    const KeptSettings settings;
+    const Stopwatch watch;
     delivery = VerbRun(verb, inputs.case_file(), inputs.overrides(), options)(Arrays::wanted);
-    json = delivery.json();
+    const bool is_given = assembly && delivery.assembly && delivery.assembly->size() == assembly->size();
+    if (is_given) delivery.assembly.reset();
+    seconds = watch.seconds();
+    json = delivery.numbers().json();
   }
-  return py::make_tuple(json, arrays_of(delivery.arrays), std::const_pointer_cast<Assembly>(delivery.assembly));
+  const py::dict arrays = arrays_of(std::exchange(delivery.arrays, {}));
+  auto made = std::const_pointer_cast<Assembly>(std::exchange(delivery.assembly, nullptr));
+  return py::make_tuple(json, arrays, std::move(made), seconds, Texts(std::move(delivery)));
 }
 
 }  // namespace
@@ -50,6 +72,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 }
 
 void bind_verbs(py::module_& module) {
+  py::class_<Texts>(module, "Texts").def("json", &Texts::json);
   module.def("run_verb", run_verb);
   module.def("case_reference", case_file_page);
 }

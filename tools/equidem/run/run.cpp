@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "run/run_accuracy.hpp"
 #include "run/run_bonded.hpp"
+#include "run/run_film.hpp"
 #include "run/run_grains.hpp"
 #include "run/run_results.hpp"
 #include "verbs.hpp"
@@ -39,7 +40,8 @@ void check_outputs(const RunVerb& options, const RunJob& job) {
 /// long.
 bool step_through(const RunVerb& options, RunJob& job, StepSearch* search = nullptr) {
   const CommonOptions& common = options.common;
-  const RunPlan plan = job.plan();
+  RunPlan plan = job.plan();
+  if (common.out) plan.film_frames = frames_of_film(job.simulation().motions().size());
   const RunResult result = [&] {
     try {
       return run_through(job.simulation(), plan,

@@ -279,6 +279,18 @@ Results GrainRun::events() const {
       .add("touching", "", simulation_.contacts().size(), "at the end")
       .add("evaluations", "", counters.evaluations, "evaluation", {Shown::count})
       .note(" of the law");
+  if (const auto contacts = simulation_.contacts(); !contacts.empty()) {
+    const auto& grains = case_.scene.grains;
+    double largest = 0;
+    for (const GrainContact& contact : contacts) {
+      const auto radius = [&](std::int32_t body) { return grains[static_cast<std::size_t>(body)].radius; };
+      const double smaller = contact.j < 0 ? radius(contact.i) : std::min(radius(contact.i), radius(contact.j));
+      largest = std::max(largest, contact.overlap / smaller);
+    }
+    out.line("").add("largest_overlap", "they overlap by at most", largest, "of the smaller radius", {.digits = 3});
+  } else {
+    out.set("largest_overlap", nullptr);
+  }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.bonds());
   return out;

@@ -89,6 +89,8 @@ int stability(const StabilityCommand& options) {
     write_case(options, problem.resolved);
   });
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
+  for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k)
+    hand_over(motion_arrays(fmt::format("modes/{}/", k), result.natural.motions[k]));
   hand_over(std::move(problem.assembly));
   return 0;
 }

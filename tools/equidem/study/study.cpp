@@ -14,6 +14,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/study/built_in.hpp"
 #include "equidem/study/run_study.hpp"
 #include "equidem/study/study_time.hpp"
@@ -130,7 +131,7 @@ void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
   CommonOptions common = verb.common;
   common.overwrite = common.overwrite || continues;
   const OutputPlan plan(common);
-  for (const char* name : {"samples.csv", "study.csv", "result.json"}) plan.expect(name);
+  for (const char* name : {"samples.csv", "study.csv", "result.json", page_name}) plan.expect(name);
   for (const std::string& name : study_plot_names(study)) plan.expect_plot(name);
 }
 

@@ -18,6 +18,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/page/page.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
@@ -128,7 +129,7 @@ void check_outputs(const Sweep& sweep) {
   CommonOptions common = sweep.options.common;
   common.overwrite = common.overwrite || sweep.options.resume;
   const OutputPlan plan(common);
-  for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json"}) plan.expect(name);
+  for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json", page_name}) plan.expect(name);
   for (const std::string& name : curve_names(sweep.plan)) plan.expect_plot(name);
   OutputPlan(sweep.options.common).expect_json();
 }
@@ -206,7 +207,7 @@ int sweep(const SweepOptions& options) {
   const bool all_failed = failed == points.size();
   Results results;
   if (!sweep.base.title.empty()) results.block(sweep.base.title + "\n\n");
-  results.append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
+  results.set("title", sweep.base.title).append(results_of_keys(sweep.plan)).set("complete", !run.stopped());
   results.table("points", sweep_rows(sweep.plan, points));
   if (failed > 0) add_failures(results, points, failed);
   if (run.stopped())

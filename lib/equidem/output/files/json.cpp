@@ -25,6 +25,8 @@ bool fits_one_line(const Json& array) {
 }
 
 std::string quoted(const std::string& text) {
+  const bool plain = std::ranges::all_of(text, [](char c) { return c >= ' ' && c < 127 && c != '"' && c != '\\'; });
+  if (plain) return '"' + text + '"';
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -33,8 +35,10 @@ void append_json(std::string& text, const Json& value, std::size_t depth) {
   if (value.is_number_float()) {
     const double number = value.get<double>();
     text += std::isfinite(number) ? fmt::format("{}", number) : "null";
+  } else if (value.is_string()) {
+    text += quoted(value.get_ref<const std::string&>());
   } else if (is_scalar(value)) {
-    text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text += value.dump();
   } else if (value.empty()) {
     text += value.is_array() ? "[]" : "{}";
   } else if (value.is_array()) {

@@ -75,17 +75,25 @@ constexpr const char* player_page = R"(<!DOCTYPE html>
 <head><meta charset="utf-8"><title>{0}</title></head>
 <body style="font-family: sans-serif">
 <h1>{0}</h1>
-<canvas width="{2:.0f}" height="{3:.0f}" style="max-width: 100%; max-height: 75vh"></canvas>
-<p><button>pause</button> <input type="range" min="0" value="0"> <span></span></p>
+{1}</body>
+</html>
+)";
+
+constexpr const char* player_elements = R"(<div class="player">
+<canvas width="{2:.0f}" height="{3:.0f}" style="max-width: 100%; max-height: 75vh" role="img" aria-label="{0}"></canvas>
+<p class="controls"><button type="button">pause</button> <input type="range" min="0" value="0" aria-label="frame">
+<span></span></p>
 <p>{1}</p>
 <script>
+{{
 const data = {4};
 )";
 
 constexpr const char* player_script = R"(
 const fills = ['#add4ed', '#f7d494', '#a8dec7', '#f0b899', '#e6c2d9', '#f7f0a6'];
 const inks = ['#0073b3', '#bf8000', '#00805e', '#b34d00', '#a65985', '#8c8500'];
-const [canvas, button, slider, clock] = ['canvas', 'button', 'input', 'span'].map(tag => document.querySelector(tag));
+const player = document.currentScript.parentElement;
+const [canvas, button, slider, clock] = ['canvas', 'button', 'input', 'span'].map(tag => player.querySelector(tag));
 const draw = canvas.getContext('2d'), scale = canvas.width / data.size[0], frames = data.frames;
 const shapes = data.bodies.map(body => {
   const shape = new Path2D();
@@ -95,6 +103,13 @@ const shapes = data.bodies.map(body => {
   }
   return shape;
 });
+const way = (bodies, g) =>
+  Math.hypot(bodies[3 * g] - frames[0].bodies[3 * g], bodies[3 * g + 1] - frames[0].bodies[3 * g + 1]);
+const farthest = frames.reduce((far, frame) => data.bodies.reduce((most, _, g) => Math.max(most, way(frame.bodies, g)), far), 1);
+const shade = (bodies, g) => {
+  const part = way(bodies, g) / farthest;
+  return `hsl(207, ${40 + 35 * part}%, ${94 - 66 * part}%)`;
+};
 const radii = data.bodies.map(body => new Path2D(`M${body[0]} ${body[1]}h${body[2]}`));  // show the rotation
 function show(f) {
   const frame = frames[f], bodies = frame.bodies;
@@ -105,13 +120,13 @@ function show(f) {
     draw.save();
     draw.translate(bodies[3 * g] * data.unit, bodies[3 * g + 1] * data.unit);
     draw.rotate(bodies[3 * g + 2] * data.turn);
-    draw.fillStyle = fills[data.groups[g] % 6];
-    draw.strokeStyle = inks[data.groups[g] % 6];
+    draw.fillStyle = data.by_motion ? shade(bodies, g) : fills[data.groups[g] % 6];
+    draw.strokeStyle = data.by_motion ? '#6f8496' : inks[data.groups[g] % 6];
     draw.lineWidth = 1.6 / scale;  // the fill covers its inner half and the edges between discs of one body
     draw.stroke(shape);
     draw.fill(shape);
     draw.lineWidth = 0.8 / scale;
-    draw.stroke(radii[g]);
+    if (!data.by_motion) draw.stroke(radii[g]);
     draw.restore();
   });
   draw.lineWidth = 2 / scale;
@@ -123,13 +138,13 @@ function show(f) {
   });
   slider.value = f;
   clock.textContent = 't = ' + frame.time.toPrecision(4) + ' s; the picture is ' + data.size[0].toPrecision(3) +
-    ' m wide' + (data.speed == 1 ? '' : ', shown at ' + data.speed + ' of its speed');
+    ' m wide' + (data.speed == 1 ? '' : ', shown at ' + data.speed.toPrecision(2) + ' of its speed');
 }
-let playing = true, time = frames[0].time, last = performance.now(), f = 0;
+let playing, time = frames[0].time, last = performance.now(), f = 0;
 function play(now) {
   if (playing) {
     time += (now - last) / 1000 * data.speed;
-    if (time > frames[frames.length - 1].time + 1) time = frames[f = 0].time;
+    if (time > frames[frames.length - 1].time + data.speed) time = frames[f = 0].time;
     while (f + 1 < frames.length && frames[f + 1].time <= time) ++f;
     show(f);
   }
@@ -148,10 +163,12 @@ slider.oninput = () => {
   time = frames[f].time;
   show(f);
 };
+set_playing(!matchMedia('(prefers-reduced-motion: reduce)').matches);
+show(0);
 requestAnimationFrame(play);
+}
 </script>
-</body>
-</html>
+</div>
 )";
 
 void check(const GrainAnimation& animation) {
@@ -178,6 +195,10 @@ GrainFrame frame_of(std::span<const Grain> grains, double time) {
 }
 
 std::string grain_animation_html(const GrainAnimation& animation) {
+  return fmt::format(player_page, escape_xml(animation.title), grain_animation_player(animation));
+}
+
+std::string grain_animation_player(const GrainAnimation& animation) {
   check(animation);
   const GrainView view = view_of(animation);
   const Vec2 size = view.size();
@@ -191,10 +212,14 @@ std::string grain_animation_html(const GrainAnimation& animation) {
   for (const GrainFrame& frame : animation.frames) frames.push_back(frame_results(frame, animation, view, unit));
   Results data;
   data.set("low", view.low).set("size", size).set("unit", unit).set("turn", 2 * std::numbers::pi / levels);
-  data.set("speed", animation.speed).set("groups", groups).set("bodies", bodies).set("walls", walls);
+  data.set("speed", animation.speed)
+      .set("by_motion", animation.by_motion)
+      .set("groups", groups)
+      .set("bodies", bodies)
+      .set("walls", walls);
   data.set("frames", frames);
   const double scale = std::min(page_width / size.x, page_height / size.y);
-  return fmt::format(player_page, escape_xml(animation.title), escape_xml(animation.caption), scale * size.x,
+  return fmt::format(player_elements, escape_xml(animation.title), escape_xml(animation.caption), scale * size.x,
                      scale * size.y, data.json()) +
          player_script;
 }

@@ -29,8 +29,13 @@ struct GrainAnimation {
   std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
   std::span<const Wall> walls = {};
   std::span<const GrainFrame> frames = {};
-  double speed = 1;  ///< of the picture, in seconds of motion per second
+  double speed = 1;        ///< of the picture, in seconds of motion per second
+  bool by_motion = false;  ///< bodies are the bluer the further they are from their places in the first frame
 };
+
+/// The part of a page that plays the frames: canvas, button, slider, clock and script.
+/// \throws Error (bad_input) as grain_animation_html
+std::string grain_animation_player(const GrainAnimation& animation);
 
 /// The page. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded
 /// to 1/4096 of the view, angles to 1/4096 of a turn.

@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/placed_discs.hpp"
+#include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/pictures/canvas.hpp"
 #include "equidem/output/pictures/grain_view.hpp"
 #include "equidem/output/pictures/picture.hpp"
@@ -239,9 +241,16 @@ std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::pa
   const PageFrame frame = lay_out(picture);
   std::vector<std::filesystem::path> files{folder / (name + ".png")};
   write_file(files.back(), draw(picture, frame, PageFormat::png), overwrite);
-  if (picture.grains.size() > most_drawn_discs) return files;
-  files.push_back(folder / (name + ".svg"));
-  write_file(files.back(), draw(picture, frame, PageFormat::svg), overwrite);
+  DrawnFigure drawn{.name = name,
+                    .title = fmt::format("{}{}{} at t = {:.4g} s", picture.title, picture.title.empty() ? "" : ": ",
+                                         counted(std::ssize(picture.grains), "body", "bodies"), picture.time),
+                    .png = files.back()};
+  if (picture.grains.size() <= most_drawn_discs) {
+    files.push_back(folder / (name + ".svg"));
+    write_file(files.back(), draw(picture, frame, PageFormat::svg), overwrite);
+    drawn.svg = files.back();
+  }
+  DrawnFigures::add(std::move(drawn));
   return files;
 }
 

@@ -7,6 +7,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/pictures/canvas.hpp"
 #include "equidem/output/pictures/scene.hpp"
 
@@ -70,6 +71,10 @@ PictureResult write_picture(const std::filesystem::path& folder, const std::stri
   check_writable(png, overwrite);
   write_file(svg, draw(scene, PageFormat::svg), overwrite);
   write_file(png, draw(scene, PageFormat::png), overwrite);
+  DrawnFigures::add({.name = name,
+                     .title = fmt::format("{}{}{}", options.title, options.title.empty() ? "" : ": ", scene.caption),
+                     .svg = svg,
+                     .png = png});
   return {.width = options.width,
           .height = pixel_height(scene),
           .displacement_scale = scene.displacement_scale,

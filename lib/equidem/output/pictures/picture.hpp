@@ -77,6 +77,11 @@ struct PictureOptions {
 /// too, and outlines and force chains, too fine to be seen, are omitted (stated in the caption).
 inline constexpr std::size_t most_drawn_discs = 10000;
 
+/// The factor of displacements that makes the largest one visible: 1, 2 or 5 times a power of ten, at least 1, with
+/// which it is between 2 and 5 % of the side.
+/// \param largest, side both in m
+double visible_scale(double largest, double side);
+
 struct PictureResult {
   int width = 0;  ///< pixels
   int height = 0;

@@ -54,8 +54,7 @@ double choose_displacement_scale(const AssemblyState& state, const PictureOption
   if (options.displacement_scale) return *options.displacement_scale;
   double largest = 0;
   for (const DiscMotion& motion : state.motions) largest = std::max(largest, norm(motion.u));
-  if (largest == 0) return 1;
-  return std::max(1.0, scale_bar_length(shown_displacement * side / largest));
+  return visible_scale(largest, side);
 }
 
 /// Label of a colouring, and the stress that it shows; null: another quantity.
@@ -146,6 +145,11 @@ PageFrame lay_out_page(const Bounds& bounds, bool titled, double right, double s
   frame.height = top + frame.room.y + margin_bottom;
   frame.pixels = pixels;
   return frame;
+}
+
+double visible_scale(double largest, double side) {
+  if (largest == 0) return 1;
+  return std::max(1.0, scale_bar_length(shown_displacement * side / largest));
 }
 
 PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options) {

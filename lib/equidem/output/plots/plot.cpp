@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <string_view>
 #include <system_error>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/plots/bar_chart.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
 #include "equidem/output/plots/plot_script.hpp"
@@ -92,9 +94,22 @@ void check_chart(const BarChart& chart) {
   }
 }
 
+/// A label without the signs of gnuplot's enhanced text.
+std::string without_markup(const std::string& label) {
+  std::string text;
+  for (std::size_t k = 0; k < label.size(); ++k) {
+    if (label[k] == '\\' && k + 1 < label.size()) {
+      text += label[++k];
+    } else if (std::string_view("{}_^").find(label[k]) == std::string_view::npos) {
+      text += label[k];
+    }
+  }
+  return text;
+}
+
 /// Write data and script, and let gnuplot draw.
-PlotResult draw(const std::filesystem::path& folder, const std::string& name, const std::string& csv,
-                const std::string& script, bool overwrite) {
+PlotResult draw(const std::filesystem::path& folder, const std::string& name, const std::string& title,
+                const std::string& csv, const std::string& script, bool overwrite) {
   const auto path = [&](const char* extension) { return folder / (name + extension); };
   for (const char* extension : {".csv", ".gp", ".svg", ".png"}) check_writable(path(extension), overwrite);
 
@@ -118,6 +133,10 @@ PlotResult draw(const std::filesystem::path& folder, const std::string& name, co
                                  run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
                                  path(".gp").string());
   }
+  DrawnFigures::add({.name = name,
+                     .title = title,
+                     .svg = result.drawn ? path(".svg") : std::filesystem::path(),
+                     .missing = result.drawn ? "" : result.message});
   return result;
 }
 
@@ -127,14 +146,17 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
   check_name(name);
   check_plot(plot);
   const PlotData data = plot_data(plot);
-  return draw(folder, name, data.csv, plot_script(name, plot, data), overwrite);
+  const std::string title =
+      fmt::format("{}{}{} against {}", plot.title, plot.title.empty() ? "" : ": ", plot.y.label, plot.x.label);
+  return draw(folder, name, plot.enhanced ? without_markup(title) : title, data.csv, plot_script(name, plot, data),
+              overwrite);
 }
 
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
                       bool overwrite) {
   check_name(name);
   check_chart(chart);
-  return draw(folder, name, bar_data(chart), bar_script(name, chart), overwrite);
+  return draw(folder, name, chart.title, bar_data(chart), bar_script(name, chart), overwrite);
 }
 
 }  // namespace equidem

@@ -110,6 +110,11 @@ class RunLoop {
     return checkpoint;
   }
 
+  [[nodiscard]] std::int64_t samples_between_film_frames() const {
+    const std::int64_t samples = plan_.steps / stride_ + 1;
+    return (samples + plan_.film_frames - 1) / plan_.film_frames;
+  }
+
   void step_to(std::int64_t step) {
     try {
       simulation_.advance(step - simulation_.step());
@@ -142,11 +147,14 @@ class RunLoop {
       fail(error);
     }
     const double time = simulation_.time();
+    const bool filmed =
+        sample && plan_.film_frames > 0 && (last || std::ssize(energies) % (samples_between_film_frames()) == 0);
     if (sample) energies.push_back({step, time, ledger});
     if (recorded) plan_.recorder->record(step, time, regular_row);
     const bool path = sample && plan_.paths;
-    if (!path && !frame && !row) return;
+    if (!path && !frame && !row && !filmed) return;
     const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
+    if (filmed) result_.film.push_back({time, motions});
     if (path) {
       auto& places = result_.record.paths.emplace_back();
       for (const DiscMotion& motion : motions) places.push_back(motion.u);
