@@ -6,7 +6,8 @@
 
 On each page of docs/, in its order and in one folder that has data/ beside it: blocks `toml` whose first line is
 "# NAME" are written into the file NAME, blocks `sh` are run, blocks `python` are run in one interpreter. A block `text`
-after one of these is its output, where "..." stands for anything. Blocks marked "not-run" are left out.
+after one of these is its output, where "..." stands for anything. Blocks that are marked "not-run" or begin with a
+command of tools/ are left out. README.md is read as a page too.
 """
 
 import contextlib
@@ -50,7 +51,7 @@ class Pages(unittest.TestCase):
             environment = {**os.environ, "PATH": f"{folder}/bin:/usr/bin:{os.environ['PATH']}"}
             for language, words, body in blocks_of(page):
                 with self.subTest(block=body):
-                    if words == "not-run":
+                    if words == "not-run" or body.startswith("tools/"):
                         output = None
                     elif language == "toml" and re.match(r"# \S+\.toml\n", body):
                         pathlib.Path(body.split()[1]).write_text(body, encoding="utf-8")
@@ -84,9 +85,9 @@ def test_of(page):
     return lambda self: self.run_page(page)
 
 
-for path in sorted((SOURCE / "docs").rglob("*.md")):
+for path in [SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md"))]:
     if path.name not in LISTS and blocks_of(path):
-        name = path.relative_to(SOURCE / "docs").with_suffix("").as_posix().replace("/", "_")
+        name = path.relative_to(SOURCE).with_suffix("").as_posix().replace("/", "_")
         setattr(Pages, f"test_{name}", test_of(path))
 
 
@@ -115,8 +116,8 @@ class Python(unittest.TestCase):
         import equidem
 
         page = (SOURCE / "docs/reference/python.md").read_text(encoding="utf-8")
-        listed = set(re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.M))
-        self.assertEqual(listed, set(equidem.__all__))
+        listed = set(re.findall(r"^\.\. auto\w+:: (?:equidem\.)?(\w+)", page, re.M))
+        self.assertEqual(set(equidem.__all__) - listed, set())
 
 
 if __name__ == "__main__":
