@@ -166,7 +166,7 @@ class Simulation:
         ----------
         ax : matplotlib axes, optional
         options
-            Of `equidem.plot.bodies`, such as ``values``.
+            Passed on to `equidem.plot.bodies`: ``values``, ``label``, ``cmap``.
         """
         from . import plot
 
