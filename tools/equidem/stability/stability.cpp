@@ -92,8 +92,10 @@ int stability(const StabilityCommand& options) {
     write_case(options, problem.resolved);
   });
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
-  for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k)
-    hand_over(motion_arrays(fmt::format("modes/{}/", k), result.natural.motions[k]));
+  for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k) {
+    const std::shared_ptr<const std::vector<DiscMotion>> mode(shared_result, &result.natural.motions[k]);
+    hand_over(motion_arrays(fmt::format("modes/{}/", k), mode));
+  }
   hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
   hand_over([shared_problem, shared_result](const CommonOptions& into) {
     write_survey(*into.out, shared_problem->resolved.title, *shared_result, into.overwrite);
