@@ -9,6 +9,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -35,6 +36,9 @@ def _metadata(version):
 def _install(prefix):
     """Configure, build, and install the package below the prefix."""
     build = SOURCE / "build/wheel"
+    if shutil.which("cmake") is None:
+        raise RuntimeError("cmake was not found. The module is compiled: install the packages of tools/packages.txt "
+                           "for 'build' and 'python'.")
     subprocess.run(["cmake", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON",
                     "-DEQUIDEM_BUILD_TESTS=OFF", "-DEQUIDEM_BUILD_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}",
                     "-DEQUIDEM_PYTHON_DESTINATION=."], check=True)

@@ -44,8 +44,8 @@ PARTS = [
 SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "pthread.h", "spawn.h", "sched.h", "immintrin.h", "malloc.h"]
 
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py")
-SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", "tools/docs", "docs/site/build", ".ci/run", ".ci/format",
-           ".ci/headers", ".ci/tidy", ".ci/sanitize")
+SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", "tools/docs", "tools/package", "docs/site/build", ".ci/run",
+           ".ci/format", ".ci/headers", ".ci/tidy", ".ci/sanitize")
 SPDX = "SPDX-License-Identifier: GPL-3.0-or-later"
 # Places on the machine of whoever writes: absolute paths below these.
 MACHINE_PATH = re.compile(r"(?<![\w./\-~$}{])/(?:%s)\b" % "|".join(["work", "tmp", "root", "home", "mnt", "Users"]))

@@ -23,6 +23,8 @@
 #include "equidem/output/files/json.hpp"
 
 #include "command.hpp"
+#include "completion.hpp"
+#include "man_page.hpp"
 
 namespace equidem {
 namespace {
@@ -94,12 +96,25 @@ void check_refusals(const Program& program, const std::string& word) {
   bad_input(problem, "", help);
 }
 
+/// The manual page of a verb or topic, or the completion for a shell.
+std::string generated_text(const Program& program, const CLI::App& app, const std::string& kind,
+                           const std::string& name) {
+  const bool manual = kind == manual_topic;
+  if (const auto text = manual ? man_page(program, app, name) : completion(program, app, name)) return *text;
+  if (manual) bad_input(fmt::format("there is no manual page on '{}'", name), "", "Name a verb or a topic of help");
+  bad_input(fmt::format("there is no completion for the shell '{}'", name), "", "The shells are bash, zsh and fish");
+}
+
 void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.size() < 2) {
     print(app.help());
     return;
   }
-  std::vector<std::string> topics;
+  std::vector<std::string> topics{manual_topic, completion_topic};
+  if (std::ranges::find(topics, arguments[1]) != topics.end()) {
+    print(generated_text(program, app, arguments[1], arguments.size() > 2 ? arguments[2] : ""));
+    return;
+  }
   for (const HelpTopic& topic : program.topics) {
     if (arguments[1] == topic.name) {
       const bool markdown = topic.markdown && arguments.size() > 2 && arguments[2] == "--markdown";

@@ -35,9 +35,14 @@ struct Refusal {
 /// A page of help beside those of the commands.
 struct HelpTopic {
   const char* name;
+  const char* summary;  ///< one line of the manual
   std::string (*text)();
   std::string (*markdown)() = nullptr;  ///< printed with --markdown
 };
+
+/// Topics of help that every program has: a page of its manual, completion for a shell.
+inline constexpr const char* manual_topic = "man";
+inline constexpr const char* completion_topic = "completion";
 
 struct Program {
   const char* name;

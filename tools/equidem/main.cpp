@@ -21,7 +21,10 @@ constexpr const char* footer = R"(Examples:
   equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
   equidem help result        numbers of result.json, their units and meanings
+  equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
+  equidem help completion bash    completion for the shell; also zsh and fish
 
+The files of data/cases are installed in share/doc/equidem/examples.
 The tables and figures of published papers are computed by the program equidem-papers.
 
 Exit codes: 0 done, of a sweep some of its points; 1 the computation failed, and the message says why; 2 bad input or
@@ -39,7 +42,8 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS]",
       .footer = footer,
       .verbs = verbs,
-      .topics = {{"case", describe_case_file, case_file_page}, {"result", describe_result}},
+      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page},
+                 {"result", "the numbers of result.json of equidem, their units and meanings", describe_result}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
                     "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
                    {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",

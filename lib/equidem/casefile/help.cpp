@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <utility>
 
 #include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -147,6 +148,19 @@ std::string markdown_introduction(std::string_view introduction) {
   return in_example ? out + "```\n" : out;
 }
 
+/// "load.0.moment" for the key "moment" of [[load]].
+std::string path_of_first_entry(const casefile::FileSpec& spec, const casefile::KeySpec& key) {
+  const std::string path = key.path();
+  std::string out;
+  for (std::size_t begin = 0, dot = 0; begin < path.size(); begin = dot + 1) {
+    dot = std::min(path.find('.', begin), path.size());
+    const casefile::TableSpec* table = spec.table(path.substr(0, dot));
+    out += path.substr(begin, dot - begin) + (table != nullptr && table->repeated ? ".0" : "");
+    if (dot < path.size()) out += '.';
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string describe_case_file() {
@@ -167,6 +181,26 @@ std::string case_file_page() {
     out += tables_of(part, casefile::markdown_table);
   }
   return out;
+}
+
+std::vector<CaseKey> case_keys() {
+  std::vector<CaseKey> keys;
+  for (const Part& part : parts()) {
+    if (&part.spec == &study_file_spec()) continue;
+    for (const casefile::KeySpec& key : part.spec.keys) {
+      CaseKey found{path_of_first_entry(part.spec, key), key.choices};
+      if (key.type == casefile::KeyType::flag) found.words = {"true", "false"};
+      if (key.type == casefile::KeyType::number_or_auto) found.words = {"auto"};
+      const auto same = std::ranges::find(keys, found.path, &CaseKey::path);
+      if (same == keys.end()) {
+        keys.push_back(std::move(found));
+        continue;
+      }
+      for (std::string& word : found.words)
+        if (std::ranges::find(same->words, word) == same->words.end()) same->words.push_back(std::move(word));
+    }
+  }
+  return keys;
 }
 
 std::optional<std::string> unit_of_case_key(std::string_view path) {

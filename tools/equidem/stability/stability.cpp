@@ -12,6 +12,7 @@
 #include "equidem/core/text.hpp"
 
 #include "command.hpp"
+#include "option_checks.hpp"
 #include "result_arrays.hpp"
 #include "stability/stability_results.hpp"
 #include "verbs.hpp"
@@ -111,8 +112,9 @@ Run declare_stability(CLI::App& command) {
   add_common_options(command, *options);
   add_require_stable(command, *options);
   command.add_option("--frequencies", options->frequencies, "number of the lowest natural frequencies; 0: none")
-      ->check(CLI::Range(0, 50))
-      ->capture_default_str();
+      ->check(whole_number(0, 50))
+      ->capture_default_str()
+      ->type_name("N");
   command.add_flag("--without-critical-ratio", options->without_critical_ratio,
                    "do not seek the critical kT/kN of an assembly without a small cell,\n"
                    "which takes most of the time of large ones");

@@ -152,6 +152,15 @@ std::string describe_case_file();
 /// The help of the case file as a page in Markdown, docs/case_file.md.
 std::string case_file_page();
 
+/// A key as --set takes it, "load.0.moment" for the first entry of a repeated table, and the words that it accepts, if
+/// they can be listed.
+struct CaseKey {
+  std::string path;
+  std::vector<std::string> words;
+};
+/// The keys of all case files that have verbs with --set: all but studies. No path occurs twice.
+std::vector<CaseKey> case_keys();
+
 /// The unit, "" for none, of the key of a case file of any kind that a path such as "springs.kT" or "load.0.moment"
 /// names; nothing where there is no such key.
 std::optional<std::string> unit_of_case_key(std::string_view path);

@@ -13,7 +13,7 @@ namespace equidem {
 /// where there is none.
 std::optional<double> number_in_json(std::string_view text, const std::string& path);
 
-/// The version of the library, "0.1.0".
+/// The version of the library, "0.2.0".
 std::string library_version();
 
 }  // namespace equidem
