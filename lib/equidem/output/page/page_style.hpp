@@ -79,7 +79,8 @@ pre { margin: 0.7rem 0 0.3rem; overflow-x: auto; font: 0.82rem/1.5 ui-monospace,
   border-radius: 8px; }
 section > .table { margin-top: 1rem; }
 code { font-family: ui-monospace, monospace; font-size: 0.9em; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem; align-items: start; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem;
+  align-items: start; }
 figure { margin: 0; }
 figure svg, figure img { display: block; width: 100%; height: auto; background: #fff; border-radius: 8px; }
 figcaption { margin-top: 0.4rem; color: var(--soft); font-size: 0.85rem; }
