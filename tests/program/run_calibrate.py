@@ -115,7 +115,7 @@ class Calibrate(program.ProgramTest):
     def test_files_are_written_as_asked_and_never_replaced_unasked(self):
         out = self.folder / "out"
         first = self.check_done(equidem("calibrate", LATTICE, "--out", out))
-        self.assertEqual({path.name for path in out.iterdir()}, {"result.json", "case.toml", "springs.toml", "assembly.json"})
+        self.assertEqual({path.name for path in out.iterdir()}, {"result.json", "index.html", "case.toml", "springs.toml", "assembly.json"})
         self.assertIn("springs.toml", first.stdout)
         before = (out / "springs.toml").read_bytes()
         self.check_error(equidem("calibrate", LATTICE, "--springs", out / "springs.toml"), 2, "exists already",

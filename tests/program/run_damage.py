@@ -21,11 +21,13 @@ VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "s
 
 
 def contents(folder):
-    """Bytes of all files; of result.json what does not vary from run to run."""
+    """Bytes of all files; of result.json what does not vary from run to run; of a page, which shows that, whether it is whole."""
     files = files_of(folder)
     if "result.json" in files:
         result = parse_json(files["result.json"].decode())
         files["result.json"] = {key: value for key, value in result.items() if key not in VARYING}
+    if "index.html" in files:
+        files["index.html"] = files["index.html"].endswith(b"</html>\n")
     return files
 
 

@@ -103,13 +103,15 @@ class Killing:
         return out, time.monotonic() - began
 
     def contents(self, name, out):
-        """Bytes of every file; of JSON what does not vary; of a checkpoint all arrays but the counters of work (the neighbours
+        """Bytes of every file; of JSON what does not vary; of a page whether it is whole; of a checkpoint all arrays but the counters of work (the neighbours
         are searched once more where a run goes on); of a study, whose tables hold measured times, the errors."""
         files = {}
         for path in sorted(path for path in out.rglob("*") if path.is_file()):
             files[str(path.relative_to(out))] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))
+            elif path.name == "index.html":  # it tells times, and shows the frames since the run went on
+                files[path.name] = files[path.name].endswith(b"</html>\n")
             elif path.name == "run.checkpoint.h5":
                 files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}
         if name == "study":

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "equidem/contact/effects.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

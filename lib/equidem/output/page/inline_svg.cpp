@@ -47,7 +47,7 @@ Attributes attributes_of(std::string_view inside) {
   }
 }
 
-/// "#7f7f7f" of "rgb(50%,50%,50%)"; other values as they are.
+/// "#808080" of "rgb(50%,50%,50%)"; other values as they are.
 std::string short_colour(const std::string& value) {
   if (!value.starts_with("rgb(") || !value.ends_with("%)")) return value;
   std::string colour = "#";
@@ -55,7 +55,7 @@ std::string short_colour(const std::string& value) {
     double percentage = 0;
     const std::string_view digits = trimmed(share);
     std::from_chars(digits.data(), digits.data() + digits.size(), percentage);
-    colour += fmt::format("{:02x}", std::lround(2.55 * percentage));
+    colour += fmt::format("{:02x}", std::lround(255 * percentage / 100));
   }
   return colour;
 }

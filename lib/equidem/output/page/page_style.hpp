@@ -79,17 +79,19 @@ pre { margin: 0.7rem 0 0.3rem; overflow-x: auto; font: 0.82rem/1.5 ui-monospace,
   border-radius: 8px; }
 section > .table { margin-top: 1rem; }
 code { font-family: ui-monospace, monospace; font-size: 0.9em; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem; align-items: start; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem;
+  align-items: start; }
 figure { margin: 0; }
 figure svg, figure img { display: block; width: 100%; height: auto; background: #fff; border-radius: 8px; }
 figcaption { margin-top: 0.4rem; color: var(--soft); font-size: 0.85rem; }
 .missing { margin-top: 0.8rem; color: var(--soft); font-size: 0.9rem; }
-.player canvas { display: block; max-width: 100%; max-height: 75vh; margin: 0 auto; background: #fff; border-radius: 8px; }
+.player canvas { display: block; max-width: 100%; max-height: 75vh; margin: 0 auto; background: #fff;
+  border-radius: 8px; }
 .player p { margin: 0.6rem 0 0; color: var(--soft); font-size: 0.9rem; }
 .controls { display: flex; gap: 0.8rem; align-items: center; flex-wrap: wrap; }
 .controls input { flex: 1 1 12rem; accent-color: var(--accent); }
-.controls button { min-width: 5.5em; padding: 0.3em 0.9em; font: inherit; color: var(--accent); background: var(--card);
-  border: 1px solid var(--accent); border-radius: 6px; cursor: pointer; }
+.controls button { min-width: 5.5em; padding: 0.3em 0.9em; font: inherit; color: var(--accent);
+  background: var(--card); border: 1px solid var(--accent); border-radius: 6px; cursor: pointer; }
 footer { margin-top: 3rem; padding-bottom: 2rem; color: var(--soft); font-size: 0.85rem; }
 :focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; }
 @media print { details > pre { display: block; } .controls { display: none; } }

@@ -105,7 +105,8 @@ const shapes = data.bodies.map(body => {
 });
 const way = (bodies, g) =>
   Math.hypot(bodies[3 * g] - frames[0].bodies[3 * g], bodies[3 * g + 1] - frames[0].bodies[3 * g + 1]);
-const farthest = frames.reduce((far, frame) => data.bodies.reduce((most, _, g) => Math.max(most, way(frame.bodies, g)), far), 1);
+const farthest = frames.reduce(
+  (far, frame) => data.bodies.reduce((most, _, g) => Math.max(most, way(frame.bodies, g)), far), 1);
 const shade = (bodies, g) => {
   const part = way(bodies, g) / farthest;
   return `hsl(207, ${40 + 35 * part}%, ${94 - 66 * part}%)`;
