@@ -26,7 +26,7 @@ print(f"this assembly can have nu up to {highest:.3f}")
 
 # %%
 moduli = eq.homogenize(cell, rock)
-assert abs(moduli.young_modulus.plane_strain / E - 1) < 1e-12 and abs(moduli.poisson_ratio.plane_strain - nu) < 1e-12
+assert abs(moduli.plane_strain.young_modulus / E - 1) < 1e-12 and abs(moduli.plane_strain.poisson_ratio - nu) < 1e-12
 advised = eq.homogenize(cell, rock.mean_field)
 G = E / (2 * (1 + nu))
 K = G / (1 - 2 * nu)
@@ -38,17 +38,17 @@ assert np.isclose(rock.wave_speeds.shear, np.sqrt(G / density), rtol=1e-12)
 
 # %%
 ratios = np.linspace(0, 1, 15)
-curve = [eq.homogenize(cell, (rock.kN, r * rock.kN)).poisson_ratio.plane_strain for r in ratios]
+curve = [eq.homogenize(cell, (rock.kN, r * rock.kN)).plane_strain.poisson_ratio for r in ratios]
 assert (np.diff(curve) < 0).all() and abs(curve[0] - highest) < 1e-9
 
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 axes.plot(ratios, curve, label="this assembly")
 axes.plot(ratios, (1 - ratios) / 4, "--", color="0.5", label="mean field, (1 - kT/kN)/4")
-axes.plot(rock.ratio, moduli.poisson_ratio.plane_strain, "o", color="C3",
+axes.plot(rock.ratio, moduli.plane_strain.poisson_ratio, "o", color="C3",
           label=f"calibrated: E = {E / 1e9:g} GPa, nu = {nu}")
-axes.plot(rock.mean_field.kT / rock.mean_field.kN, advised.poisson_ratio.plane_strain, "s", color="0.4",
-          label=f"advised by the mean field: E = {advised.young_modulus.plane_strain / 1e9:.1f} GPa, "
-                f"nu = {advised.poisson_ratio.plane_strain:.3f}")
+axes.plot(rock.mean_field.kT / rock.mean_field.kN, advised.plane_strain.poisson_ratio, "s", color="0.4",
+          label=f"advised by the mean field: E = {advised.plane_strain.young_modulus / 1e9:.1f} GPa, "
+                f"nu = {advised.plane_strain.poisson_ratio:.3f}")
 axes.axhline(highest, color="C0", linewidth=0.8, linestyle=":", label=f"largest feasible nu, {highest:.3f}")
 axes.set(xlabel="kT/kN", ylabel="Poisson's ratio, plane strain", xlim=(0, 1))
 axes.legend(frameon=False, loc="lower left", fontsize=9)

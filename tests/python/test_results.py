@@ -24,6 +24,18 @@ def test_numbers_have_units_and_meanings():
         result.poison_ratio
 
 
+def test_moduli_are_found_by_plane_in_results_of_all_verbs():
+    cell = eq.hexagonal(columns=2, rows=2, radius=1e-3, periodic=True)
+    moduli = eq.homogenize(cell, SPRINGS)
+    assert moduli.plane_strain.poisson_ratio == moduli.poisson_ratio.plane_strain
+    assert moduli.plane_stress.young_modulus == moduli.young_modulus.plane_stress
+    achieved = eq.calibrate(cell, young_modulus=1e9, poisson_ratio=0.1).achieved
+    assert abs(achieved.plane_strain.poisson_ratio - 0.1) < 1e-12
+    assert "plane_strain" not in moduli and "plane_strain" in eq.tension_test(BLOCK, SPRINGS)
+    with pytest.raises(AttributeError, match="plane_strain"):
+        eq.stability(cell, SPRINGS).plane_strain
+
+
 def test_a_result_is_shown_as_text_and_html():
     result = eq.tension_test(BLOCK, SPRINGS)
     assert "tension test" in repr(result) and repr(result) == result.report.rstrip("\n")

@@ -26,7 +26,7 @@ class Result(Mapping[str, Any]):
 
     Its numbers have the names of result.json (`equidem help result` lists them) and are attributes and keys alike:
     ``result.poisson_ratio``, ``result["poisson_ratio"]``. Nested objects are results too:
-    ``result.plane_strain.young_modulus``. Arrays, such as ``result.displacements``, are read-only views.
+    ``result.plane_strain.young_modulus``, which also stands for ``result.young_modulus.plane_strain``. Arrays, such as ``result.displacements``, are read-only views.
 
     Attributes
     ----------
@@ -101,6 +101,11 @@ class Result(Mapping[str, Any]):
         try:
             return self._values[name]
         except KeyError:
+            if name in ("plane_strain", "plane_stress"):
+                parts = {key: part[name] for key, part in self._values.items()
+                         if isinstance(part, Result) and name in part}
+                if parts:
+                    return Result(parts)
             raise AttributeError(f"the result has no '{name}'. It has {', '.join(self._values)}") from None
 
     def __iter__(self) -> Iterator[str]:
