@@ -46,7 +46,7 @@ list(TRANSFORM needed REPLACE " .*" "")
 list(JOIN needed ", " needed)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libequidem-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${needed}, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${needed}, pkgconf")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "equilibrium of assemblies of discs - C++ library
 Assemblies of discs of the discrete-element method are solved by assembled
 stiffness matrices: equilibrium, effective stiffness, stability, packings,

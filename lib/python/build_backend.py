@@ -47,8 +47,21 @@ def _install(prefix):
     subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", prefix, "--strip"], check=True)
 
 
+def _version():
+    return re.search(r"project\(equidem VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without it, pip would build the wheel for its metadata and then again."""
+    name = f"equidem-{_version()}.dist-info"
+    info = pathlib.Path(metadata_directory) / name
+    info.mkdir()
+    (info / "METADATA").write_text(_metadata(_version()), encoding="utf-8")
+    return name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    version = re.search(r"project\(equidem VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+    version = _version()
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
     tag = f"{python}-{python}-{platform}"
