@@ -108,7 +108,8 @@ def machine(eq):
 
 def page(rows, options, eq):
     command = f"tools/bench/python_overhead.py --build build/release --discs {options.discs} --rounds {options.rounds}"
-    lines = ["# From Python", "", f"    {command}", "", f"{machine(eq)}; Python {sys.version.split()[0]}.", "",
+    lines = ["# From Python", "", f"    {command}", "", f"{machine(eq)}; Python {sys.version.split()[0]}; "
+             f"load average {os.getloadavg()[0]:.1f}, of which the benchmark is at most 2.", "",
              TEXT.format(threads=eq.threads(), rounds=options.rounds, calls=CALLS),
              f"| discs | {' | '.join(COLUMNS)} | call beyond the verb over verb |",
              "|---" * (len(COLUMNS) + 2) + "|"]

@@ -26,7 +26,8 @@ class Result(Mapping[str, Any]):
 
     Its numbers have the names of result.json (`equidem help result` lists them) and are attributes and keys alike:
     ``result.poisson_ratio``, ``result["poisson_ratio"]``. Nested objects are results too:
-    ``result.plane_strain.young_modulus``, which also stands for ``result.young_modulus.plane_strain``. Arrays, such as ``result.displacements``, are read-only views.
+    ``result.plane_strain.young_modulus``, which also stands for ``result.young_modulus.plane_strain``. Arrays,
+    such as ``result.displacements``, are read-only views.
 
     Attributes
     ----------
