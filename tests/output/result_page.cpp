@@ -26,7 +26,7 @@ Results bonded_run(double step_ratio, double change, double imbalance, double ra
       .set("critical_time_step_exact", true)
       .set("largest_deformation", change)
       .set("energy/relative_error", imbalance)
-      .set("ratio", ratio);
+      .set("springs/ratio", ratio);
 }
 
 std::vector<Verdict> verdicts(const Results& results) {

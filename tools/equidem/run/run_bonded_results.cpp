@@ -49,7 +49,7 @@ Results BondedRun::scene() const {
   const RunCase& run = this->run();
   const bool small = run.motion == LoopKind::Motion::small;
   Results out = problem_results(problem_, simulation_.effects(), AssemblyKeys::size);
-  if (const auto& springs = problem_.springs.constants) out.set("ratio", springs->ratio());
+  if (const auto& springs = problem_.springs.constants) out.set("springs/ratio", springs->ratio());
   out.line("motions")
       .add("motion", "", small ? "small" : "finite")
       .note(small ? ": normals and contact points fixed, the forces are those of the matrix K"

@@ -81,7 +81,7 @@ std::optional<TrustCheck> check_balance(const Results& results, const TrustLimit
 /// The mean field of bonded discs, nu = (1 - kT/kN)/4 in plane strain (Abe 1996, eq. 35), is at most 1/4 without
 /// negative springs, 1/3 in plane stress.
 std::optional<TrustCheck> check_poisson_ratio(const Results& results) {
-  const auto ratio = number(results, "ratio");
+  const auto ratio = number(results, "springs/ratio");
   if (!ratio || find_result(results, "grains") != nullptr) return std::nullopt;
   if (*ratio >= 0)
     return TrustCheck{good, "Poisson's ratio", fmt::format("feasible: no spring is negative (kT/kN = {:.4g})", *ratio)};
