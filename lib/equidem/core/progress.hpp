@@ -55,6 +55,6 @@ class InterruptCatcher {
 };
 
 /// A function that shows a line of progress in place of stderr, on which an empty line clears it; none: stderr.
-void set_progress_display(std::function<void(const std::string& line)> display);
+void set_progress_display(std::function<void(const std::string& line)> shown_by);
 
 }  // namespace equidem
