@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/study/study_time.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "equidem/core/stopwatch.hpp"
 
@@ -39,9 +41,13 @@ TEST_CASE("the_time_of_fine_settings_follows_from_that_of_coarse_ones") {
   CHECK(all.round >= 0.042);
   CHECK(all.least == 4 * all.round);
   CHECK(all.most >= all.least);
-  const StudyEstimate some = estimate_study(squares(8), options, 0.1);  // 2, 8, 32 ms; the others are 128 ms to 33 s
-  CAPTURE(some.timed, some.round);
-  CHECK(some.timed < 5);
-  CHECK(some.round > 43.69 / 3);
-  CHECK(some.round < 43.69 * 3);
+  // 2, 8, 32 ms; the others are 128 ms to 33 s. Other programs lengthen single settings, mostly the finest: the least of
+  // five estimates.
+  std::vector<StudyEstimate> some;
+  for (int k = 0; k < 5; ++k) some.push_back(estimate_study(squares(8), options, 0.1));
+  const StudyEstimate least = *std::ranges::min_element(some, {}, &StudyEstimate::round);
+  CAPTURE(least.timed, least.round);
+  CHECK(least.timed < 5);
+  CHECK(least.round > 43.69 / 3);
+  CHECK(least.round < 43.69 * 3);
 }
