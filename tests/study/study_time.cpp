@@ -41,8 +41,7 @@ TEST_CASE("the_time_of_fine_settings_follows_from_that_of_coarse_ones") {
   CHECK(all.round >= 0.042);
   CHECK(all.least == 4 * all.round);
   CHECK(all.most >= all.least);
-  // 2, 8, 32 ms; the others are 128 ms to 33 s. Other programs lengthen single settings, mostly the finest: the least of
-  // five estimates.
+  // 2, 8, 32 ms; the others are 128 ms to 33 s. Other programs lengthen single settings: the least of five estimates.
   std::vector<StudyEstimate> some;
   for (int k = 0; k < 5; ++k) some.push_back(estimate_study(squares(8), options, 0.1));
   const StudyEstimate least = *std::ranges::min_element(some, {}, &StudyEstimate::round);
