@@ -18,7 +18,7 @@ case = eq.Case(assembly={"kind": "packing"}, springs=(20e9, 14e9),
                         "solid_fraction": 0.8, "radii": {"smallest": smallest, "largest": 2 * smallest}})
 table = eq.sweep(case, {"packing.radii.largest": np.array([1.2, 2, 3, 4]) * smallest,
                         "packing.solid_fraction": [0.78, 0.80, 0.82], "packing.seed": range(1, seeds + 1)})
-table = table[table["error"] == ""].rename(columns={"poisson_ratio.plane_strain": "nu",
+table = table[table["status"] == "solved"].rename(columns={"poisson_ratio.plane_strain": "nu",
                                                     "packing.solid_fraction": "fraction"})
 table["width"] = table["packing.radii.largest"] / smallest
 means = table.groupby(["width", "fraction"])["nu"].agg(["mean", "sem"]).round(4)

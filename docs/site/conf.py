@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sphinx configuration of the site. The script build sets EQUIDEM_DOXYGEN (folder of Doxygen's XML), EQUIDEM_VERSION and
-the path of the Python module; the sources are those that stage.py has gathered."""
+"""Sphinx configuration of the site. The script build sets EQUIDEM_DOXYGEN (folder of Doxygen's XML), EQUIDEM_VERSION
+and the path of the Python module; the sources are those that stage.py has gathered."""
 
 import os
 import pathlib

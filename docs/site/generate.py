@@ -53,7 +53,8 @@ def entries_of(help_text, section):
 
 
 def verbs_page(program):
-    page = ["# Verbs", "", "`equidem VERB CASE.toml [OPTIONS]`. This page is made from `equidem VERB --help`; the keys of",
+    page = ["# Verbs", "",
+            "`equidem VERB CASE.toml [OPTIONS]`. This page is made from `equidem VERB --help`; the keys of",
             "the case file have [their own](../case_file.md).", ""]
     for verb, meaning in verbs_of(program):
         text = output_of(program, verb, "--help")
@@ -72,7 +73,8 @@ def verbs_page(program):
 
 def result_page(program):
     intro, _, listed = output_of(program, "help", "result").partition("\nNames of numbers")
-    page = ["# Numbers of result.json", "", "This page is `equidem help result`. In Python a result has the same numbers as",
+    page = ["# Numbers of result.json", "",
+            "This page is `equidem help result`. In Python a result has the same numbers as",
             "attributes: `result.plane_strain.young_modulus`.", ""]
     for paragraph in intro.strip().split("\n\n"):
         if re.match(r"\w+   ", paragraph):
@@ -89,5 +91,6 @@ def result_page(program):
 def examples_page(names):
     """The contents of the examples, whose pages tools/notebooks makes."""
     contents = ["```{toctree}", ":maxdepth: 1", "", *names, "```"] if names else []
-    return "\n".join(["# Examples", "", "Scripts to copy from, each with one question and one figure: `docs/examples/` of",
-                      "the source.", "", *contents, ""])
+    return "\n".join(["# Examples", "",
+                      "Scripts to copy from, each with one question and one figure: `docs/examples/` of the source.",
+                      "", *contents, ""])

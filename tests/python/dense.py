@@ -5,8 +5,8 @@ import numpy as np
 
 
 def contact_gradients(assembly):
-    """Derivatives (m, 3 n) of stretch and slip of each contact by u_x, u_y and theta of all discs: Abe 1996, eqs. (1) to
-    (3), with a lever for each disc."""
+    """Derivatives (m, 3 n) of stretch and slip of each contact by u_x, u_y and theta of all discs: Abe 1996, eqs. (1)
+    to (3), with a lever for each disc."""
     n, m = len(assembly), len(assembly.contacts)
     cell = np.array(assembly.cell or (0.0, 0.0))
     stretch, slip = np.zeros((m, 3 * n)), np.zeros((m, 3 * n))
@@ -47,7 +47,7 @@ def effective_stiffness(cell, kN, kT):
     normals = branches / np.hypot(*branches.T)[:, None]
     tangents = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
     strains = [np.array([[1, 0], [0, 0]]), np.array([[0, 0], [0, 1]]), np.array([[0, 0.5], [0.5, 0]])]
-    given = np.array([np.concatenate([np.sum(normals * (branches @ e), axis=1), np.sum(tangents * (branches @ e), axis=1)])
+    given = np.array([np.concatenate([np.sum(along * (branches @ e), axis=1) for along in (normals, tangents)])
                       for e in strains]).T
     m = len(stretch)
     weights = np.sqrt(np.concatenate([np.full(m, kN), np.full(m, kT)]))[:, None]

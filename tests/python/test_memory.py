@@ -90,3 +90,24 @@ def test_results_written_to_a_folder_can_be_computed_again(tmp_path):
     assert eq.Case(tmp_path / "result/case.toml").solve().poisson_ratio == result.poisson_ratio
     with pytest.raises(eq.BadInput, match="exists already"):
         case.solve(out=tmp_path / "result")
+
+
+def test_a_folder_of_results_is_changed_only_by_what_is_asked(tmp_path):
+    def case(radius):
+        return eq.Case(assembly=eq.hexagonal(columns=7, rows=7, radius=radius), springs=(1e9, 0.5e9),
+                       test={"kind": "uniaxial_tension", "stress": 1e6})
+
+    kept = tmp_path / "kept"
+    case(1e-3).solve(out=kept)
+    before = {path: path.read_bytes() for path in kept.iterdir()}
+    with pytest.raises(eq.BadInput, match="exists already"):
+        case(2e-3).solve(out=kept)
+    case(2e-3).solve(out=kept, overwrite=True, dry_run=True)
+    assert {path: path.read_bytes() for path in kept.iterdir()} == before
+    case(2e-3).solve(out=kept, overwrite=True)
+    assert eq.read(kept / "given_assembly.h5").radii[0] == 2e-3
+
+    with pytest.raises(eq.BadInput):
+        case(1e-3).set("springs.kT", -5e9).set("springs.kN", -1).solve(out=tmp_path / "failed")
+    case(1e-3).solve(out=tmp_path / "dry", dry_run=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]

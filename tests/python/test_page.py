@@ -22,9 +22,10 @@ def result_of(verb):
     if verb == "calibrate":
         return eq.calibrate(CELL, young_modulus=1e9, poisson_ratio=0.1)
     if verb == "pack":
-        return eq.pack({"grains": 30, "box": [0.1, 0.1], "radii": {"smallest": 4e-3, "largest": 6e-3}, "method": "growth",
-                        "overlap": 1e-3, "sides": "periodic"}, (1e8, 0.5e8))
-    return eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}], run={"duration": 1e-4})
+        return eq.pack({"grains": 30, "box": [0.1, 0.1], "radii": {"smallest": 4e-3, "largest": 6e-3},
+                        "method": "growth", "overlap": 1e-3, "sides": "periodic"}, (1e8, 0.5e8))
+    return eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}],
+                  run={"duration": 1e-4})
 
 
 @pytest.mark.parametrize("verb", ["solve", "homogenize", "stability", "calibrate", "pack", "run"])
@@ -35,8 +36,8 @@ def test_a_result_is_saved_as_a_page(verb, tmp_path):
     text = page.read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>") and "http" not in text and len(text) < 2e6
     assert f"equidem {verb}" in text and str(tmp_path) not in text
-    number = {"solve": "poisson_ratio", "stability": "critical_ratio", "calibrate": "kN", "pack": "solid_fraction"}.get(verb)
-    if number:
+    numbers = {"solve": "poisson_ratio", "stability": "critical_ratio", "calibrate": "kN", "pack": "solid_fraction"}
+    if number := numbers.get(verb):
         assert f'<data value="{result[number]!r}"' in text
     assert "<figure>" in text or verb == "calibrate"
     assert "What was asked" in text and "#" not in text.split('id="case"')[1].split("</details>")[0]

@@ -2,7 +2,6 @@
 """Threads, processes and Ctrl-C."""
 
 import multiprocessing
-import os
 import signal
 import subprocess
 import sys
@@ -10,7 +9,6 @@ import threading
 import time
 
 import numpy as np
-import pytest
 
 import equidem as eq
 
@@ -61,24 +59,29 @@ def test_progress_is_shown_only_where_it_is_wanted():
 
 def test_other_threads_run_during_a_solution():
     block = eq.hexagonal(columns=300, rows=301, radius=1e-3)
-    longest, last, stop = 0.0, time.monotonic(), threading.Event()
+    ticks, stop = 0, threading.Event()
 
     def tick():
-        nonlocal longest, last
+        nonlocal ticks
         while not stop.is_set():
+            ticks += 1
             time.sleep(0.001)
-            now = time.monotonic()
-            longest, last = max(longest, now - last), now
 
     ticking = threading.Thread(target=tick)
     ticking.start()
-    start = time.monotonic()
-    eq.tension_test(block, (1e9, 0.5e9))
-    whole = time.monotonic() - start
+    before = ticks
+    _core_solution(block)
+    during = ticks - before
     stop.set()
     ticking.join()
-    print(f"the solution took {whole:.3f} s, the longest pause of the other thread {longest:.3f} s")
-    assert longest < 0.5 * whole
+    print(f"{during} turns of the other thread during the solution")
+    assert during > 10
+
+
+def _core_solution(block):
+    """A solution in one call of the compiled part, between whose lines Python cannot change threads."""
+    case = eq.Case(assembly=block, springs=(1e9, 0.5e9), test={"kind": "uniaxial_tension"})
+    eq._core.run_verb("solve", *case._inputs(), [])
 
 
 def _poisson_ratio(queue):
@@ -127,13 +130,7 @@ def test_ctrl_c_ends_a_long_computation_and_python_goes_on():
     assert child.wait(60) == 0
 
 
-@pytest.mark.skipif("EQUIDEM_SANITIZE" in os.environ, reason="sanitizers take their time to start")
-def test_the_module_is_imported_in_less_than_a_third_of_a_second_of_work():
-    used = []
-    for _ in range(3):
-        done = subprocess.run([sys.executable, "-c", "import equidem, resource;"
-                               "u = resource.getrusage(resource.RUSAGE_SELF); print(u.ru_utime + u.ru_stime)"],
-                              capture_output=True, text=True, check=True)
-        used.append(float(done.stdout))
-    print(used)
-    assert min(used) < 0.3
+def test_the_module_is_imported_without_what_only_some_of_it_needs():
+    script = "import equidem, sys; print([m for m in ('scipy', 'pandas', 'matplotlib') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -246,12 +246,13 @@ void deliver(const CommonOptions& options, const std::string& status, const Resu
   }
   const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
   if (printed && !to_stdout && !options.quiet) print(delivery.report());
-  if (printed || options.out) {
+  const bool filed = options.out && !options.dry_run;
+  if ((printed && options.json) || filed) {
     const std::string json = delivery.json();
     if (to_stdout) print(json);
     // The files were found writable before the computation.
     if (options.json && !to_stdout) write_file(*options.json, json, true);
-    if (options.out && !options.dry_run) {
+    if (filed) {
       write_file(*options.out / "result.json", json, true);
       if (has_page(options.verb)) write_file(*options.out / page_name, delivery.page(*options.out, figures), true);
       say(options, fmt::format("written to {}", options.out->string()));

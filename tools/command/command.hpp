@@ -139,9 +139,9 @@ struct Delivery {
   [[nodiscard]] std::string page_drawn_in(const std::filesystem::path& folder) const;
 };
 enum class Arrays { wanted, not_wanted };
-/// Carry out a verb whose results are not printed and not written: deliver and hand_over pass those of this thread on
-/// to here. \throws Error as the verb does
+/// Carry out a verb whose results are not printed: deliver and hand_over pass those of this thread on to here.
 /// \param command that the page of the results names
+/// \throws Error as the verb does
 Delivery collect(const std::function<void()>& verb, Arrays arrays = Arrays::not_wanted,
                  const std::string& command = {});
 /// The command line of the program, which pages name.

@@ -34,7 +34,9 @@ std::optional<double> extrapolated(const Refined& timed, double resolution) {
   return seconds * std::pow(fine / resolution, power);
 }
 
-double seconds_of(const StudyTask& task) {
+}  // namespace
+
+double time_setting(const StudyTask& task) {
   const Stopwatch watch;
   try {
     const Trial trial = task.prepare();
@@ -45,9 +47,8 @@ double seconds_of(const StudyTask& task) {
   return std::max(watch.seconds(), shortest);
 }
 
-}  // namespace
-
-StudyEstimate estimate_study(const Study& study, const StudyOptions& options, double seconds) {
+StudyEstimate estimate_study(const Study& study, const StudyOptions& options, double seconds,
+                             const std::function<double(const StudyTask&)>& seconds_of) {
   const std::vector<StudyTask>& tasks = study.tasks;
   std::vector<std::size_t> coarse_first(tasks.size());
   std::iota(coarse_first.begin(), coarse_first.end(), std::size_t{0});

@@ -4,10 +4,15 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "equidem/study/run_study.hpp"
 
 namespace equidem {
+
+/// Carries out a setting once, by the clock: s, at least 1 ms. One that fails has the time until it does.
+/// \throws Error (interrupted)
+double time_setting(const StudyTask& task);
 
 struct StudyEstimate {
   double round = 0;       ///< s of one round over all settings
@@ -18,8 +23,9 @@ struct StudyEstimate {
 
 /// Carries out settings once each, coarse ones first, until about `seconds` are spent. The time of the others follows
 /// from the two finest ones of the same problem and method by a power of the resolution, else from the mean of all.
-/// A setting that fails counts with the time until it does.
+/// \param seconds_of carries out a setting once and gives its time, s
 /// \throws Error (interrupted)
-StudyEstimate estimate_study(const Study& study, const StudyOptions& options, double seconds = 2);
+StudyEstimate estimate_study(const Study& study, const StudyOptions& options, double seconds = 2,
+                             const std::function<double(const StudyTask&)>& seconds_of = time_setting);
 
 }  // namespace equidem

@@ -93,7 +93,7 @@ class LowestBlock {
     }
     return true;
   }
-  /// Of the decades on the way to the tolerance.
+  /// The share of the decades on the way to the tolerance that are done.
   [[nodiscard]] double share_done() const {
     double share = 1;
     for (std::size_t k = 0; k < options_.wanted; ++k) {

@@ -22,7 +22,6 @@ class Assembly:
     normals: Floats
     cell_areas: Floats
     facet_lengths: Floats
-    own_springs: bool
     period: tuple[float, float] | None
     area: float
     solid_fraction: float
@@ -39,13 +38,10 @@ def write_assembly(path: str | os.PathLike[str], assembly: Assembly, overwrite: 
 def springs_at_contacts(assembly: Assembly, kN: float, kT: float, weighting: str) -> Floats: ...
 def stiffness_matrix(assembly: Assembly, springs: Floats, rotation: str) -> tuple[Floats, Integers, Integers]: ...
 
-class Support:
-    def __init__(self, group: str, ux: float | None, uy: float | None, rotation: float | None) -> None: ...
-
 class Factor:
     unknowns: int
-    def __init__(self, assembly: Assembly, springs: Floats, supports: list[Support], groups: list[tuple[str, Integers]],
-                 rotation: str, method: str, error_bound: bool) -> None: ...
+    def __init__(self, case_text: str, case_file: str, assembly: Assembly | None, overrides: list[str],
+                 error_bound: bool) -> None: ...
     def solve(self, loads: Floats) -> tuple[dict[str, Any], dict[str, tuple[Any, str]]]: ...
 
 class Steps:
@@ -68,4 +64,3 @@ class Delivered:
 
 def run_verb(verb: str, case_text: str, case_file: str, assembly: Assembly | None, overrides: list[str],
              options: list[str]) -> tuple[str, dict[str, tuple[Any, str]], Assembly | None, float, Delivered]: ...
-def case_reference() -> str: ...

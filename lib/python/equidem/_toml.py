@@ -30,11 +30,12 @@ def value(given: Any, key: str) -> str:
         return "{ " + ", ".join(entries) + " }"
     if isinstance(given, (Sequence, np.ndarray)):
         return "[" + ", ".join(value(v, f"{key}.{k}") for k, v in enumerate(given)) + "]"
-    raise BadInput(f"a value of type {type(given).__name__}", "a case holds numbers, text, true, false, lists and tables",
-                   "Give one of these", key)
+    raise BadInput(f"a value of type {type(given).__name__}",
+                   "a case holds numbers, text, true, false, lists and tables", "Give one of these", key)
 
 
 def document(tables: Mapping[str, Any]) -> str:
     """The tables of a case, one a line."""
     tables = {"schema": "equidem/1", **tables}
-    return "".join(f"{json.dumps(name)} = {value(given, name)}\n" for name, given in tables.items() if given is not None)
+    return "".join(f"{json.dumps(name)} = {value(given, name)}\n"
+                   for name, given in tables.items() if given is not None)

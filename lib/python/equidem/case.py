@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-from collections.abc import Iterable, Mapping
+import pathlib
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +15,7 @@ import numpy as np
 from . import _core, _toml
 from ._arrays import integers
 from .assembly import Assembly
-from .errors import BadInput, without_memory_names
+from .errors import BadInput, EquidemError, without_memory_names
 from .result import Result
 from .simulation import Simulation
 from .springs import springs_from
@@ -31,11 +33,11 @@ class Case:
     springs : Springs, (kN, kT) or dict, optional
         In place of those that the assembly has.
     supports : sequence of dict
-        ``{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}``, in m and rad; what is left out stays free. A group is
-        a name, or an array of disc numbers.
+        ``{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}``, in m and rad; what is left out stays free. A group
+        is a name, or an array of disc numbers.
     loads : sequence of dict
-        ``{"group": "right", "force": (1e6, 0), "moment": 0, "kind": "traction"}``; kinds "per_disc" (N/m), "total" (N/m)
-        and "traction" (Pa).
+        ``{"group": "right", "force": (1e6, 0), "moment": 0, "kind": "traction"}``; kinds "per_disc" (N/m), "total"
+        (N/m) and "traction" (Pa).
     tables
         Further tables by their names in the case file: ``effects={"rotation": "restrained"}``. Groups of `velocity` and
         `probe` may be arrays too.
@@ -49,9 +51,10 @@ class Case:
     0.25
     """
 
-    def __init__(self, file: str | os.PathLike[str] | None = None, *, assembly: Assembly | Mapping[str, Any] | None = None,
-                 springs: Any = None, supports: Iterable[Mapping[str, Any]] = (),
-                 loads: Iterable[Mapping[str, Any]] = (), **tables: Any) -> None:
+    def __init__(self, file: str | os.PathLike[str] | None = None, *,
+                 assembly: Assembly | Mapping[str, Any] | None = None, springs: Any = None,
+                 supports: Iterable[Mapping[str, Any]] = (), loads: Iterable[Mapping[str, Any]] = (),
+                 **tables: Any) -> None:
         self._file = "" if file is None else os.fspath(file)
         self._assembly: Assembly | None = None
         self._tables: dict[str, Any] = {}
@@ -145,38 +148,55 @@ class Case:
             Of the command line, with "_" for "-": ``accuracy=1e-3``, ``dry_run=True``, ``out="folder"``,
             ``overwrite=True``, ``require_stable=True``, ...
         """
-        words: list[str] = []
+        return self._carry_out(verb, [], options)
+
+    def _carry_out(self, verb: str, words: list[str], options: Mapping[str, Any]) -> Result:
+        """Carry out a verb. `words` come before the options."""
+        words = list(words)
         for name, value in options.items():
             option = "--" + name.replace("_", "-")
             if value is True:
                 words.append(option)
             elif value is not None and value is not False:
                 words += [option, os.fspath(value) if isinstance(value, (str, os.PathLike)) else str(value)]
-        text, file, native, overrides = self._inputs()
-        if native is not None and options.get("out") is not None:
-            return self._with_file(os.fspath(options["out"])).run_verb(verb, **options)
-        numbers, arrays, made, seconds, delivered = _core.run_verb(verb, text, file, native, overrides, words)
+        with self._kept_assembly(options) as case:
+            text, file, native, overrides = case._inputs()
+            numbers, arrays, made, seconds, delivered = _core.run_verb(verb, text, file, native, overrides, words)
         assembly = self._assembly if made is None else Assembly._of(made)
         result = Result(json.loads(without_memory_names(numbers)), arrays, assembly, delivered)
         result.elapsed = seconds
         return result
 
-    def _with_file(self, folder: str) -> Case:
-        """The case with its assembly in a file of the folder, so that the case file written there can be run again."""
-        assert self._assembly is not None
-        path = os.path.join(folder, "given_assembly.h5")
-        self._assembly.write(path, overwrite=True)
+    @contextlib.contextmanager
+    def _kept_assembly(self, options: Mapping[str, Any]) -> Iterator[Case]:
+        """The case; with `out` and an assembly in memory the case with that in a file of the folder, so that the case
+        file written there can be run again. The file is taken away where the verb fails."""
+        out = options.get("out")
+        if self._assembly is None or out is None or options.get("dry_run"):
+            yield self
+            return
+        path = pathlib.Path(out).absolute() / "given_assembly.h5"
+        before = path.exists()
+        if not (before and options.get("resume")):
+            self._assembly.write(path, overwrite=bool(options.get("overwrite")))
         copied = self.copy()
         copied._assembly = None
-        copied._tables = {**self._tables, "assembly": {**self._tables["assembly"], "path": os.path.abspath(path)}}
-        return copied
+        copied._tables = {**self._tables, "assembly": {**self._tables["assembly"], "path": str(path)}}
+        try:
+            yield copied
+        except EquidemError:
+            if not before:
+                path.unlink()
+                with contextlib.suppress(OSError):  # the folder holds more
+                    path.parent.rmdir()
+            raise
 
     def solve(self, **options: Any) -> Result:
         """Equilibrium under supports and loads, or Abe's tension test (table `test`).
 
-        Arrays: displacements (n, 2) in m, rotations (n,) in rad, contact_forces (contacts, 2), normal (tension positive) and
-        tangential, in N/m, supported_discs, reactions in N/m and reaction_moments in N; of several load cases each under
-        its name.
+        Arrays: displacements (n, 2) in m, rotations (n,) in rad, contact_forces (contacts, 2), normal (tension
+        positive) and tangential, in N/m, supported_discs, reactions in N/m and reaction_moments in N; of several load
+        cases each under its name.
         """
         return self.run_verb("solve", **options)
 
@@ -206,12 +226,6 @@ class Case:
     def run(self, **options: Any) -> Result:
         """The dynamics of the table `run`, to its end; `simulation` steps it."""
         return self.run_verb("run", **options)
-
-    def sweep(self, verb: str, values: Mapping[str, Iterable[Any]], **options: Any) -> Any:
-        """A verb for all combinations of values of keys; see `equidem.sweep`."""
-        from .sweep import sweep
-
-        return sweep(self, values, verb=verb, **options)
 
     def simulation(self) -> Simulation:
         """The dynamics of the table `run`, ready to be stepped."""

@@ -123,21 +123,24 @@ class Result(Mapping[str, Any]):
         return dict(self._plain)
 
     def save_page(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts, figures,
-        warnings and the way to repeat it.
+        """Write the result as one HTML page that needs nothing else: the answer with its error, the case, what acts,
+        figures, warnings and the way to repeat it.
 
         It is the page that the verb writes with ``out="folder"``; the figures are drawn now.
 
         Raises
         ------
         BadInput
-            Where the file exists and `overwrite` is false, and where the result is only a part of one, or was unpickled.
+            Where the file exists and `overwrite` is false, and where the result is only a part of one, or was
+            unpickled.
         """
         if self._delivered is None:
-            raise BadInput("this result has no page", "pages are of the results of whole verbs, before they are pickled",
+            raise BadInput("this result has no page",
+                           "pages are of the results of whole verbs, before they are pickled",
                            "Save the page of what solve, homogenize, run, ... returned")
         if not overwrite and os.path.exists(path):
-            raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost", "Choose another name, or give overwrite=True")
+            raise BadInput(f"'{os.fspath(path)}' exists", "it would be lost",
+                           "Choose another name, or give overwrite=True")
         with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
             text = self._delivered.page(folder)
         # The name of an assembly in memory is that of no file.

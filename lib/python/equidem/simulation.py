@@ -111,9 +111,9 @@ class Simulation:
 
     @property
     def contacts(self) -> Mapping[str, Floats]:
-        """Arrays of the contacts: bodies (m, 2), where j < 0 is wall -1 - j, arms (m, 2) in m from the centre of i, forces
-        (m, 2) on i, normal_forces and tangential_forces (m,) in N/m (spheres: N). Normal forces of bonded discs are
-        positive in tension, of bodies that collide in compression."""
+        """Arrays of the contacts: bodies (m, 2), where j < 0 is wall -1 - j, arms (m, 2) in m from the centre of i,
+        forces (m, 2) on i, normal_forces and tangential_forces (m,) in N/m (spheres: N). Normal forces of bonded discs
+        are positive in tension, of bodies that collide in compression."""
         return self._steps.contacts()
 
     @property

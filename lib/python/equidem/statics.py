@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, floats, integers
+from ._arrays import Floats, floats
 from .assembly import Assembly
 from .case import Case
 from .errors import BadInput
@@ -89,39 +89,11 @@ def stability(assembly: Assembly, springs: Any = None, *, supports: Iterable[Tab
 
 
 class Factor:
-    """The factorized stiffness matrix of an assembly with its supports: one factorization, any number of loads.
+    """The factorized stiffness matrix of an assembly with its supports, made by `factorize`."""
 
-    Parameters
-    ----------
-    assembly : Assembly
-    springs : Springs, (kN, kT) or dict
-    supports : sequence of dict
-        As of `Case`.
-    rotation : str
-        "from_scene", "free" or "restrained".
-    method : str
-        "auto", "multifrontal", "cholmod", "umfpack" or "multigrid".
-    error_bound : bool
-        Estimate the condition of K, at the cost of two more solutions for each load.
-    """
-
-    def __init__(self, assembly: Assembly, springs: Any, supports: Iterable[Tables] = (), *,
-                 rotation: str = "from_scene", method: str = "auto", error_bound: bool = False) -> None:
+    def __init__(self, assembly: Assembly, case: Case, error_bound: bool) -> None:
         self.assembly = assembly
-        chosen = _springs_of(assembly, springs)
-        held: list[_core.Support] = []
-        groups: list[tuple[str, Any]] = []
-        for support in supports:
-            group: Any = support.get("group")
-            if not isinstance(group, str):
-                groups.append((f"discs {len(groups) + 1}", integers("support.group", group, (None,))))
-                group = groups[-1][0]
-            held.append(_core.Support(group, *(_motion(support, name) for name in ("ux", "uy", "rotation"))))
-        for _, discs in groups:
-            if discs.size == 0 or discs.min() < 0 or discs.max() >= len(assembly):
-                raise BadInput("a support names discs that do not exist", f"the assembly has {len(assembly)}, from 0 on",
-                               "Correct the list", "support.group")
-        self._native = _core.Factor(assembly._native, chosen, held, groups, rotation, method, error_bound)
+        self._native = _core.Factor(*case._inputs(), error_bound)
 
     @property
     def unknowns(self) -> int:
@@ -152,9 +124,25 @@ class Factor:
         return Result(values, arrays, self.assembly)
 
 
-def factorize(assembly: Assembly, springs: Any, supports: Iterable[Tables] = (), **options: Any) -> Factor:
-    """The same as Factor(...)."""
-    return Factor(assembly, springs, supports, **options)
+def factorize(assembly: Assembly, springs: Any = None, supports: Iterable[Tables] = (), *, error_bound: bool = False,
+              **tables: Any) -> Factor:
+    """One factorization for any number of loads.
+
+    Parameters
+    ----------
+    supports : sequence of dict
+        As of `Case`.
+    error_bound : bool
+        Estimate the condition of K, at the cost of two more solutions for each load.
+    tables
+        Of `Case`, such as ``solver={"method": "cholmod"}`` or ``effects={"rotation": "restrained"}``.
+
+    Raises
+    ------
+    BadInput
+        Supports that leave a motion free, a mechanism (named), groups and discs that do not exist.
+    """
+    return Factor(assembly, Case(assembly=assembly, springs=springs, supports=supports, **tables), error_bound)
 
 
 def stiffness_matrix(assembly: Assembly, springs: Any, *, rotation: str = "from_scene") -> bsr_matrix:
@@ -179,11 +167,3 @@ def _springs_of(assembly: Assembly, springs: Any) -> Floats:
                        "Give equidem.Springs(kN=..., kT=...)", "springs")
     assert isinstance(chosen, Springs)
     return chosen._native(assembly)
-
-
-def _motion(support: Tables, name: str) -> float | None:
-    """A prescribed motion; True is 0, as in the case file."""
-    given = support.get(name)
-    if given is None or given is False:
-        return None
-    return 0.0 if given is True else float(floats(f"support.{name}", given, ()))

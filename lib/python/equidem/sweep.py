@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from . import _toml
 from .assembly import Assembly
 from .case import Case
-from .errors import BadInput, ComputationFailed
 from .result import Result
 from .simulation import Simulation
 
@@ -18,56 +17,47 @@ if TYPE_CHECKING:
 
 
 def sweep(case: Case, values: Mapping[str, Iterable[Any]], *, verb: str = "homogenize", **options: Any) -> DataFrame:
-    """Carry out a verb for all combinations of values of keys.
+    """Carry out a verb for all combinations of values of keys, as `equidem sweep` does.
 
     Parameters
     ----------
     case : Case
     values : dict
-        ``{"springs.kT": [0.2e9, 0.4e9], "assembly.seed": range(3)}``; the last key varies fastest.
+        ``{"springs.kT": [0.2e9, 0.4e9], "assembly.seed": range(3)}``; the last key varies fastest. "ratio" is kT/kN at
+        the kN of the case.
     verb : str
     options
-        Of the verb.
+        Of `equidem sweep`, with "_" for "-": ``seeds="1-5"``, ``out="folder"``, ``resume=True``, ...
 
     Returns
     -------
     pandas.DataFrame
-        A row for each point: the values, then the numbers of the result, nested names joined by "."; ``error`` holds the
-        sentence where a point has no answer. ``attrs["units"]`` has the units.
+        A row for each point: the values, the status, then the numbers of the result, nested names joined by ".". The
+        status is "failed" where a point has no answer, and ``message`` says why. ``attrs["units"]`` has the units.
+
+    Raises
+    ------
+    ComputationFailed
+        Where no point has an answer.
     """
     import pandas
 
-    if not values:
-        raise BadInput("nothing is varied", "a sweep needs the values of at least one key",
-                       'Give them, such as {"springs.kT": [...]}', "values")
-    lists = {key: list(given) for key, given in values.items()}
-    rows: list[dict[str, Any]] = []
-    units: dict[str, str] = {}
-    for point in itertools.product(*lists.values()):
-        chosen = dict(zip(lists, point))
-        varied = case.copy()
-        for key, value in chosen.items():
-            varied.set(key, value)
-        try:
-            result = varied.run_verb(verb, **options)
-            units.update(result.units)
-            rows.append({**chosen, **_numbers(result.to_dict()), "error": ""})
-        except (BadInput, ComputationFailed) as error:
-            rows.append({**chosen, "error": str(error)})
-    table = pandas.DataFrame(rows)
-    table.attrs["units"] = {name: units[name] for name in table.columns if units.get(name)}
+    words = ["--verb", verb]
+    for key, given in values.items():
+        words += ["--key", key, "--values", ",".join(_word(value, key) for value in given)]
+    result = case._carry_out("sweep", words, options)
+    points = result.to_dict()["points"]
+    table = pandas.json_normalize(points).set_index("point").drop(columns="value")
+    units = {key["key"]: key["unit"] for key in result.to_dict()["keys"]}
+    for name in table.columns:
+        units.setdefault(name, result.units.get(f"points.{name}", ""))
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
     return table
 
 
-def _numbers(values: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
-    found: dict[str, float] = {}
-    for name, value in values.items():
-        if isinstance(value, Mapping):
-            if name not in ("times", "machine"):
-                found.update(_numbers(value, f"{prefix}{name}."))
-        elif isinstance(value, (int, float)) and not isinstance(value, bool):
-            found[prefix + name] = value
-    return found
+def _word(value: Any, key: str) -> str:
+    """A value as the command line takes it."""
+    return value if isinstance(value, str) else _toml.value(value, key)
 
 
 def pack(packing: Mapping[str, Any], springs: Any = None, **tables: Any) -> Result:
@@ -103,7 +93,7 @@ def simulation(assembly: Assembly | None = None, springs: Any = None, **tables: 
 
 
 def run(assembly: Assembly | None = None, springs: Any = None, **tables: Any) -> Result:
-    """The same to its end; the result holds the energy balance, events, waves and probes."""
+    """A simulation carried to its end; the result holds the energy balance, events, waves and probes."""
     return Case(assembly=assembly, springs=springs, **tables).run()
 
 

@@ -126,7 +126,6 @@ void bind_assembly(py::module_& module) {
       .def_property_readonly("shifts", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::shift_x, 2); })
       .def_property_readonly("levers", [](const Shared& a) { return columns_of(a, a->contacts, &Contact::lever_i, 2); })
       .def_property_readonly("normals", normals_of)
-      .def_property_readonly("own_springs", [](const Assembly& a) { return !a.contact_kN.empty(); })
       .def_property_readonly("period",
                              [](const Assembly& a) -> std::optional<std::pair<double, double>> {
                                if (!a.period) return {};

@@ -32,8 +32,7 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
-void bind_errors(py::module_& module) {
-  static_cast<void>(module);
+void translate_errors() {
   py::register_exception_translator(translate);
 }
 

@@ -1,39 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
 
-#include "equidem/assembly/assembly.hpp"
-#include "equidem/core/names.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
+#include "case_inputs.hpp"
+#include "problem.hpp"
 #include "result.hpp"
 #include "result_arrays.hpp"
-#include "springs.hpp"
 
 namespace equidem::python {
 namespace {
 
-/// The factorized stiffness matrix of an assembly with its supports.
+/// The factorized stiffness matrix of the assembly of a case with its supports.
 class Factor {
  public:
-  Factor(const Assembly& assembly, const Floats& springs, std::vector<Support> supports,
-         const std::vector<std::pair<std::string, Integers>>& groups, const std::string& rotation,
-         const std::string& method, bool error_bound)
-      : assembly_(assembly), springs_(springs_of(springs)) {
-    for (const auto& [name, discs] : groups) assembly_.groups[name] = {{discs.data(), discs.data() + discs.size()}, {}};
-    EquilibriumOptions options;
-    options.rotation = enum_from<Rotation>(rotation);
-    options.solver.method = enum_from<SolverMethod>(method);
-    options.error_bound = error_bound;
+  Factor(const std::string& case_text, const std::string& case_file, const std::shared_ptr<Assembly>& assembly,
+         std::vector<std::string> overrides, bool error_bound) {
+    const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
     const LongWork working;
-    solver_.emplace(assembly_, springs_, supports, options);
+    problem_.emplace(problem_of(read_case(inputs.case_file(), inputs.overrides())));
+    EquilibriumOptions options = problem_->options();
+    options.error_bound = error_bound;
+    solver_.emplace(problem_->assembly, problem_->springs.springs, problem_->resolved.supports, options);
   }
 
   [[nodiscard]] py::tuple solve(const Floats& loads) {
-    std::vector<DiscForce> forces(assembly_.size());
+    std::vector<DiscForce> forces(problem_->assembly.size());
     for (std::size_t d = 0; d < forces.size(); ++d) {
       const auto k = static_cast<py::ssize_t>(d);
       forces[d] = {{loads.at(k, 0), loads.at(k, 1)}, loads.at(k, 2)};
@@ -55,8 +54,7 @@ class Factor {
   [[nodiscard]] std::int64_t unknowns() const { return solver_->unknowns(); }
 
  private:
-  Assembly assembly_;
-  ContactSprings springs_;
+  std::optional<Problem> problem_;  // the solver refers to it
   std::optional<EquilibriumSolver> solver_;
   std::mutex mutex_;
 };
@@ -64,14 +62,8 @@ class Factor {
 }  // namespace
 
 void bind_factor(py::module_& module) {
-  py::class_<Support>(module, "Support")
-      .def(py::init(
-          [](std::string group, std::optional<double> ux, std::optional<double> uy, std::optional<double> rotation) {
-            return Support{std::move(group), ux, uy, rotation};
-          }));
   py::class_<Factor>(module, "Factor")
-      .def(py::init<const Assembly&, const Floats&, std::vector<Support>,
-                    const std::vector<std::pair<std::string, Integers>>&, const std::string&, const std::string&,
+      .def(py::init<const std::string&, const std::string&, const std::shared_ptr<Assembly>&, std::vector<std::string>,
                     bool>())
       .def("solve", &Factor::solve)
       .def_property_readonly("unknowns", &Factor::unknowns);

@@ -77,7 +77,7 @@ PYBIND11_MODULE(_core, module) {
       }
     });
   });
-  bind_errors(module);
+  translate_errors();
   bind_assembly(module);
   bind_springs(module);
   bind_factor(module);

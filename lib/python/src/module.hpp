@@ -16,7 +16,8 @@ namespace equidem::python {
 
 namespace py = pybind11;
 
-void bind_errors(py::module_& module);
+/// Errors of the library become exceptions of equidem.errors.
+void translate_errors();
 void bind_assembly(py::module_& module);
 void bind_springs(py::module_& module);
 void bind_factor(py::module_& module);
@@ -82,7 +83,7 @@ py::array view(std::shared_ptr<const void> owner, const Number* first, std::vect
   return result;
 }
 
-/// The same of the items of a vector: columns numbers of each, from `first` on, `step` bytes apart.
+/// Views the items of a vector: `columns` numbers of each, from `first` on, `step` bytes apart.
 template <class Item, class Number>
 py::array columns_of(const std::shared_ptr<const void>& owner, const std::vector<Item>& items, Number Item::*first,
                      py::ssize_t columns, py::ssize_t step = sizeof(Number)) {

@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "springs.hpp"
-
 #include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
+#include "module.hpp"
+
 namespace equidem::python {
 namespace {
+
+/// \param springs (2): kN and kT of all contacts; (contacts, 2): of each; Pa
+ContactSprings springs_of(const Floats& springs) {
+  if (springs.ndim() == 1) return ContactSprings(SpringConstants{springs.at(0), springs.at(1)});
+  std::vector<SpringConstants> all;
+  for (py::ssize_t c = 0; c < springs.shape(0); ++c) all.push_back({springs.at(c, 0), springs.at(c, 1)});
+  return ContactSprings(std::move(all));
+}
 
 /// kN and kT of every contact, (contacts, 2), Pa.
 py::array springs_at_contacts(const Assembly& assembly, double kN, double kT, const std::string& weighting) {
@@ -72,13 +81,6 @@ py::tuple stiffness_matrix(const Assembly& assembly, const Floats& springs, cons
 }
 
 }  // namespace
-
-ContactSprings springs_of(const Floats& springs) {
-  if (springs.ndim() == 1) return ContactSprings(SpringConstants{springs.at(0), springs.at(1)});
-  std::vector<SpringConstants> all;
-  for (py::ssize_t c = 0; c < springs.shape(0); ++c) all.push_back({springs.at(c, 0), springs.at(c, 1)});
-  return ContactSprings(std::move(all));
-}
 
 void bind_springs(py::module_& module) {
   module.def("springs_at_contacts", springs_at_contacts);

@@ -6,7 +6,6 @@
 
 #include <pybind11/stl.h>
 
-#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/given.hpp"
 #include "equidem/core/stopwatch.hpp"
 
@@ -77,7 +76,6 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 void bind_verbs(py::module_& module) {
   py::class_<Delivered>(module, "Delivered").def("texts", &Delivered::texts).def("page", &Delivered::page);
   module.def("run_verb", run_verb);
-  module.def("case_reference", case_file_page);
 }
 
 }  // namespace equidem::python

@@ -13,7 +13,7 @@ namespace equidem {
 
 /// The name of the page in a folder of results.
 inline constexpr const char* page_name = "index.html";
-/// Pages stay below.
+/// Upper bound of the size of a page.
 inline constexpr std::size_t most_page_bytes = 2'000'000;
 
 struct ResultPage {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What tells whether a run in time may be trusted.
+/// Checks of a run in time: whether it may be trusted.
 #pragma once
 
 #include <string>
