@@ -191,8 +191,9 @@ HardCase::~HardCase() {
          << '\n';
   };
   for (const auto& [task, a] : accuracies_) {
+    const std::string condition = a.condition > 0 ? ", condition " + rounded(a.condition) : "";  // not of iterations
     write({task, "error <= bound <= " + rounded(a.promised),
-           fmt::format("error {}, bound {}, condition {}{}", rounded(a.error), rounded(a.bound), rounded(a.condition),
+           fmt::format("error {}, bound {}{}{}", rounded(a.error), rounded(a.bound), condition,
                        a.runs > 1 ? fmt::format(" (worst of {})", a.runs) : "")});
   }
   for (const Row& row : rows_) write(row);

@@ -161,11 +161,11 @@ TEST_CASE("a_checkpoint_of_another_version_is_refused") {
   const auto path = folder / "run.checkpoint.h5";
   CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   std::string text = read_file(path);
-  text.replace(text.find("/4\n"), 3, "/3\n");
+  text.replace(text.find("/5\n"), 3, "/4\n");
   write_file(path, text, true);
   const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
   INFO(refusal.message);
-  CHECK(refusal.says("its format has version '3', and this library reads version 4"));
+  CHECK(refusal.says("its format has version '4', and this library reads version 5"));
 }
 
 TEST_CASE("what_is_no_checkpoint_is_refused") {
@@ -197,13 +197,22 @@ TEST_CASE("a_checkpoint_holds_its_case_the_record_of_the_run_so_far_and_the_mark
     }
     for (std::int64_t k = 0; k < count; ++k) {
       record.energies.push_back({8 * k, 0.1 * static_cast<double>(k), ledger_at(k)});
-      if (bodies > 0) record.paths.emplace_back(bodies, Vec2{static_cast<double>(k), 1.0 / 7});
+      if (bodies == 0) continue;
+      record.paths.emplace_back(bodies, Vec2{static_cast<double>(k), 1.0 / 7});
+      const DiscMotion motion{.u = {static_cast<double>(k), 1.0 / 7}, .theta = 1.0 / 3};
+      if (k % 2 == 0) record.film.push_back({8 * k, 0.1 * static_cast<double>(k), std::vector(bodies, motion)});
     }
     writer.write({state_at(5, 12), record, files});
     CHECK(case_of_checkpoint(path) == case_text);
     const Checkpoint read = read_checkpoint(path, case_text);
     CHECK(same_bits(read.state, state_at(5, 12)));
     CHECK(read.record.paths == record.paths);
+    REQUIRE(read.record.film.size() == record.film.size());
+    for (std::size_t k = 0; k < record.film.size(); ++k) {
+      CHECK(read.record.film[k].step == record.film[k].step);
+      CHECK(same_bits(read.record.film[k].time, record.film[k].time));
+      CHECK(numbers_of(read.record.film[k].motions) == numbers_of(record.film[k].motions));
+    }
     CHECK(read.record.recorded == record.recorded);
     REQUIRE(read.files.size() == files.size());
     for (const FileMark& mark : files) {

@@ -43,7 +43,7 @@ TEST_CASE("units_and_labels_have_an_entry_for_each_number") {
         "  },\n"
         "  \"labels\": {\n"
         "    \"shear_modulus\": \"shear modulus G\",\n"
-        "    \"error_bound\": \"bound of the error; of motions relative\",\n"
+        "    \"error_bound\": \"bound of the error; of motions relative; absent where none was estimated\",\n"
         "    \"stress\": \"mean stress: xx, yy, xy\",\n"
         "    \"unknowns\": \"number of unknowns\",\n"
         "    \"energy.kinetic\": \"energy: kinetic\",\n"

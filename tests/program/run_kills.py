@@ -110,7 +110,7 @@ class Killing:
             files[str(path.relative_to(out))] = path.read_bytes()
             if path.name == "result.json":
                 files[path.name] = lasting(json.loads(files[path.name]))
-            elif path.name == "index.html":  # it tells times, and shows the frames since the run went on
+            elif path.name == "index.html":  # it tells times; the film is among the arrays of the checkpoint
                 files[path.name] = files[path.name].endswith(b"</html>\n")
             elif path.name == "run.checkpoint.h5":
                 files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}

@@ -43,8 +43,8 @@ class Factor {
     });
     py::dict values;
     values["relative_residual"] = result.relative_residual;
-    values["error_bound"] = result.error_bound;
-    values["condition"] = result.condition;
+    if (result.error_bound > 0) values["error_bound"] = result.error_bound;
+    if (result.condition > 0) values["condition"] = result.condition;
     values["energy"] = result.energy;
     values["iterations"] = result.iterations;
     values["unstable_modes"] = result.unstable_modes;

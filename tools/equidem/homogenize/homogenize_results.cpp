@@ -102,7 +102,7 @@ void add_stiffness(Results& out, const EffectiveStiffness& r) {
   if (r.condition > 0) {
     out.add("condition", "condition", r.condition, "", {Shown::power, 1});
   } else {
-    out.set("condition", r.condition).note(", estimated from the iterations");
+    out.note(", estimated from the iterations");
   }
   out.note("; ").add("hill_mandel", "macroscopic and microscopic power differ by", r.hill_mandel, "",
                      {Shown::power, 0});

@@ -262,7 +262,7 @@ void BondedRun::write_files(const std::filesystem::path& folder, const RunResult
   if (goes_to_rest()) return write_state(folder, at_rest_, overwrite);
   write_state(folder, simulation_.motions(), overwrite);
   write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
-  if (problem_.resolved.output.picture) add_film(problem_.resolved.title, problem_.assembly, result.film);
+  if (problem_.resolved.output.picture) add_film(problem_.resolved.title, problem_.assembly, result.record.film);
 }
 
 RelaxationOptions BondedRun::relaxation_options() const {

@@ -19,8 +19,6 @@ constexpr double seconds_of_film = 8;
 
 void add_player(GrainAnimation animation, std::span<const GrainFrame> frames) {
   animation.frames = frames;
-  if (frames.front().time > 0)
-    animation.caption += fmt::format("; from t = {:.4g} s on, where the run was resumed", frames.front().time);
   animation.speed = (frames.back().time - frames.front().time) / seconds_of_film;
   std::string title = animation.title.empty() ? "Motion" : animation.title;
   DrawnFigures::add({.name = "motion", .title = std::move(title), .player = grain_animation_player(animation)});

@@ -185,7 +185,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
-    add_film(resolved, colours, result.film);
+    add_film(resolved, colours, result.record.film);
   }
   write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);

@@ -80,9 +80,10 @@ ReachedAccuracy BlockSearch::reached() const {
 ReachedAccuracy solver_accuracy(double accuracy, double error_bound, double condition, double seconds) {
   if (!(error_bound > 0) || error_bound > accuracy) {
     computation_failed(fmt::format("an accuracy of {:.3g} cannot be reached", accuracy),
-                       error_bound > 0 ? fmt::format("the answer is known to {:.2g}: its condition is about {:.1e}",
-                                                     error_bound, condition)
-                                       : "this solver gives no bound of its error",
+                       error_bound <= 0 ? "this solver gives no bound of its error"
+                       : condition > 0  ? fmt::format("the answer is known to {:.2g}: its condition is about {:.1e}",
+                                                      error_bound, condition)
+                                        : fmt::format("the answer is known to {:.2g}", error_bound),
                        error_bound > 0 ? "Ask for less, or give the assembly with fewer extremes of size or stiffness"
                                        : "Set solver.method = \"auto\"");
   }

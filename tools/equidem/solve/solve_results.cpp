@@ -92,13 +92,10 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
     out.line("error bound")
         .add("error_bound", "", e.error_bound, "of the motions", {Shown::power, 1})
         .add("condition", "from the residual and a condition of about", e.condition, "", {Shown::power, 1});
-  } else {
-    if (e.iterations > 0 && e.error_bound > 0) {
-      out.line("error")
-          .add("", "", e.error_bound, "of the motions in the norm of energy", {Shown::power, 1})
-          .note(", estimated from the iterations");
-    }
-    out.set("error_bound", e.error_bound).set("condition", e.condition);
+  } else if (e.error_bound > 0) {
+    out.line("error")
+        .add("error_bound", "", e.error_bound, "of the motions in the norm of energy", {Shown::power, 1})
+        .note(", estimated from the iterations");
   }
   constexpr double doubtful = 1e-10;
   if (e.condition > 0 && e.relative_residual > doubtful)

@@ -23,7 +23,7 @@ namespace equidem {
 namespace {
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 4;
+constexpr int format_version = 5;
 constexpr std::size_t header_size = 512;
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
@@ -143,14 +143,21 @@ std::vector<SavedArray> arrays_of(const RunRecord& record) {
       .name = "paths", .columns = record.paths.empty() ? 1 : 2 * record.paths.front().size(), .values = {}};
   for (const std::vector<Vec2>& places : record.paths)
     for (const Vec2 place : places) paths.values.insert(paths.values.end(), {place.x, place.y});
-  std::vector<SavedArray> arrays{std::move(energies), std::move(paths)};
+  SavedArray film{
+      .name = "film", .columns = record.film.empty() ? 1 : 2 + 3 * record.film.front().motions.size(), .values = {}};
+  for (const FilmFrame& frame : record.film) {
+    film.values.insert(film.values.end(), {static_cast<double>(frame.step), frame.time});
+    const std::vector<double> numbers = numbers_of(frame.motions);
+    film.values.insert(film.values.end(), numbers.begin(), numbers.end());
+  }
+  std::vector<SavedArray> arrays{std::move(energies), std::move(paths), std::move(film)};
   arrays.insert(arrays.end(), record.recorded.begin(), record.recorded.end());
   return arrays;
 }
 
 RunRecord record_of(std::span<const SavedArray> arrays) {
-  const SavedArray &energies = arrays[0], &paths = arrays[1];
-  RunRecord record{.energies = {}, .paths = {}, .recorded = {arrays.begin() + 2, arrays.end()}};
+  const SavedArray &energies = arrays[0], &paths = arrays[1], &film = arrays[2];
+  RunRecord record{.energies = {}, .paths = {}, .film = {}, .recorded = {arrays.begin() + 3, arrays.end()}};
   for (const double* next = energies.values.data(); next != energies.values.data() + energies.values.size();) {
     EnergySample& sample = record.energies.emplace_back();
     sample.step = static_cast<std::int64_t>(*next++);
@@ -161,6 +168,10 @@ RunRecord record_of(std::span<const SavedArray> arrays) {
     std::vector<Vec2>& places = record.paths.emplace_back();
     for (std::size_t k = 0; k < paths.columns; k += 2)
       places.push_back({paths.values[at + k], paths.values[at + k + 1]});
+  }
+  for (std::size_t at = 0; at < film.values.size(); at += film.columns) {
+    const auto row = std::span(film.values).subspan(at, film.columns);
+    record.film.push_back({static_cast<std::int64_t>(row[0]), row[1], motions_of(row.subspan(2))});
   }
   return record;
 }

@@ -8,15 +8,24 @@
 #include <string>
 #include <vector>
 
+#include "equidem/contact/frame.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
 
 namespace equidem {
 
+/// The motions of all bodies at one time, for a moving picture.
+struct FilmFrame {
+  std::int64_t step = 0;
+  double time = 0;                  ///< s
+  std::vector<DiscMotion> motions;  ///< as AnySimulation::motions
+};
+
 /// History of a run from its start.
 struct RunRecord {
   std::vector<EnergySample> energies;
   std::vector<std::vector<Vec2>> paths;  ///< positions of all bodies at each sample; empty: not recorded
+  std::vector<FilmFrame> film;           ///< of some samples; empty: not recorded
   std::vector<SavedArray> recorded;      ///< of a RunRecorder
 };
 
@@ -39,8 +48,8 @@ struct Checkpoint {
 
 /// Writes NAME.checkpoint.h5: an HDF5 file after 512 bytes of text that name the format, the version of the library,
 /// the length of the file and a checksum of all of it. Arrays: case (the text of the resolved case); step; those of the
-/// saved state; energies: step, time and every term of the ledger, a row for each sample so far; paths; those of the
-/// recorder; attribute "files": name, length and checksum of each file counted on. A checkpoint is written to a
+/// saved state; energies: step, time and every term of the ledger, a row for each sample so far; paths; film; those of
+/// the recorder; attribute "files": name, length and checksum of each file counted on. A checkpoint is written to a
 /// temporary file, synced to disk, and then renamed, so that the last complete one survives a kill at any moment, a
 /// power failure or a full disk.
 class CheckpointWriter {

@@ -107,12 +107,16 @@ class RunLoop {
       result_.record.energies.push_back(record.energies[k]);
       if (!record.paths.empty()) result_.record.paths.push_back(std::move(record.paths[k]));
     }
+    for (FilmFrame& frame : record.film)
+      if (is_filmed(frame.step)) result_.record.film.push_back(std::move(frame));
     return checkpoint;
   }
 
-  [[nodiscard]] std::int64_t samples_between_film_frames() const {
+  [[nodiscard]] bool is_filmed(std::int64_t step) const {
+    if (plan_.film_frames == 0) return false;
     const std::int64_t samples = plan_.steps / stride_ + 1;
-    return (samples + plan_.film_frames - 1) / plan_.film_frames;
+    const std::int64_t samples_between = (samples + plan_.film_frames - 1) / plan_.film_frames;
+    return step == plan_.steps || step % (stride_ * samples_between) == 0;
   }
 
   void step_to(std::int64_t step) {
@@ -147,14 +151,14 @@ class RunLoop {
       fail(error);
     }
     const double time = simulation_.time();
-    const bool filmed =
-        sample && plan_.film_frames > 0 && (last || std::ssize(energies) % (samples_between_film_frames()) == 0);
+    auto& film = result_.record.film;
+    const bool filmed = sample && is_filmed(step) && (film.empty() || film.back().step < step);
     if (sample) energies.push_back({step, time, ledger});
     if (recorded) plan_.recorder->record(step, time, regular_row);
     const bool path = sample && plan_.paths;
     if (!path && !frame && !row && !filmed) return;
     const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
-    if (filmed) result_.film.push_back({time, motions});
+    if (filmed) film.push_back({step, time, motions});
     if (path) {
       auto& places = result_.record.paths.emplace_back();
       for (const DiscMotion& motion : motions) places.push_back(motion.u);

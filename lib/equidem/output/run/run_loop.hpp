@@ -31,12 +31,6 @@ class RunRecorder {
   virtual void save(Checkpoint& checkpoint) = 0;
 };
 
-/// The motions of all bodies at one time, for a moving picture.
-struct FilmFrame {
-  double time = 0;                  ///< s
-  std::vector<DiscMotion> motions;  ///< as AnySimulation::motions
-};
-
 struct RunPlan {
   std::int64_t steps = 0;                                          ///< of the whole run
   double time_step = 0;                                            ///< s
@@ -49,7 +43,7 @@ struct RunPlan {
   Body body = Body::disc;        ///< unit of energies
   std::int64_t samples = 200;    ///< of the energies, at least; at most twice as many
   bool paths = false;            ///< record the positions of all bodies at each sample
-  std::int64_t film_frames = 0;  ///< of RunResult::film, at most but for the last; 0: none
+  std::int64_t film_frames = 0;  ///< of RunRecord::film, at most but for the last; 0: none
   RunRecorder* recorder = nullptr;
   /// Checks the energies whenever they are recorded, and in between if `watch_between`. \throws Error
   std::function<void(const EnergyLedger&)> watch = {};
@@ -67,7 +61,6 @@ struct RunResult {
   double seconds = 0;           ///< wall-clock seconds of the steps
   std::int64_t steps_done = 0;  ///< in this call, without those before a checkpoint
   RunRecord record;             ///< from the start of the run
-  std::vector<FilmFrame> film;  ///< of this call
 };
 
 /// Perform all steps. Writes frames.pvd, history.csv and run.checkpoint.h5 on their schedules; progress on stderr. A
