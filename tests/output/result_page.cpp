@@ -121,6 +121,19 @@ TEST_CASE("a_drawing_keeps_its_shapes_in_fewer_bytes") {
   CHECK(svg.size() < file.size());
 }
 
+TEST_CASE("drawings_that_differ_in_names_only_are_the_same_in_a_page") {
+  const auto drawing = [](int k) {
+    return fmt::format(
+        "<svg viewBox=\"0 0 9 9\"><g id=\"a-{0}\"/><clipPath id='b-{0}'></clipPath><use xlink:href=\"#a-{0}\"/>"
+        "<g clip-path=\"url(#b-{0})\"/></svg>",
+        k);
+  };
+  const std::string first = inline_svg(drawing(1), "f-", "x");
+  CHECK(first == inline_svg(drawing(500), "f-", "x"));
+  CHECK(first.ends_with(
+      "<g id=\"f-1\"/><clipPath id='f-2'></clipPath><use href=\"#f-1\"/><g clip-path=\"url(#f-2)\"/></svg>"));
+}
+
 TEST_CASE("a_png_is_embedded_as_it_is") {
   CHECK(inline_png("Man", "x").find("base64,TWFu\"") != std::string::npos);
   CHECK(inline_png("Ma", "x").find("base64,TWE=\"") != std::string::npos);

@@ -68,7 +68,7 @@ LoadedBlock loaded_block(int depth, const SpringConstants& springs) {
   const double radius = 0.5;
   // An odd number of rows: the top row is a long one, with a disc in its middle.
   Assembly block = hexagonal_lattice({.columns = 2 * depth + 1, .rows = depth | 1, .radius = radius});
-  const DiscGroup& top = group(block, "top");
+  const DiscGroup top = group(block, "top");
   const std::int32_t loaded = top.discs[top.discs.size() / 2];
   const Vec2 origin = block.centres[static_cast<std::size_t>(loaded)];
   const HalfPlane elastic(springs);

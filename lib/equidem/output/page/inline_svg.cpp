@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -164,6 +166,26 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   text = replaced.append(text, copied);
 }
 
+/// Replaces names of elements by the prefix and a number: cairo counts its names through all drawings of a process.
+void number_names(std::string& svg, const std::string& prefix) {
+  constexpr std::array<std::pair<std::string_view, char>, 5> places{
+      {{" id=\"", '"'}, {" id='", '\''}, {"href=\"#", '"'}, {"href='#", '\''}, {"url(#", ')'}}};
+  std::map<std::string, std::string, std::less<>> names;
+  for (const auto& [before, behind] : places) {
+    std::string renamed;
+    std::size_t copied = 0;
+    for (std::size_t at = svg.find(before); at != std::string::npos; at = svg.find(before, copied)) {
+      const std::size_t from = at + before.size(), end = svg.find(behind, from);
+      if (end == std::string::npos) break;
+      const auto [name, added] = names.try_emplace(svg.substr(from, end - from));
+      if (added) name->second = fmt::format("{}{}", prefix, names.size());
+      renamed.append(svg, copied, from - copied).append(name->second);
+      copied = end;
+    }
+    svg = renamed.append(svg, copied);
+  }
+}
+
 void remove_elements(std::string& svg, const std::string& name) {
   const std::string end_tag = "</" + name + ">";
   for (std::size_t from = svg.find("<" + name + ">"); from != std::string::npos;
@@ -212,11 +234,7 @@ std::string inline_svg(std::string_view file, const std::string& prefix, const s
   }
   remove_elements(svg, "title");  // names that gnuplot gives its drawing and curves
   remove_elements(svg, "desc");
-  for (const char quote : {'"', '\''}) {
-    replace_all(svg, fmt::format(" id={}", quote), fmt::format(" id={}{}", quote, prefix));
-    replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, prefix));
-  }
-  replace_all(svg, "url(#", "url(#" + prefix);
+  number_names(svg, prefix);
   replace_all(svg, "xlink:href", "href");
   return svg;
 }
