@@ -100,7 +100,8 @@ def test_a_forked_process_computes():
 
 
 LONG = """
-import equidem as eq, sys
+import equidem as eq, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
 cell = eq.delaunay(discs=300, radius=1e-3, seed=1, periodic=True)
 simulation = eq.simulation(cell, (1e9, 0.5e9), density=2500.0, run={"duration": 1e4})
 print("begun", flush=True)
