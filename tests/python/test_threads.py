@@ -109,7 +109,7 @@ try:
     simulation.advance(simulation.steps)
 except KeyboardInterrupt as error:
     print(type(error).__name__, flush=True)
-print(eq.tension_test(eq.hexagonal(columns=7, rows=7, radius=1e-3), (1e9, 0.5e9)).status)
+print(eq.tension_test(eq.hexagonal(columns=7, rows=7, radius=1e-3), (1e9, 0.5e9)).status, flush=True)
 try:
     while True:
         pass
