@@ -206,6 +206,8 @@ void bind_tasks(File<CaseTables>& file) {
            key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
   file.table("solver", &CaseTables::solver, completed, "how the equations are solved")
       .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
+             key("ordering", &SolverOptions::ordering, when("method", {to_string(SolverMethod::cholmod)}),
+                 "order of elimination: " + help_of(EnumNames<CholmodOrdering>::list)),
              key("max_refinements", &SolverOptions::max_refinements, from(0, 100),
                  "steps of iterative refinement; with a factor in single precision up to eight times as many; 0: the "
                  "factor is in double precision"),
