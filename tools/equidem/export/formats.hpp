@@ -28,7 +28,7 @@ struct Exported {
   std::vector<ExportedFile> files;
   Results results;  ///< lines of the report
   StageTimes times;
-  std::function<void(const CommonOptions&)> write_case;  ///< write_case of the resolved case
+  std::function<void(const CommonOptions&)> write_case = {};  ///< write_case of the resolved case
 };
 
 /// Reads the case of the options and makes the files; writes nothing.
