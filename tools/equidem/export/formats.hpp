@@ -38,6 +38,7 @@ using ExportFunction = Exported (*)(const CommonOptions& options);
 Exported export_to_lammps(const CommonOptions& options);
 Exported export_to_yade(const CommonOptions& options);
 Exported export_to_pfc(const CommonOptions& options);
+Exported export_to_matrix_market(const CommonOptions& options);
 
 struct ExportFormat {
   const char* name;  ///< as --to takes it
@@ -49,6 +50,7 @@ inline constexpr std::array export_formats{
     ExportFormat{"lammps", "in.equidem and its data file", export_to_lammps},
     ExportFormat{"yade", "run_equidem.py", export_to_yade},
     ExportFormat{"pfc", "equidem.dat, commands of PFC 2D", export_to_pfc},
+    ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx), solve.py", export_to_matrix_market},
 };
 
 }  // namespace equidem
