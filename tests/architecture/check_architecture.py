@@ -30,7 +30,7 @@ PARTS = [
     ("umfpack.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("cblas.h", ["lib/equidem/linear/*", "lib/python/*"], 1),
     ("lapacke.h", ["lib/equidem/statics/*"], 1),
-    ("Eigen/*", ["lib/equidem/waves/*"], 1),
+    ("Eigen/*", ["lib/equidem/waves/*", "tests/*"], 1),
     ("cairo*", ["lib/equidem/output/*"], 1),
     ("hdf5.h", ["lib/equidem/core/files/*"], 1),
     ("metis.h", ["tools/bench/*"], 0),

@@ -176,7 +176,7 @@ TEST_CASE("a_gap_tolerance_bonds_discs_of_a_file_that_gives_no_contacts") {
   const auto read = [&](const std::string& rest, double tolerance) {
     write_file(folder / "a.json",
                R"({"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2.1, 0, 1], [1, 1.9, 1]])" + rest + "}", true);
-    return read_assembly(folder / "a.json", tolerance);
+    return read_assembly(folder / "a.json", {.gap_tolerance = tolerance});
   };
   CHECK(read("", 0.049).contacts.empty());
   CHECK(read("", 0.051).contacts.size() == 1);

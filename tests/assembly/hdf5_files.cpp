@@ -118,7 +118,7 @@ TEST_CASE("an_hdf5_file_of_discs_alone_takes_those_that_touch") {
   datasets.erase("contacts");
   write_datasets(folder / "a.h5", datasets);
   CHECK(read_assembly(folder / "a.h5").contacts.size() == 3);
-  CHECK(read_assembly(folder / "a.h5", 0.1).gap_tolerance == 0.1);
+  CHECK(read_assembly(folder / "a.h5", {.gap_tolerance = 0.1}).gap_tolerance == 0.1);
 }
 
 TEST_CASE("what_is_amiss_in_an_hdf5_file_is_named_in_one_sentence") {

@@ -161,6 +161,8 @@ std::vector<BadCase> bad_cases() {
       tension("\"centre\"", "\"center\"", "gauge  = \"center\"", "test.gauge", {"Did you mean \"centre\"?"}),
       loaded("\"umfpack\"", "\"magic\"", "method = \"magic\"", "solver.method",
              {"\"magic\" is no known method", "\"cholmod\""}),
+      loaded("\"umfpack\"", "\"umfpack\"\nordering = \"metis\"", "ordering = \"metis\"", "solver.ordering",
+             {"does not apply to method = \"umfpack\"", "it is for cholmod"}),
       // contradictions
       tension("[test]", "[material]\nshear_modulus = 1.0\npoisson_ratio = 0.1\nplane = \"strain\"\n[test]",
               "[material]", "material", {"both given"}),

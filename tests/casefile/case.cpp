@@ -149,6 +149,7 @@ TEST_CASE("overrides_replace_add_and_reach_into_lists") {
   CHECK(parsed(tension_case, {"assembly.rows=11"}).assembly.lattice.rows == 11);
   CHECK(parsed(tension_case, {"solver.method=cholmod"}).solver.method == SolverMethod::cholmod);
   CHECK(parsed(tension_case, {"solver.method=\"cholmod\""}).solver.method == SolverMethod::cholmod);
+  CHECK(parsed(tension_case, {"solver.method=cholmod", "solver.ordering=amd"}).solver.ordering == CholmodOrdering::amd);
   CHECK(parsed(tension_case, {"effects.rotation=restrained"}).rotation == Rotation::restrained);
   CHECK(parsed(load_case, {"load.1.moment=9"}).load_cases[1].loads[0].moment == 9);
   CHECK(parsed(load_case, {"load.0.force=[7, 8]"}).load_cases[0].loads[0].force == Vec2{7, 8});

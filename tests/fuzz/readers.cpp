@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "equidem/assembly/files.hpp"
+#include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
@@ -122,6 +123,14 @@ Reader reader_of_checkpoints(const fs::path& scratch) {
   });
 }
 
+/// Packings of other programs, each with the options that make its seed an assembly.
+Reader reader_of_packings(const std::string& name, const fs::path& scratch, const fs::path& seed,
+                          const AssemblyFileOptions& options) {
+  return {name, {read_file(seed)}, [=](const std::string& input) {
+            static_cast<void>(read_assembly(put(scratch / "packing.txt", input), options));
+          }};
+}
+
 Reader reader_of_hdf5_assemblies(const fs::path& scratch, const std::vector<std::string>& json_seeds) {
   const fs::path path = scratch / "assembly.h5";
   std::vector<std::string> seeds;
@@ -193,7 +202,7 @@ Reader reader_of_samples(const fs::path& scratch) {
 }  // namespace
 
 std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch) {
-  const fs::path folder = source / "data" / "cases";
+  const fs::path folder = source / "data" / "cases", packings = source / "data" / "packings";
   const Cases cases(folder);
   const auto assembly_seeds = std::vector{periodic_assembly, free_assembly, read_file(folder / "truss.json")};
   const auto text_reader = [](auto parse) {
@@ -216,6 +225,12 @@ std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch
       reader_of_file("assemblies (JSON)", scratch / "assembly.json", assembly_seeds,
                      [](const fs::path& file) { return read_assembly(file); }),
       reader_of_hdf5_assemblies(scratch, assembly_seeds),
+      reader_of_packings("LAMMPS dumps", scratch, packings / "packing.dump", {}),
+      reader_of_packings("LAMMPS data files", scratch, packings / "bonds.data", {.periodic_box = false}),
+      reader_of_packings("YADE text exports", scratch, packings / "settled_ids.txt", {.unit_of_length = "m"}),
+      {"contacts of packings",
+       {read_file(packings / "settled_contacts.txt"), read_file(packings / "contacts.dump")},
+       [](const std::string& input) { static_cast<void>(read_contact_rows(input)); }},
       reader_of_file("grains (CSV)", scratch / "grains.csv", {grains, ellipses, clumps},
                      [](const fs::path& file) {
                        GrainShapes shapes(Body::disc);

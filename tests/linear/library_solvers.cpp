@@ -107,7 +107,7 @@ std::vector<LibrarySolver> cholesky_back_ends() {
              const auto symbolic = std::make_shared<const SymbolicFactor>(analyze(s.tree, s.graph, s.matrix.block));
              return multifrontal_cholesky(symbolic, s.on_graph(), report);
            }},
-          cholmod("CHOLMOD, our order", CholmodOrdering::ours),
+          cholmod("CHOLMOD, our order", CholmodOrdering::equidem),
           cholmod("CHOLMOD, METIS", CholmodOrdering::metis),
           cholmod("CHOLMOD, AMD", CholmodOrdering::amd)};
 }

@@ -198,7 +198,7 @@ class Solve(ProgramTest):
         self.check_error(equidem("solve", CASES / "pack_graded.csv"), 2, "this is a CSV table, not a case file")
         self.check_error(equidem("solve", CASES / "truss.json"), 2, "this is JSON, not a case file", '[assembly]')
         self.check_error(equidem("solve", CASES / "truss.toml", "--set", "assembly.path=grains_piston.csv"), 2,
-                         "grains_piston.csv: line 1", "CSV table, not an assembly", "assembly.json")
+                         "grains_piston.csv", "does not say its unit of length", "assembly.unit_of_length")
 
     def test_deformations_that_do_not_fit_the_units_are_questioned(self):
         def deformation(*options):

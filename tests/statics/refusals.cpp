@@ -196,4 +196,8 @@ TEST_CASE("solver_methods_have_names_and_refuse_what_they_cannot_do") {
   EquilibriumOptions options;
   options.solver.method = SolverMethod::cholmod;
   check_refused(small_block(), {1e9, -1e8}, left_held, {}, {"'cholmod'", "negative", "method = \"auto\""}, options);
+  options.solver.method = SolverMethod::multigrid;
+  options.solver.ordering = CholmodOrdering::metis;
+  check_refused(small_block(), {1e9, 1e8}, left_held, {},
+                {"ordering = \"metis\"", "an ordering of CHOLMOD", "method = \"cholmod\""}, options);
 }

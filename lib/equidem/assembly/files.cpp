@@ -17,6 +17,7 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/files/hdf5_files.hpp"
+#include "equidem/assembly/import/imported_assembly.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -253,13 +254,6 @@ Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
   }
-  const std::string_view first_line(text.data(), std::min(text.find('\n'), text.size()));
-  if (text.find('{') == std::string::npos && first_line.find(',') != std::string_view::npos) {
-    bad_input_at("line 1", "this is a CSV table, not an assembly",
-                 "an assembly is a JSON file with \"discs\": [[x, y, radius], ...]",
-                 "Name the assembly.json that 'equidem pack' writes beside grains.csv; a table of grains belongs to "
-                 "[grains] path, for 'equidem run'");
-  }
   // Numbers of a line such as "[0.5, 1, 0.25]" take the most: 16 bytes each and a vector that grows. Refused
   // beforehand, because the parser cannot free its values where memory has run out.
   constexpr double bytes_per_byte = 6;
@@ -317,13 +311,39 @@ std::string quoted_json(const std::string& text) {
   return Json(text).dump();
 }
 
-Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance) {
+namespace {
+
+/// Files of this program say all that a case could say of others.
+void refuse_foreign_options(const AssemblyFileOptions& options) {
+  const std::pair<bool, const char*> foreign[] = {{!options.unit_of_length.empty(), "unit_of_length"},
+                                                  {options.frame.has_value(), "frame"},
+                                                  {options.contacts.has_value(), "contacts"},
+                                                  {options.periodic_box.has_value(), "periodic_box"},
+                                                  {options.period.has_value(), "period"}};
+  for (const auto& [given, name] : foreign) {
+    if (given)
+      bad_input(fmt::format("assembly.{} is given, and the file is an assembly file", name),
+                "it is for files of other programs; this one says it itself", "Leave it out");
+  }
+}
+
+}  // namespace
+
+Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOptions& options) {
   if (const auto given = Given<Assembly>::find(path)) return *given;
   const bool is_hdf5 = is_hdf5_name(path);
   if (is_hdf5) check_readable(path);
   const std::string text = is_hdf5 ? std::string() : read_file(path);
+  const ParticleFormat format = is_hdf5 || path.extension() == ".json" ? ParticleFormat::none : particle_format(text);
+  if (format != ParticleFormat::none) {
+    Assembly imported = imported_assembly(path, text, format, options);
+    check(imported);
+    measure_cells(imported);
+    return imported;
+  }
   try {
-    return is_hdf5 ? read_hdf5_assembly(path, gap_tolerance) : assembly_of(parse(text), gap_tolerance);
+    refuse_foreign_options(options);
+    return is_hdf5 ? read_hdf5_assembly(path, options.gap_tolerance) : assembly_of(parse(text), options.gap_tolerance);
   } catch (const Error& error) {
     // "file: entry", so that the user finds both.
     const std::string where = error.where().empty() ? path.string() : path.string() + ": " + error.where();

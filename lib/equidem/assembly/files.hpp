@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Assemblies from and to files (schema "equidem-assembly/1"): HDF5 where the name ends in .h5 or .hdf5, else JSON.
+/// Assemblies from and to files (schema "equidem-assembly/1"): HDF5 where the name ends in .h5 or .hdf5, else JSON; and
+/// packings of other programs, which are read.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/vector.hpp"
 
 namespace equidem {
 
@@ -22,6 +26,16 @@ struct EnumNames<AssemblyFormat> {
 /// "assembly.json" or "assembly.h5".
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 
+/// What a file leaves open. All but the gap tolerance are for files of other programs.
+struct AssemblyFileOptions {
+  double gap_tolerance = 0;  ///< of a file without contacts: the largest gap that is bonded, of the sum of the radii
+  std::string unit_of_length = {};                     ///< "mm", "2.5 mm"; empty: the file says it
+  std::optional<std::int64_t> frame = {};              ///< time step of a LAMMPS dump; none: its last
+  std::optional<std::filesystem::path> contacts = {};  ///< table of contacts
+  std::optional<bool> periodic_box = {};               ///< whether the box of a LAMMPS file is the periodic cell
+  std::optional<Vec2> period = {};                     ///< m, of a file without a box; none: free
+};
+
 /// Read an assembly, or copy the Given<Assembly> of that name. As JSON: `contacts` missing: those of touching_discs, at
 /// least one. The contact point is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see
 /// Contact); off the line of centres "normals": [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see
@@ -30,10 +44,12 @@ std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 /// the upper right corner of what the cells of a free assembly fill, else the smallest rectangle that holds all discs;
 /// "groups": {"name": [disc, ...]}. Sides (left, right, bottom, top) and corners of a free assembly are added where the
 /// file gives none by that name: the discs whose cells touch the side of that rectangle.
+/// A LAMMPS data file or dump, a text export of YADE and a table with the columns x, y and radius are recognised by
+/// their first lines: particle_rows.hpp.
 /// \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated file, missing or
 ///         unknown key,
 ///         wrong type, absent disc, non-finite number, ...; a gap tolerance above 0 beside contacts
-Assembly read_assembly(const std::filesystem::path& path, double gap_tolerance = 0);
+Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOptions& options = {});
 
 /// The text of an assembly file, with all that read_assembly reads, to the same bits.
 std::string json_of(const Assembly& assembly);

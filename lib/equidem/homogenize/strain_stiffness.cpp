@@ -9,13 +9,11 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
+#include "equidem/homogenize/strain_system.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
-
-/// Displacement gradients of unit strains xx, yy, xy (engineering) and of the unit rotation.
-constexpr Tensor2 unit_gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0.5, 0.5, 0}, {0, -1, 1, 0}};
 
 /// Hill & Mandel: mean stress times mean strain is the mean of the powers.
 double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {

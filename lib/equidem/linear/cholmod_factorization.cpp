@@ -85,14 +85,14 @@ enum class Outcome { positive, not_positive, indices_too_short };
 template <typename Index>
 class CholmodCholesky final : public Factorization {
  public:
-  explicit CholmodCholesky(double held_stiffness) : held_stiffness_(held_stiffness) {
+  CholmodCholesky(double held_stiffness, CholmodOrdering ordering) : held_stiffness_(held_stiffness) {
     Library<Index>::start(&common_);
     common_.print = 0;
     common_.error_handler = nullptr;
     common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.final_ll = 1;
     common_.quick_return_if_not_posdef = 1;
-    report_.name = "CHOLMOD supernodal Cholesky";
+    report_.name = fmt::format("CHOLMOD supernodal Cholesky, {}", entry_of(ordering).in_reports);
     report_.negative_pivots = 0;
   }
   ~CholmodCholesky() override {
@@ -164,7 +164,7 @@ class CholmodCholesky final : public Factorization {
     // Ordering and analysis are called apart, so that each is timed; cholmod_analyze calls them likewise.
     Stopwatch watch;
     std::vector<Index> order;
-    if (ordering != CholmodOrdering::ours) {
+    if (ordering != CholmodOrdering::equidem) {
       order.resize(matrix.nrow);
       if (ordering == CholmodOrdering::metis) {
         Library<Index>::metis(&matrix, nullptr, 0, false, order.data(), &common_);
@@ -239,10 +239,10 @@ template <typename Index>
 Attempt attempt(const MatrixOnGraph& k, const DegreesOfFreedom& unknowns, CholmodOrdering ordering,
                 std::span<const std::int32_t> order, StageTimes& times) {
   Stopwatch watch;
-  if (ordering != CholmodOrdering::ours) order = {};
+  if (ordering != CholmodOrdering::equidem) order = {};
   CompressedColumns columns = compress(k.matrix, k.assembly, k.graph, unknowns, order);
   times.add("compression", watch.lap());
-  auto factor = std::make_unique<CholmodCholesky<Index>>(held_stiffness(k.matrix, unknowns));
+  auto factor = std::make_unique<CholmodCholesky<Index>>(held_stiffness(k.matrix, unknowns), ordering);
   const Outcome outcome = factor->factorize(std::move(columns), ordering, times);
   return {outcome, std::move(factor)};
 }
@@ -252,7 +252,7 @@ Attempt attempt(const MatrixOnGraph& k, const DegreesOfFreedom& unknowns, Cholmo
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                                 CholmodOrdering ordering, std::span<const std::int32_t> order,
                                                 FactorReport* report, CholmodTrial* trial) {
-  assert(ordering != CholmodOrdering::ours || order.size() == matrix.graph.size());
+  assert(ordering != CholmodOrdering::equidem || order.size() == matrix.graph.size());
   const OneThread one_thread(trial == nullptr || !trial->keep_thread_settings);
   StageTimes times;
   auto [outcome, factor] = attempt<std::int32_t>(matrix, unknowns, ordering, order, times);
@@ -272,8 +272,8 @@ std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, con
 }
 
 std::unique_ptr<Factorization> factorize_by_cholmod(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                                    const SymbolicFactor& symbolic) {
-  return cholmod_cholesky(matrix, unknowns, CholmodOrdering::ours, symbolic.tree.order);
+                                                    const SymbolicFactor& symbolic, const SolverOptions& options) {
+  return cholmod_cholesky(matrix, unknowns, options.ordering, symbolic.tree.order);
 }
 
 }  // namespace equidem

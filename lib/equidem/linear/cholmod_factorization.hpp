@@ -10,16 +10,10 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/factorization.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 
 namespace equidem {
-
-/// Origin of the elimination order.
-enum class CholmodOrdering {
-  ours,   ///< the given order of discs
-  metis,  ///< METIS nested dissection on the graph of unknowns
-  amd,    ///< approximate minimum degree on the graph of unknowns
-};
 
 /// Setting and timings for comparisons of solvers.
 struct CholmodTrial {
@@ -31,7 +25,7 @@ struct CholmodTrial {
 /// where K is not positive definite to working precision; `report`, where given, contains the place. Held components
 /// are solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
 /// once.
-/// \param order discs in elimination order, for CholmodOrdering::ours
+/// \param order discs in elimination order, for CholmodOrdering::equidem
 /// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                                 CholmodOrdering ordering, std::span<const std::int32_t> order,

@@ -14,6 +14,7 @@ namespace equidem {
 
 struct DegreesOfFreedom;
 struct MatrixOnGraph;
+struct SolverOptions;
 struct SymbolicFactor;
 
 /// A solver that statics can choose. A back end is one file that defines its `factorize`, and its lines in
@@ -26,13 +27,13 @@ struct BackEnd {
   /// Null: our multifrontal factorizations, which also name mechanisms. Others return null where they meet a zero or
   /// (definite_only) negative pivot; K is then factorized by ours.
   std::unique_ptr<Factorization> (*factorize)(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                              const SymbolicFactor& symbolic) = nullptr;
+                                              const SymbolicFactor& symbolic, const SolverOptions& options) = nullptr;
 };
 
 std::unique_ptr<Factorization> factorize_by_cholmod(const MatrixOnGraph&, const DegreesOfFreedom&,
-                                                    const SymbolicFactor&);
+                                                    const SymbolicFactor&, const SolverOptions&);
 std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph&, const DegreesOfFreedom&,
-                                                    const SymbolicFactor&);
+                                                    const SymbolicFactor&, const SolverOptions&);
 
 enum class SolverMethod { automatic, multifrontal, cholmod, umfpack, multigrid };
 
@@ -50,7 +51,7 @@ struct EnumNames<SolverMethod> {
       {SolverMethod::multifrontal, "multifrontal", "ours: Cholesky where no spring is negative, else L D L^T", {}},
       {SolverMethod::cholmod,
        "cholmod",
-       "SuiteSparse's supernodal Cholesky in our order",
+       "SuiteSparse's CHOLMOD, supernodal Cholesky in the order of the key ordering",
        {.definite_only = true, .factorize = factorize_by_cholmod}},
       {SolverMethod::umfpack,
        "umfpack",
@@ -63,6 +64,31 @@ struct EnumNames<SolverMethod> {
   };
 };
 
+/// Order in which CHOLMOD eliminates the unknowns.
+enum class CholmodOrdering { equidem, metis, amd };
+
+template <>
+struct EnumNames<CholmodOrdering> {
+  struct Entry {
+    CholmodOrdering value;
+    const char* name;
+    const char* help;
+    const char* in_reports;
+    double memory_factor;  ///< estimated peak memory over that in our order (data/benchmarks/static.md)
+  };
+  static constexpr const char* what = "ordering";
+  static constexpr Entry list[] = {
+      {CholmodOrdering::equidem, "equidem", "our nested dissection of the discs", "the order of equidem", 1},
+      {CholmodOrdering::metis, "metis", "CHOLMOD's METIS, nested dissection of the unknowns", "METIS order", 1},
+      {CholmodOrdering::amd, "amd", "CHOLMOD's AMD, approximate minimum degree", "AMD order", 1.3},
+  };
+};
+
+/// Estimated peak memory of a factorization over that of the multifrontal one.
+inline double memory_factor(SolverMethod method, CholmodOrdering ordering) {
+  return entry_of(method).back_end.memory_factor * entry_of(ordering).memory_factor;
+}
+
 /// Iterations after which an iterative method gives up, >= 1.
 inline constexpr int most_iterations = 250;
 
@@ -71,6 +97,7 @@ enum class FactorPrecision { automatic, single_precision, double_precision };
 
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
+  CholmodOrdering ordering = CholmodOrdering::equidem;     ///< of SolverMethod::cholmod alone
   FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
   int max_refinements =
       4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision
@@ -81,7 +108,8 @@ struct SolverOptions {
   int right_hand_sides = 1;  ///< that will be solved for, about: "auto" depends on it
 };
 
-/// \throws Error (bad_input) on a negative number of refinements or a memory limit that is negative or no number
+/// \throws Error (bad_input) on a negative number of refinements, a memory limit that is negative or no number, or an
+///         ordering of CHOLMOD beside another method
 void check(const SolverOptions& options);
 
 /// Estimated cost of a solution.

@@ -177,6 +177,35 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
   return out;
 }
 
+CompressedColumns with_upper_triangle(const CompressedColumns& lower) {
+  CompressedColumns full;
+  full.size = lower.size;
+  full.component = lower.component;
+  full.first.assign(lower.first.size(), 0);
+  for (std::int64_t c = 0; c < lower.size; ++c) {
+    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
+      ++full.first[c + 1];
+      if (lower.rows[e] != c) ++full.first[lower.rows[e] + 1];
+    }
+  }
+  for (std::int64_t c = 0; c < lower.size; ++c) full.first[c + 1] += full.first[c];
+  full.rows.resize(full.first.back());
+  full.values.resize(full.first.back());
+  // Columns are filled in ascending order: what earlier columns mirror into column c lies above its diagonal.
+  std::vector<std::int64_t> next(full.first.begin(), full.first.end() - 1);
+  const auto put = [&](std::int64_t column, std::int64_t row, double value) {
+    full.rows[next[column]] = row;
+    full.values[next[column]++] = value;
+  };
+  for (std::int64_t c = 0; c < lower.size; ++c) {
+    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
+      put(c, lower.rows[e], lower.values[e]);
+      if (lower.rows[e] != c) put(lower.rows[e], c, lower.values[e]);
+    }
+  }
+  return full;
+}
+
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                                    const DegreesOfFreedom& unknowns) {
   StiffnessMatrix matrix;

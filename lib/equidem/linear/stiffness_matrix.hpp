@@ -56,6 +56,10 @@ struct CompressedColumns {
 CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assembly, const ContactGraph& graph,
                            const DegreesOfFreedom& unknowns, std::span<const std::int32_t> order = {});
 
+/// All entries of a symmetric matrix from its lower triangle. Columns of a symmetric matrix are its rows: `first`,
+/// `rows` (then the columns of the entries) and `values` are the arrays of the CSR format as well.
+CompressedColumns with_upper_triangle(const CompressedColumns& lower);
+
 /// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives g, h of
 /// stretch and slip. Rows and columns of held components are those of a unit matrix times the largest spring.
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,

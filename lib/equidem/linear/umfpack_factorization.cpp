@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,38 +24,7 @@ namespace {
 
 using Index = SuiteSparse_long;
 
-/// All entries of a symmetric matrix as sorted compressed columns.
-struct FullColumns {
-  std::vector<Index> first, rows;
-  std::vector<double> values;
-};
-
-FullColumns mirror(const CompressedColumns& lower) {
-  FullColumns full;
-  full.first.assign(lower.size + 1, 0);
-  for (std::int64_t c = 0; c < lower.size; ++c) {
-    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
-      ++full.first[c + 1];
-      if (lower.rows[e] != c) ++full.first[lower.rows[e] + 1];
-    }
-  }
-  for (std::int64_t c = 0; c < lower.size; ++c) full.first[c + 1] += full.first[c];
-  full.rows.resize(full.first.back());
-  full.values.resize(full.first.back());
-  // Columns are filled in ascending order: what earlier columns mirror into column c lies above its diagonal.
-  std::vector<Index> next(full.first.begin(), full.first.end() - 1);
-  const auto put = [&](std::int64_t column, std::int64_t row, double value) {
-    full.rows[next[column]] = row;
-    full.values[next[column]++] = value;
-  };
-  for (std::int64_t c = 0; c < lower.size; ++c) {
-    for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e) {
-      put(c, lower.rows[e], lower.values[e]);
-      if (lower.rows[e] != c) put(lower.rows[e], c, lower.values[e]);
-    }
-  }
-  return full;
-}
+static_assert(std::is_same_v<Index, std::int64_t>, "the indices of CompressedColumns are handed on");
 
 class UmfpackLu final : public Factorization {
  public:
@@ -72,7 +42,7 @@ class UmfpackLu final : public Factorization {
   bool factorize(CompressedColumns lower) {
     component_ = std::move(lower.component);
     if (component_.empty()) return true;
-    const FullColumns k = mirror(lower);
+    const CompressedColumns k = with_upper_triangle(lower);
     lower = {};
     const auto n = static_cast<Index>(component_.size());
     std::array<double, UMFPACK_INFO> info{};
@@ -109,7 +79,7 @@ class UmfpackLu final : public Factorization {
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
-  void watch_pivots(const FullColumns& k) {
+  void watch_pivots(const CompressedColumns& k) {
     const std::size_t n = component_.size();
     std::vector<double> pivots(n);
     std::vector<Index> column_of(n);
@@ -157,7 +127,7 @@ std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const Deg
 }
 
 std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                                    const SymbolicFactor&) {
+                                                    const SymbolicFactor&, const SolverOptions&) {
   return umfpack_lu(matrix, unknowns);
 }
 

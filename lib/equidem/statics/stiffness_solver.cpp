@@ -78,7 +78,7 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   times.add("analyze", watch.lap());
   const bool single = tries_single_precision(options_, springs_, *symbolic_);
   SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.any_negative(), single);
-  size.peak_bytes *= entry_of(method).back_end.memory_factor;
+  size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
@@ -100,8 +100,8 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
 
 System StiffnessSolver::system() const {
   constexpr int given_up = 60;  // by "auto": elimination takes no longer
-  return {on_graph_, springs_, unknowns_, symbolic_,
-          options_.method == SolverMethod::automatic ? given_up : most_iterations};
+  const bool automatic = options_.method == SolverMethod::automatic;
+  return {on_graph_, springs_, unknowns_, symbolic_, automatic ? given_up : most_iterations, options_};
 }
 
 void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {

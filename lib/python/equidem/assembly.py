@@ -166,15 +166,29 @@ class Assembly:
         return plot.discs(self, ax, **options)
 
 
-def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0) -> Assembly:
-    """Read an assembly file, JSON or HDF5.
+def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_length: str = "",
+         frame: int | None = None, contacts: str | os.PathLike[str] | None = None, periodic_box: bool | None = None,
+         period: tuple[float, float] | None = None) -> Assembly:
+    """Read an assembly file, JSON or HDF5, or a packing of another program: a LAMMPS data file or dump, a text export
+    of YADE, a table with the columns x, y and radius or diameter.
 
     Parameters
     ----------
     gap_tolerance : float
         For a file without contacts: pairs whose gap is at most this share of the sum of their radii touch.
+    unit_of_length : str
+        Of a file of another program that does not say it: "m", "mm", a length such as "2.5 mm".
+    frame : int, optional
+        Time step of the frame of a LAMMPS dump; default: its last.
+    contacts : path, optional
+        Table of the contacts of such a file, with the columns i and j.
+    periodic_box : bool, optional
+        Whether the box of a LAMMPS file is the periodic cell; default: as its flags say.
+    period : (float, float), optional
+        Width and height in m of the periodic cell of such a file without a box.
     """
-    return Assembly._of(_core.read_assembly(os.fspath(path), float(gap_tolerance)))
+    return Assembly._of(_core.read_assembly(os.fspath(path), float(gap_tolerance), unit_of_length, frame,
+                                            None if contacts is None else os.fspath(contacts), periodic_box, period))
 
 
 def assembly(**keys: Any) -> Assembly:

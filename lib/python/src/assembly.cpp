@@ -143,8 +143,17 @@ void bind_assembly(py::module_& module) {
   module.def("build_assembly", [](const std::string& case_text) {
     return without_lock([&] { return shared(build_assembly(parse_case(case_text, "case#0", {}))); });
   });
-  module.def("read_assembly", [](const std::filesystem::path& path, double gap_tolerance) {
-    return without_lock([&] { return shared(read_assembly(path, gap_tolerance)); });
+  module.def("read_assembly", [](const std::filesystem::path& path, double gap_tolerance, std::string unit_of_length,
+                                 std::optional<std::int64_t> frame, std::optional<std::filesystem::path> contacts,
+                                 std::optional<bool> periodic_box, std::optional<std::pair<double, double>> period) {
+    const AssemblyFileOptions options{
+        .gap_tolerance = gap_tolerance,
+        .unit_of_length = std::move(unit_of_length),
+        .frame = frame,
+        .contacts = std::move(contacts),
+        .periodic_box = periodic_box,
+        .period = period ? std::optional(Vec2{period->first, period->second}) : std::nullopt};
+    return without_lock([&] { return shared(read_assembly(path, options)); });
   });
   module.def("write_assembly", [](const std::filesystem::path& path, const Assembly& assembly, bool overwrite) {
     without_lock([&] { write_assembly(path, assembly, overwrite); });

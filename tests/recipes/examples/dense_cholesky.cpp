@@ -61,7 +61,7 @@ class DenseCholesky final : public Factorization {
 }  // namespace
 
 std::unique_ptr<Factorization> factorize_by_dense(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                                  const SymbolicFactor&) {
+                                                  const SymbolicFactor&, const SolverOptions&) {
   const CompressedColumns lower = compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns);
   auto factor = std::make_unique<DenseCholesky>(lower.component);
   if (!factor->factorize(lower)) return nullptr;

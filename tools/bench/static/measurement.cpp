@@ -110,7 +110,7 @@ std::unique_ptr<Factorization> cholmod(const Problem& problem, const StiffnessMa
                                        Measurement& result) {
   const ContactGraph graph(problem.assembly);
   std::vector<std::int32_t> order;
-  if (ordering == CholmodOrdering::ours) {
+  if (ordering == CholmodOrdering::equidem) {
     const Stopwatch watch;
     order = dissect(problem.assembly, graph).order;
     result.order = watch.seconds();
@@ -130,7 +130,7 @@ std::unique_ptr<Factorization> factorize(const std::string& solver, const Proble
   if (solver == "equidem-single") return multifrontal<float>(problem, matrix, result);
   const CholmodOrdering ordering = solver == "cholmod-metis" ? CholmodOrdering::metis
                                    : solver == "cholmod-amd" ? CholmodOrdering::amd
-                                                             : CholmodOrdering::ours;
+                                                             : CholmodOrdering::equidem;
   return cholmod(problem, matrix, ordering, result);
 }
 

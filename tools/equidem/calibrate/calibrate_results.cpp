@@ -7,6 +7,8 @@
 #include "equidem/material/wave_speed_springs.hpp"
 #include "equidem/waves/vibration.hpp"
 
+#include "calibrate/engine_table.hpp"
+
 namespace equidem {
 namespace {
 
@@ -178,6 +180,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   if (guess) add_mean_field(out, *guess, wanted);
   if (const auto density = disc_density(resolved, problem.assembly); density && k.kT >= 0)
     add_motion(out, problem, *density, wanted);
+  out.append(engine_springs_results(problem.assembly, problem.springs.springs, k));
   const Lattice* lattice = resolved.assembly.arrangement;
   if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)
     add_operator(out, wanted, *lattice->restrained);

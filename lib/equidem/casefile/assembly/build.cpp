@@ -36,7 +36,7 @@ Assembly generate(const Case& resolved) {
       return assembly;
     }
     case AssemblyKind::file:
-      return read_assembly(wanted.path, wanted.gap_tolerance);
+      return read_assembly(wanted.path, wanted.file);
   }
   return {};
 }

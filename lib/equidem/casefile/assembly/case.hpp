@@ -42,10 +42,11 @@ struct AssemblyCase {
   DelaunayOptions delaunay;
   std::optional<ScalablePacking> packing;  ///< for the kind packing; else none
   std::optional<Region> region;            ///< in which the packing is measured
-  double gap_tolerance = 0;                ///< of the contacts of a packing, or of a file that gives none
+  double gap_tolerance = 0;                ///< of the contacts of a packing
   std::filesystem::path path;              ///< path resolved against the folder of the file
-  bool own_springs = true;                 ///< use the springs of the file
-  std::optional<double> density;           ///< kg/m³, of the discs themselves
+  AssemblyFileOptions file;
+  bool own_springs = true;        ///< use the springs of the file
+  std::optional<double> density;  ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 
   /// Whether each seed makes another assembly.

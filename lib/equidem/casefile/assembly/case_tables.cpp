@@ -19,6 +19,7 @@ void bind_assembly(File<CaseTables>& file) {
   using A = AssemblyCase;
   using L = LatticeOptions;
   using D = DelaunayOptions;
+  using F = AssemblyFileOptions;
   file.table("assembly", &CaseTables::assembly, required, "the discs and their contacts")
       .keys(
           {key_with<A, std::string>(
@@ -69,8 +70,23 @@ void bind_assembly(File<CaseTables>& file) {
                "density of the discs themselves; for waves, time steps and motion"),
            key("body", &A::body, "what a disc stands for: a cylinder per metre of depth, or a sphere; for its inertia"),
            key("path", &A::path, required, when("kind", from_file),
-               "an assembly file: HDF5 where its name ends in .h5 or .hdf5, else JSON"),
-           key("gap_tolerance", &A::gap_tolerance, from(0, 1), when("kind", from_file),
+               "an assembly file: HDF5 where its name ends in .h5 or .hdf5, else JSON; or a packing of another "
+               "program: "
+               "a LAMMPS data file or dump, a text export of YADE, a table with the columns x, y and radius or "
+               "diameter"),
+           key("unit_of_length", &A::file, &F::unit_of_length, when("kind", from_file),
+               "of a file of another program that does not say it: m, cm, mm, um, nm, or a length such as \"2.5 mm\""),
+           key("frame", &A::file, &F::frame, from(0, 9e15), when("kind", from_file),
+               "time step of the frame of a LAMMPS dump; left out: its last"),
+           key("contacts", &A::file, &F::contacts, when("kind", from_file),
+               "table of the contacts of such a file, with the columns i and j (ids, or rows from 0) and, if wanted, "
+               "lever_i and lever_j, normal_x, normal_y, offset_i and offset_j; left out: its bonds, or discs that "
+               "touch"),
+           key("periodic_box", &A::file, &F::periodic_box, when("kind", from_file),
+               "whether the box of a LAMMPS file is the periodic cell; left out: as its flags say"),
+           key("period", &A::file, &F::period, unit("m"), when("kind", from_file),
+               "width and height of the periodic cell of such a file without a box; left out: free"),
+           key("gap_tolerance", &A::file, &F::gap_tolerance, from(0, 1), when("kind", from_file),
                "of a file without contacts: discs are bonded where the gap between them is at most this share of the "
                "sum "
                "of their radii; 0: where they touch"),
@@ -206,6 +222,8 @@ void bind_tasks(File<CaseTables>& file) {
            key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
   file.table("solver", &CaseTables::solver, completed, "how the equations are solved")
       .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
+             key("ordering", &SolverOptions::ordering, when("method", {to_string(SolverMethod::cholmod)}),
+                 "order of elimination: " + help_of(EnumNames<CholmodOrdering>::list)),
              key("max_refinements", &SolverOptions::max_refinements, from(0, 100),
                  "steps of iterative refinement; with a factor in single precision up to eight times as many; 0: the "
                  "factor is in double precision"),

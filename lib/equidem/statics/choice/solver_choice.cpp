@@ -134,7 +134,7 @@ std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& sy
                             system.max_iterations);
   }
   if (back_end.factorize == nullptr) return multifrontal(system, mechanisms);
-  return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic), system, mechanisms);
+  return judged(back_end.factorize(system.k, system.unknowns, *system.symbolic, system.options), system, mechanisms);
 }
 
 }  // namespace
@@ -147,6 +147,11 @@ void check(const SolverOptions& options) {
   if (!(options.memory_limit >= 0)) {
     bad_input(fmt::format("memory_limit = {}", options.memory_limit),
               "it must be a number of bytes, or 0 for what is free", "Correct it");
+  }
+  if (options.ordering != CholmodOrdering::equidem && options.method != SolverMethod::cholmod) {
+    bad_input(
+        fmt::format("ordering = \"{}\" beside method = \"{}\"", to_string(options.ordering), to_string(options.method)),
+        "it is an ordering of CHOLMOD", "Use method = \"cholmod\", or leave the ordering out");
   }
 }
 

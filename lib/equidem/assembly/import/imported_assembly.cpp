@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/import/imported_assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/assembly/files/file_keys.hpp"
+#include "equidem/assembly/import/length_unit.hpp"
+#include "equidem/assembly/touching.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+using Particle = ParticleRows::Particle;
+
+std::string at_line(int line) {
+  return fmt::format("line {}", line);
+}
+
+ParticleRows rows_of(std::string_view text, ParticleFormat format, const AssemblyFileOptions& options) {
+  if (options.frame && format != ParticleFormat::lammps_dump)
+    bad_input("a frame is named, and the file holds one state", "frames are those of a LAMMPS dump",
+              "Leave out assembly.frame");
+  switch (format) {
+    case ParticleFormat::lammps_dump:
+      return read_lammps_dump(text, options.frame);
+    case ParticleFormat::lammps_data:
+      return read_lammps_data(text);
+    case ParticleFormat::table:
+    case ParticleFormat::none:
+      break;
+  }
+  return read_particle_table(text);
+}
+
+/// Metres of the unit of the file. A number without a unit is no length: it is asked for.
+double unit_of_rows(const ParticleRows& rows, const std::string& given) {
+  if (given.empty()) {
+    if (rows.unit) return *rows.unit;
+    const std::string why = rows.units.empty() ? fmt::format("{} holds plain numbers", rows.format)
+                                               : fmt::format("its units are {}", rows.units);
+    bad_input("the file does not say its unit of length", why,
+              "Give it: assembly.unit_of_length = \"mm\", \"m\" or a length such as \"2.5 mm\"");
+  }
+  const std::optional<double> unit = length_unit(given);
+  if (!unit)
+    bad_input(fmt::format("'{}' is no unit of length", given), "units are m, cm, mm, um, nm, or a length as \"2.5 mm\"",
+              "Correct assembly.unit_of_length");
+  constexpr double rounding = 1e-12;
+  if (rows.unit && std::abs(*unit - *rows.unit) > rounding * *unit)
+    bad_input(fmt::format("assembly.unit_of_length is {}, and the file is in units of {} m", given, *rows.unit),
+              "one of them is wrong", "Leave out unit_of_length, or correct it");
+  return *unit;
+}
+
+/// The period, m; none: free.
+std::optional<Vec2> period_of(const ParticleRows& rows, double unit, const AssemblyFileOptions& options) {
+  if (!rows.box) {
+    if (options.periodic_box && !options.period)
+      bad_input("the file has no box", "assembly.periodic_box is about the box of a LAMMPS file",
+                "Give assembly.period, or leave it out");
+    return options.period;
+  }
+  if (options.period)
+    bad_input("the file says its box, and the case a period", "one of them is too much", "Leave out assembly.period");
+  const auto &px = rows.box->periodic_x, &py = rows.box->periodic_y;
+  const Vec2 size = unit * (rows.box->high - rows.box->low);
+  if (options.periodic_box) {
+    if (*options.periodic_box && px && !(*px && *py))
+      bad_input("assembly.periodic_box is true, and the box of the file is not periodic along both x and y",
+                "its flags say so", "Leave it out");
+    return *options.periodic_box ? std::optional(size) : std::nullopt;
+  }
+  if (!px)
+    bad_input("the file does not say whether its box is periodic", fmt::format("{} has no flags of it", rows.format),
+              "Give assembly.periodic_box = true or false");
+  if (*px != *py)
+    bad_input(fmt::format("the box is periodic along {} only", *px ? "x" : "y"),
+              "a cell here is periodic along both, or free",
+              "Give assembly.periodic_box = false to take it as free: what touches across the period is then parted");
+  return *px ? std::optional(size) : std::nullopt;
+}
+
+/// Ascending ids, no two alike.
+void sort_by_id(std::vector<Particle>& particles) {
+  if (!std::ranges::is_sorted(particles, {}, &Particle::id)) std::ranges::stable_sort(particles, {}, &Particle::id);
+  const auto twice = std::ranges::adjacent_find(particles, {}, &Particle::id);
+  if (twice == particles.end()) return;
+  bad_input_at(at_line(std::next(twice)->line), fmt::format("particle {} is there twice", twice->id),
+               fmt::format("it stands at line {}, too", twice->line), "Keep one");
+}
+
+/// All centres in one plane.
+void check_plane(const std::vector<Particle>& particles) {
+  constexpr double rounding = 1e-6;  // of the largest radius
+  const auto [low, high] = std::ranges::minmax_element(particles, {}, &Particle::z);
+  const double largest = std::ranges::max_element(particles, {}, &Particle::radius)->radius;
+  if (high->z - low->z <= rounding * largest) return;
+  bad_input_at(at_line(high->line),
+               fmt::format("the particles are three-dimensional: z goes from {:.6g} to {:.6g}", low->z, high->z),
+               "discs lie in one plane", "Export a two-dimensional packing, all of it with one z");
+}
+
+Assembly discs_of(const std::vector<Particle>& particles, double unit) {
+  Assembly assembly;
+  assembly.kind = "file";
+  for (const Particle& particle : particles) {
+    if (!is_positive(particle.radius))
+      bad_input_at(at_line(particle.line), fmt::format("the radius is {:.6g}", particle.radius),
+                   "every disc has a size; LAMMPS gives point particles none", "Correct it, or leave the particle out");
+    assembly.centres.push_back({unit * particle.x, unit * particle.y});
+    assembly.radii.push_back(unit * particle.radius);
+  }
+  return assembly;
+}
+
+std::int32_t disc_of(const std::vector<Particle>& particles, std::int64_t id, int line) {
+  const auto found = std::ranges::lower_bound(particles, id, {}, &Particle::id);
+  if (found == particles.end() || found->id != id)
+    bad_input_at(at_line(line), fmt::format("the contact names particle {}, which is not there", id),
+                 fmt::format("the particles are numbered from {} to {}", particles.front().id, particles.back().id),
+                 "Take contacts and particles of one state; rows without ids count from 0");
+  return static_cast<std::int32_t>(found - particles.begin());
+}
+
+std::int32_t nearest_shift(double distance, double period) {
+  return -static_cast<std::int32_t>(std::lround(distance / period));
+}
+
+Contact contact_of(const ContactRow& row, const std::vector<Particle>& particles, const Assembly& assembly) {
+  Contact contact{.i = disc_of(particles, row.i, row.line), .j = disc_of(particles, row.j, row.line)};
+  constexpr std::int64_t most_periods = 1 << 20;
+  if (row.shift_x) {
+    if (std::abs(*row.shift_x) > most_periods || std::abs(*row.shift_y) > most_periods)
+      bad_input_at(at_line(row.line), "the shift is out of range", "it is a number of periods", "Correct it");
+    contact.shift_x = static_cast<std::int32_t>(*row.shift_x);
+    contact.shift_y = static_cast<std::int32_t>(*row.shift_y);
+  } else if (assembly.period) {
+    const Vec2 d =
+        assembly.centres[static_cast<std::size_t>(contact.j)] - assembly.centres[static_cast<std::size_t>(contact.i)];
+    contact.shift_x = nearest_shift(d.x, assembly.period->x);
+    contact.shift_y = nearest_shift(d.y, assembly.period->y);
+  }
+  return contact;
+}
+
+/// A bond over more than half of a box that is taken as free leads through its sides.
+void check_within_box(const ContactRow& row, const Contact& contact, const ParticleRows& rows, double unit,
+                      const Assembly& assembly) {
+  if (!rows.box || assembly.period) return;
+  const Vec2 d = assembly.branch(contact), size = unit * (rows.box->high - rows.box->low);
+  if (std::abs(d.x) <= 0.5 * size.x && std::abs(d.y) <= 0.5 * size.y) return;
+  bad_input_at(at_line(row.line), fmt::format("the contact of particles {} and {} crosses the box", row.i, row.j),
+               "the box is taken as free, and they are more than half of it apart",
+               "Give assembly.periodic_box = true, or take the contact out");
+}
+
+void divide_by_radii(const Assembly& assembly, Contact& contact) {
+  const double distance = norm(assembly.branch(contact)), ri = assembly.radii[static_cast<std::size_t>(contact.i)];
+  contact.lever_i = distance * ri / (ri + assembly.radii[static_cast<std::size_t>(contact.j)]);
+  contact.lever_j = distance - contact.lever_i;
+}
+
+enum class ContactPoint { by_radii, middle };
+
+void add_contacts(const std::vector<ContactRow>& given, const ParticleRows& rows, double unit, ContactPoint point,
+                  Assembly& assembly) {
+  for (const ContactRow& row : given) {
+    Contact contact = contact_of(row, rows.particles, assembly);
+    check_within_box(row, contact, rows, unit, assembly);
+    if (row.lever_i) {
+      contact.lever_i = unit * *row.lever_i;
+      contact.lever_j = unit * *row.lever_j;
+    } else if (point == ContactPoint::by_radii) {
+      divide_by_radii(assembly, contact);
+    } else {
+      contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
+    }
+    if (row.normal) assembly.contact_arms.push_back({*row.normal, unit * row.offset_i, unit * row.offset_j});
+    assembly.contacts.push_back(contact);
+  }
+}
+
+/// Errors of the task with the file before their place.
+template <typename Task>
+auto within_file(const std::filesystem::path& path, const Task& task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    const std::string where = path.string() + (error.where().empty() ? "" : ": " + error.where());
+    throw Error(error.kind(), error.problem(), error.why(), error.remedy(), where);
+  }
+}
+
+/// The discs and the period, checked.
+Assembly discs_of(ParticleRows& rows, double unit, const AssemblyFileOptions& options) {
+  sort_by_id(rows.particles);
+  check_plane(rows.particles);
+  Assembly assembly = discs_of(rows.particles, unit);
+  assembly.period = period_of(rows, unit, options);
+  check(assembly);
+  const bool given = options.contacts || rows.contacts;
+  check_keys_together([&](const char* key) { return given && std::string_view(key) == "contacts"; },
+                      options.gap_tolerance);
+  return assembly;
+}
+
+}  // namespace
+
+Assembly imported_assembly(const std::filesystem::path& path, std::string_view text, ParticleFormat format,
+                           const AssemblyFileOptions& options) {
+  ParticleRows rows;
+  double unit = 1;
+  Assembly assembly = within_file(path, [&] {
+    rows = rows_of(text, format, options);
+    if (rows.particles.empty())
+      bad_input("the file has no particles", "there is nothing to solve for", "Write it again");
+    unit = unit_of_rows(rows, options.unit_of_length);
+    return discs_of(rows, unit, options);
+  });
+  if (options.contacts) {
+    within_file(*options.contacts, [&] {
+      add_contacts(read_contact_rows(read_file(*options.contacts)), rows, unit, ContactPoint::by_radii, assembly);
+      refuse_repeated_contacts(assembly);
+    });
+    return assembly;
+  }
+  within_file(path, [&] {
+    if (rows.contacts) {
+      add_contacts(*rows.contacts, rows, unit, ContactPoint::middle, assembly);
+      refuse_repeated_contacts(assembly);
+      return;
+    }
+    assembly.gap_tolerance = options.gap_tolerance;
+    assembly.contacts = touching_discs(assembly, options.gap_tolerance);
+    for (Contact& contact : assembly.contacts) divide_by_radii(assembly, contact);
+  });
+  return assembly;
+}
+
+}  // namespace equidem

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "equidem/assembly/import/length_unit.hpp"
+#include "equidem/assembly/import/particle_rows.hpp"
+#include "equidem/assembly/import/text_lines.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// Columns of the section Atoms; three image flags may follow.
+struct AtomStyle {
+  std::string_view name;
+  std::size_t columns, diameter, x;
+};
+constexpr AtomStyle atom_styles[] = {{"sphere", 7, 2, 4}, {"bpm/sphere", 8, 3, 5}};
+
+/// Sections with the count of the header that says how many lines they have.
+struct DataSection {
+  std::string_view name, count;
+};
+constexpr DataSection data_sections[] = {{"Atoms", "atoms"},
+                                         {"Velocities", "atoms"},
+                                         {"Bonds", "bonds"},
+                                         {"Angles", "angles"},
+                                         {"Dihedrals", "dihedrals"},
+                                         {"Impropers", "impropers"},
+                                         {"Masses", "atom types"},
+                                         {"Pair Coeffs", "atom types"},
+                                         {"Bond Coeffs", "bond types"},
+                                         {"Angle Coeffs", "angle types"},
+                                         {"Dihedral Coeffs", "dihedral types"},
+                                         {"Improper Coeffs", "improper types"},
+                                         {"Atom Type Labels", "atom types"},
+                                         {"Bond Type Labels", "bond types"},
+                                         {"Angle Type Labels", "angle types"}};
+
+std::string_view without_comment(std::string_view line) {
+  return trimmed(line.substr(0, line.find('#')));
+}
+
+class DataReader {
+ public:
+  explicit DataReader(std::string_view text) : lines_(text) {}
+
+  ParticleRows read() {
+    result_.format = "a LAMMPS data file";
+    lines_.next();  // a title, in which write_data names the units
+    const std::string_view title = lines_.line();
+    if (const std::size_t at = title.find("units = "); at != std::string_view::npos) {
+      result_.units = words_of(title.substr(at + 8)).empty() ? "" : words_of(title.substr(at + 8)).front();
+      result_.unit = lammps_length_unit(result_.units);
+    }
+    std::string section = read_header();
+    while (!section.empty()) section = read_section(section);
+    if (!atoms_read_) lines_.fail("the file has no section Atoms", "its discs stand there", "Write it by write_data");
+    if (counts_["bonds"] > 0 && !result_.contacts)
+      lines_.fail(fmt::format("the section Bonds is missing, and the file has {} bonds", counts_["bonds"]),
+                  "it was cut off", "Get the whole file");
+    return std::move(result_);
+  }
+
+ private:
+  /// The next line with text besides a comment; false at the end.
+  bool next() {
+    while (lines_.next()) {
+      if (!lines_.is_whole())
+        lines_.fail("the file ends within a line", "it was cut off", "Get the whole file, or end its last line");
+      if (!without_comment(lines_.line()).empty()) return true;
+    }
+    return false;
+  }
+
+  /// Counts and bounds. \return the line of the first section
+  std::string read_header() {
+    std::map<std::string, std::array<double, 2>> bounds;
+    while (next()) {
+      const auto words = words_of(without_comment(lines_.line()));
+      const std::string last(words.back());
+      if (words.size() == 4 && last.ends_with("hi")) {
+        bounds[last.substr(0, 1)] = {finite_number(words[0], "bound", lines_.number()),
+                                     finite_number(words[1], "bound", lines_.number())};
+      } else if (last == "yz") {
+        for (std::size_t k = 0; k < 3 && k < words.size(); ++k) {
+          if (finite_number(words[k], "tilt", lines_.number()) != 0) refuse_triclinic();
+        }
+      } else if (last == "avec" || last == "bvec" || last == "cvec") {
+        refuse_triclinic();
+      } else if (words[0].find_first_not_of("0123456789") == std::string_view::npos && words.size() > 1) {
+        std::vector<std::string> rest(words.begin() + 1, words.end());
+        counts_[joined(rest, " ")] = whole_number(words[0], "count", lines_.number());
+      } else {
+        take_box(bounds);
+        return std::string(lines_.line());
+      }
+    }
+    lines_.fail("the file ends before its sections", "it was cut off", "Get the whole file");
+  }
+
+  [[noreturn]] void refuse_triclinic() const {
+    lines_.fail("the box is triclinic", "a cell here is a rectangle along x and y",
+                "Bring it to a rectangle in LAMMPS: change_box all ortho");
+  }
+
+  void take_box(const std::map<std::string, std::array<double, 2>>& bounds) {
+    if (!counts_.contains("atoms")) lines_.fail("the file has no number of atoms", "", "Write it by write_data");
+    const auto x = bounds.find("x"), y = bounds.find("y");
+    if (x == bounds.end() || y == bounds.end()) return;
+    result_.box = ParticleRows::Box{
+        .low = {x->second[0], y->second[0]}, .high = {x->second[1], y->second[1]}, .periodic_x = {}, .periodic_y = {}};
+  }
+
+  /// \return the line of the next section; empty at the end
+  std::string read_section(const std::string& heading) {
+    const std::string name(without_comment(heading));
+    const std::string style = heading.find('#') == std::string::npos
+                                  ? std::string()
+                                  : std::string(trimmed(std::string_view(heading).substr(heading.find('#') + 1)));
+    for (const char* bodies : {"Ellipsoids", "Lines", "Triangles", "Bodies"}) {
+      if (name == bodies)
+        lines_.fail(fmt::format("the section {} describes bodies that are no discs", name),
+                    "discs have a centre and a radius", "Export spheres, of atom style sphere or bpm/sphere");
+    }
+    const auto section = std::ranges::find(data_sections, name, &DataSection::name);
+    if (section == std::end(data_sections)) {
+      const auto meant = nearest(name, names_in(data_sections));
+      lines_.fail(fmt::format("'{}' begins no section of a data file that this reader knows", name),
+                  "it knows those of LAMMPS up to 2025",
+                  meant ? fmt::format("Did you mean '{}'?", *meant) : "Remove it");
+    }
+    const std::int64_t count = counts_[std::string(section->count)];
+    const bool atoms = name == "Atoms", bonds = name == "Bonds";
+    const AtomStyle* of_atoms = atoms ? &style_of(style) : nullptr;
+    if (bonds) result_.contacts.emplace();
+    for (std::int64_t k = 0; k < count; ++k) {
+      if (!next() || !is_row())
+        lines_.fail(fmt::format("the section {} ends after {} of {} lines", name, k, count), "the file was cut off",
+                    "Get the whole file");
+      const auto cells = words_of(without_comment(lines_.line()));
+      if (atoms) read_atom(*of_atoms, cells);
+      if (bonds) read_bond(cells);
+    }
+    atoms_read_ = atoms_read_ || atoms;
+    if (!next()) return {};
+    if (is_row())
+      lines_.fail(fmt::format("the section {} has more than {} lines", name, count), "its header counts fewer",
+                  "Correct the header, or get the file as LAMMPS wrote it");
+    return std::string(lines_.line());
+  }
+
+  /// Rows begin with a number, headings with a letter.
+  [[nodiscard]] bool is_row() const {
+    const char first = lines_.line().front();
+    return (first >= '0' && first <= '9') || first == '-' || first == '+';
+  }
+
+  [[nodiscard]] const AtomStyle& style_of(const std::string& name) const {
+    for (const AtomStyle& style : atom_styles)
+      if (style.name == name) return style;
+    lines_.fail(name.empty() ? "the section Atoms does not name its atom style"
+                             : fmt::format("the atoms are of style {}, which has no diameter here", name),
+                "every disc has a size, and columns differ from style to style",
+                "Use atom style sphere or bpm/sphere; write_data then begins the section by \"Atoms # sphere\"");
+  }
+
+  void read_atom(const AtomStyle& style, const std::vector<std::string_view>& cells) {
+    if (cells.size() != style.columns && cells.size() != style.columns + 3)
+      lines_.fail(
+          fmt::format("the atom has {}", counted(std::ssize(cells), "number")),
+          fmt::format("atom style {} has {}, or {} with image flags", style.name, style.columns, style.columns + 3),
+          "Get the file as LAMMPS wrote it");
+    const int line = lines_.number();
+    result_.particles.push_back({.id = whole_number(cells[0], "id", line),
+                                 .x = finite_number(cells[style.x], "x", line),
+                                 .y = finite_number(cells[style.x + 1], "y", line),
+                                 .z = finite_number(cells[style.x + 2], "z", line),
+                                 .radius = 0.5 * finite_number(cells[style.diameter], "diameter", line),
+                                 .line = line});
+  }
+
+  void read_bond(const std::vector<std::string_view>& cells) {
+    if (cells.size() != 4)
+      lines_.fail(fmt::format("the bond has {}", counted(std::ssize(cells), "number")), "it is: number, type, i, j",
+                  "Get the file as LAMMPS wrote it");
+    ContactRow bond{.line = lines_.number()};
+    bond.i = whole_number(cells[2], "id", bond.line);
+    bond.j = whole_number(cells[3], "id", bond.line);
+    result_.contacts->push_back(bond);
+  }
+
+  TextLines lines_;
+  std::map<std::string, std::int64_t> counts_;
+  ParticleRows result_;
+  bool atoms_read_ = false;
+};
+
+}  // namespace
+
+ParticleRows read_lammps_data(std::string_view text) {
+  return DataReader(text).read();
+}
+
+}  // namespace equidem

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Particles and contacts as other programs write them: LAMMPS data files and dumps, text exports of YADE, tables with
+/// named columns.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+enum class ParticleFormat { none, lammps_data, lammps_dump, table };
+
+/// The format of a text, by its first lines; none: none of them.
+ParticleFormat particle_format(std::string_view text);
+
+/// Two particles that touch, by their ids.
+struct ContactRow {
+  std::int64_t i = 0, j = 0;
+  int line = 0;
+  std::optional<std::int64_t> shift_x = {}, shift_y = {};  ///< periods; none: the nearest image of j
+  std::optional<double> lever_i = {}, lever_j = {};        ///< in the unit of the file, see Contact
+  std::optional<Vec2> normal = {};                         ///< with offsets, see ContactArms
+  double offset_i = 0, offset_j = 0;
+};
+
+/// Lengths are in the unit of the file.
+struct ParticleRows {
+  struct Particle {
+    std::int64_t id = 0;
+    double x = 0, y = 0, z = 0, radius = 0;
+    int line = 0;
+  };
+  struct Box {
+    Vec2 low, high;
+    std::optional<bool> periodic_x, periodic_y;  ///< none: the file does not say
+  };
+  std::string format;                    ///< "a LAMMPS dump", for messages
+  std::vector<Particle> particles = {};  ///< in the order of the file
+  std::optional<double> unit = {};       ///< m, where the file says it
+  std::string units = {};                ///< the system of units that it names, "lj"
+  std::optional<Box> box = {};
+  std::optional<std::vector<ContactRow>> contacts = {};  ///< bonds of the file, at the middle of the line of centres
+};
+
+/// \param frame the time step wanted; none: the last
+/// \throws Error (bad_input) at "line N": another version, a frame cut off, a column missing, a triclinic box, no such
+///         time step (with those that are there)
+ParticleRows read_lammps_dump(std::string_view text, std::optional<std::int64_t> frame);
+/// The sections Atoms, of a style with a diameter, and Bonds.
+/// \throws Error (bad_input) likewise; an atom style without a diameter, one that is not named
+ParticleRows read_lammps_data(std::string_view text);
+/// A table with the columns x, y and radius or diameter, also z and id: with commas or spaces between them, named in
+/// its first line, in a comment before the rows, or by "#format" of YADE; without names x y r or x y z r. A name may
+/// end in a unit: "x_mm", "x [mm]". The columns period_x and period_y are the period.
+/// \throws Error (bad_input) likewise; bodies that are no discs
+ParticleRows read_particle_table(std::string_view text);
+
+/// A table with the columns i and j, also shift_x, shift_y, lever_i, lever_j, normal_x, normal_y, offset_i, offset_j;
+/// without names i and j. Also a local dump of LAMMPS with two columns.
+/// \throws Error (bad_input) likewise
+std::vector<ContactRow> read_contact_rows(std::string_view text);
+
+}  // namespace equidem

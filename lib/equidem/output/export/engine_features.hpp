@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What discrete-element codes carry of a model, as one table.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "equidem/core/names.hpp"
+
+namespace equidem {
+
+enum class Engine { lammps, yade, pfc };
+
+template <>
+struct EnumNames<Engine> {
+  using enum Engine;
+  static constexpr const char* what = "engine";
+  static constexpr NamedValue<Engine> list[] = {{lammps, "LAMMPS"}, {yade, "YADE"}, {pfc, "PFC"}};
+};
+
+/// Parts of a model that some engine does not carry.
+enum class EngineFeature {
+  levers_by_radii,
+  levers_of_no_radii,
+  levers_with_gaps,
+  off_line_contacts,
+  sections,
+  double_contacts,
+  negative_tangential,
+  spheres,
+  other_inertia,
+  unequal_springs,
+  bonds_by_no_gap,
+  periodic_cell,
+  small_cell,
+  given_displacements,
+  given_at_start,
+  schedules,
+  load_moments,
+  mass_damping,
+  bond_dashpots,
+  walls_of_bonds,
+  oblique_walls,
+  shaped_walls,
+  moving_walls,
+  shapes,
+  grain_bonds,
+  other_laws,
+  stiffness_by_mass,
+  normal_dashpots,
+  strong_dashpots,
+  tangential_dashpots,
+  dashpots_along_alone,
+  unequal_pairs,
+  rigid_friction,
+  friction_of_spring,
+};
+
+/// A row of the table.
+struct EngineFeatureRow {
+  EngineFeature value;
+  const char* name;  ///< a plural noun
+  bool lammps = false, yade = false, pfc = false;
+  const char* why;     ///< of what is not carried
+  const char* remedy;  ///< a sentence without its full stop
+
+  [[nodiscard]] bool carried_by(Engine engine) const {
+    switch (engine) {
+      case Engine::lammps:
+        return lammps;
+      case Engine::yade:
+        return yade;
+      case Engine::pfc:
+        return pfc;
+    }
+    return false;
+  }
+};
+
+template <>
+struct EnumNames<EngineFeature> {
+  using enum EngineFeature;
+  static constexpr const char* what = "part of a model";
+  static constexpr EngineFeatureRow list[] = {
+      {levers_by_radii, "contact points off the middle between two centres", false, true, true,
+       "a bond of bpm/rotational acts in the middle", "Export to yade or pfc"},
+      {levers_of_no_radii, "levers that no radii of the bodies give", false, false, false,
+       "its contact points follow from one radius a body", "Give levers (d + r_i - r_j)/2, or d/2 for LAMMPS"},
+      {levers_with_gaps, "levers that do not add up to the distance of the centres", false, false, false,
+       "both bodies touch in one point there", "Give levers that do"},
+      {off_line_contacts, "contact points off the line of centres", false, false, false, "its bodies are round",
+       "Take discs, or 'equidem run'"},
+      {sections, "bodies that are no discs", false, false, false, "their contacts and inertia are others",
+       "Take discs, or 'equidem run'"},
+      {double_contacts, "two contacts of the same two bodies", false, false, false, "a pair has one bond there",
+       "Add their springs up, or take a larger cell"},
+      {negative_tangential, "negative kT", false, false, false,
+       "its contacts store energy, and motion with kT < 0 grows without limit", "Use 'equidem solve'"},
+      {spheres, "spheres (body = \"sphere\")", true, true, false, "PFC 2D has discs", "Take body = \"disc\""},
+      {other_inertia, "moments of inertia other than m r²/2 of the radius that places the contact points", true, true,
+       false, "its moments follow from those radii", "Export to yade or lammps"},
+      {unequal_springs, "springs that differ from bond to bond", true, true, false,
+       "its commands give one kn and ks to all", "Export to yade or lammps"},
+      {bonds_by_no_gap, "bonds that are not all pairs up to one gap", true, true, false,
+       "its commands choose bonds by their gap", "Export to yade or lammps"},
+      {periodic_cell, "periodic cells of bonded discs", true, false, false,
+       "the bonds across its sides are not written", "Export to lammps"},
+      {small_cell, "periodic cells shorter than twice the longest bond", false, false, false,
+       "a bond joins the nearest images there", "Take a larger cell"},
+      {given_displacements, "prescribed displacements that are reached at rest", true, true, true, "", ""},
+      {given_at_start, "prescribed displacements that a run begins with", true, false, false,
+       "its tangential forces follow velocities, not positions", "Export to lammps, or run until_rest"},
+      {schedules, "schedules of supports and loads", false, false, false, "they would need its programming",
+       "Take them out, and write them into the script"},
+      {load_moments, "moments as loads", false, true, true, "it has no command for the torque on single atoms",
+       "Export to yade or pfc"},
+      {mass_damping, "damping proportional to mass", false, false, false, "it has no such damping of rotations",
+       "Take local damping"},
+      {bond_dashpots, "dashpots in bonds (damping by stiffness or contact)", false, false, false,
+       "its dashpots differ in what they damp", "Take local damping"},
+      {walls_of_bonds, "walls that push bonded discs", true, false, false, "they are written for LAMMPS alone",
+       "Export to lammps, or hold discs by supports"},
+      {oblique_walls, "walls that are not parallel to an axis", true, false, true, "its walls are", "Export to lammps"},
+      {shaped_walls, "segments and arcs as walls", false, false, false, "its walls are planes",
+       "Take lines, or 'equidem run'"},
+      {moving_walls, "walls that move", false, false, false, "they would need its programming",
+       "Take the motion out, and write it into the script"},
+      {shapes, "ellipses and clumps", false, false, false, "their contact laws are others",
+       "Take discs, or 'equidem run'"},
+      {grain_bonds, "bonds of dashpots", false, false, false, "it has no such bonds", "Take [[bond]] out"},
+      {other_laws, "laws of collision other than linear_dashpot", false, false, false,
+       "linear spring and dashpot is what it computes too", "Set collisions.law = \"linear_dashpot\""},
+      {stiffness_by_mass, "stiffness that follows from the masses of unequal bodies", false, false, false,
+       "its stiffness is one number", "Give collisions.stiffness"},
+      {normal_dashpots, "restitution below 1", true, false, true, "its law of this export has no dashpot",
+       "Export to lammps or pfc, or set restitution = 1"},
+      {strong_dashpots, "dashpots at or above the critical one, of bodies of unequal masses", false, false, true,
+       "LAMMPS takes a restitution above 0 there", "Raise restitution"},
+      {tangential_dashpots, "tangential dashpots", true, false, true, "its law of this export has none",
+       "Set tangential_damping = 0"},
+      {dashpots_along_alone, "tangential dashpots without normal ones, of bodies of unequal masses", false, false, true,
+       "its tangential dashpot is a multiple of the normal one", "Set tangential_damping = 0, or restitution below 1"},
+      {unequal_pairs, "contact properties that differ from pair to pair of groups", true, true, false,
+       "one table holds for all contacts", "Give all the same"},
+      {rigid_friction, "friction without a tangential spring", false, false, false,
+       "its friction limits the force of a spring", "Set tangential_ratio, such as 2/7"},
+      {friction_of_spring, "friction that limits the spring alone", false, false, false,
+       "it limits spring and dashpot together", "Set friction_cap = \"whole_force\""},
+  };
+};
+
+/// The features of a model with an instance of each, such as "contact 3".
+using FoundFeatures = std::map<EngineFeature, std::string>;
+
+/// \throws Error (bad_input) on the first feature that the engine does not carry: its name and instance, why, what to do
+void require_carried(const FoundFeatures& found, Engine engine);
+
+/// The table in Markdown: a row for each feature, a column for each engine.
+std::string engine_features_table();
+
+}  // namespace equidem

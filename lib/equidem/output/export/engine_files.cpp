@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/output/export/engine_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+const char* start_of(Engine engine) {
+  switch (engine) {
+    case Engine::lammps:
+      return "lmp -in in.equidem";
+    case Engine::yade:
+      return "yade -n -x run_equidem.py";
+    case Engine::pfc:
+      return "program call 'equidem.dat'";
+  }
+  return "";
+}
+
+const char* results_of(Engine engine) {
+  switch (engine) {
+    case Engine::lammps:
+      return "end.dump";
+    case Engine::yade:
+      return "end.txt";
+    case Engine::pfc:
+      return "equidem.sav";
+  }
+  return "";
+}
+
+}  // namespace
+
+EngineFile readme_of(const EngineModel& model, Engine engine) {
+  const std::string bodies = counted(std::ssize(model.bodies), model.body == Body::disc ? "disc" : "sphere");
+  const std::string contacts = model.bonded ? " and " + counted(std::ssize(model.bonds), "bond") : " that collide";
+  std::string text = fmt::format("{}{}{} for {}, written by equidem; start: {} (the state at the end: {}).\n",
+                                 model.title.empty() ? "" : model.title + ": ", bodies, contacts, to_string(engine),
+                                 start_of(engine), results_of(engine));
+  text +=
+      model.body == Body::disc
+          ? "Units: SI. Masses, moments of inertia, springs and forces are those of one metre of depth: kg/m, kg m, "
+            "N/m², N/m.\n"
+          : "Units: SI; masses and forces are those of whole spheres; springs N/m.\n";
+  text += fmt::format("Time step {} s, stable; {}.\n", exact(model.time_step),
+                      model.bonded ? "motions are finite here, bonds neither break nor carry forces at the start"
+                                   : "tangential springs are without force at the start");
+  return {"README", text};
+}
+
+std::int64_t steps_of(const EngineModel& model) {
+  if (!model.to_rest) return std::max<std::int64_t>(1, count_steps(model.duration, model.time_step));
+  double low = model.bodies.front().position.x, high = low, bottom = model.bodies.front().position.y, top = bottom;
+  for (const EngineBody& body : model.bodies) {
+    low = std::min(low, body.position.x), high = std::max(high, body.position.x);
+    bottom = std::min(bottom, body.position.y), top = std::max(top, body.position.y);
+  }
+  double length = 0;
+  for (const EngineBond& bond : model.bonds) length += bond.length;
+  length /= static_cast<double>(std::max<std::size_t>(1, model.bonds.size()));
+  const double across = 1 + std::max(high - low, top - bottom) / length;
+  constexpr double steps_across = 2000;
+  return static_cast<std::int64_t>(std::ceil(steps_across * across));
+}
+
+double force_scale(const EngineModel& model) {
+  double stiffness = 0, force = 0;
+  for (const EngineBond& bond : model.bonds) stiffness = std::max(stiffness, bond.springs.kN);
+  for (const EngineBody& body : model.bodies) {
+    force = std::max({force, norm(body.load.force), std::abs(body.load.moment) / body.radius,
+                      body.inertia.mass * norm(model.gravity)});
+    for (std::size_t k = 0; k < 3; ++k)
+      if (body.held[k]) force = std::max(force, stiffness * std::abs(*body.held[k]) * (k == 2 ? body.radius : 1));
+  }
+  return force;
+}
+
+}  // namespace equidem

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// LAMMPS: bpm/rotational is kN and kT at the middle of the branch, linearized (measured: data/interop.md).
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "equidem/contact/restitution.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
+#include "equidem/output/export/engine_files.hpp"
+
+namespace equidem {
+namespace {
+
+class LammpsWriter {
+ public:
+  explicit LammpsWriter(const EngineModel& model) : model_(model) {
+    for (const EngineBond& bond : model.bonds) bond_types_.try_emplace({bond.springs.kN, bond.springs.kT}, 0);
+    int type = 0;
+    for (auto& [springs, number] : bond_types_) number = ++type;
+    for (const EngineBody& body : model.bodies) types_.try_emplace(body.kind, 0);
+    type = 0;
+    for (auto& [kind, number] : types_) number = ++type;
+  }
+
+  [[nodiscard]] std::string data() const {
+    std::string text = "assembly of equidem\n\n";
+    line(text, "{} atoms\n{} atom types", model_.bodies.size(), types_.size());
+    if (model_.bonded)
+      line(text, "{} bonds\n{} bond types", model_.bonds.size(), std::max<std::size_t>(1, bond_types_.size()));
+    text += bounds();
+    line(text, "\nAtoms # {}\n", style());
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      const EngineBody& body = model_.bodies[k];
+      const double volume = 4.0 / 3 * std::numbers::pi * body.radius * body.radius * body.radius;
+      line(text, "{} {}{} {} {} {} {} 0", k + 1, model_.bonded ? "1 " : "", types_.at(body.kind),
+           exact(2 * body.radius), exact(body.inertia.mass / volume), exact(body.position.x), exact(body.position.y));
+    }
+    text += velocities();
+    if (model_.bonds.empty()) return text;
+    text += "\nBonds\n\n";
+    for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
+      const EngineBond& bond = model_.bonds[k];
+      line(text, "{} {} {} {}", k + 1, bond_types_.at({bond.springs.kN, bond.springs.kT}), bond.i + 1, bond.j + 1);
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string input() const {
+    std::string text = head();
+    text += model_.bonded ? bonds() : contacts();
+    text += actions();
+    line(text, "timestep {}", exact(model_.time_step));
+    text += "run 0\n";
+    text += "# Motion\n";
+    text += displacements();
+    line(text, "variable steps index {}", steps_of(model_));
+    text += "variable interval equal ceil(v_steps/20)\nthermo ${interval}\n";
+    if (model_.to_rest) text += stop_at_rest();
+    text += "run ${steps}\n";
+    line(text, "write_dump all custom end.dump id x y vx vy omegaz fx fy tqz{} modify format float %.17g sort id",
+         model_.bonded ? " c_turn[1] c_turn[2]" : "");
+    return text;
+  }
+
+  /// The loads along x or y as an atomfile variable; empty: there are none.
+  [[nodiscard]] std::string loads(bool along_x) const {
+    std::string rows;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      const Vec2 force = model_.bodies[k].load.force;
+      if (const double value = along_x ? force.x : force.y; value != 0) {
+        line(rows, "{} {}", k + 1, exact(value));
+        ++count;
+      }
+    }
+    return count == 0 ? "" : fmt::format("{}\n{}", count, rows);
+  }
+
+ private:
+  template <typename... Values>
+  static void line(std::string& text, fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
+    text += '\n';
+  }
+
+  [[nodiscard]] const char* style() const { return model_.bonded ? "bpm/sphere" : "sphere"; }
+
+  [[nodiscard]] double largest_radius() const {
+    return std::ranges::max_element(model_.bodies, {}, &EngineBody::radius)->radius;
+  }
+
+  [[nodiscard]] double longest_bond() const {
+    double longest = 2 * largest_radius();
+    for (const EngineBond& bond : model_.bonds) longest = std::max(longest, bond.length);
+    return longest;
+  }
+
+  /// The box: the period, or the extent with two diameters around.
+  [[nodiscard]] std::string bounds() const {
+    Vec2 low = model_.bodies.front().position, high = low;
+    for (const EngineBody& body : model_.bodies) {
+      low = {std::min(low.x, body.position.x), std::min(low.y, body.position.y)};
+      high = {std::max(high.x, body.position.x), std::max(high.y, body.position.y)};
+    }
+    const double around = 4 * largest_radius();
+    low = low - Vec2{around, around}, high = high + Vec2{around, around};
+    if (model_.period) {
+      // Lattices have discs at 0 and at less than the period.
+      low = {low.x + around, low.y + around};
+      low = {std::min(0.0, low.x), std::min(0.0, low.y)};
+      high = low + *model_.period;
+    }
+    std::string text;
+    line(text, "{} {} xlo xhi\n{} {} ylo yhi\n{} {} zlo zhi", exact(low.x), exact(high.x), exact(low.y), exact(high.y),
+         exact(-largest_radius()), exact(largest_radius()));
+    return text;
+  }
+
+  [[nodiscard]] std::string velocities() const {
+    const bool any = std::ranges::any_of(
+        model_.bodies, [](const EngineBody& body) { return body.velocity != Vec2{} || body.spin != 0; });
+    if (!any) return "";
+    std::string text = "\nVelocities\n\n";
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      const EngineBody& body = model_.bodies[k];
+      line(text, "{} {} {} 0 0 0 {}", k + 1, exact(body.velocity.x), exact(body.velocity.y), exact(body.spin));
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string head() const {
+    std::string text;
+    line(text, "# Written by equidem. SI units, {}.",
+         model_.body == Body::disc ? "masses and forces per metre of depth" : "spheres");
+    text += "# Densities of the data file are those by which a sphere has the mass of the body.\n";
+    line(text, "units si\ndimension 2\nboundary {} p\natom_style {}", model_.period ? "p p" : "s s", style());
+    line(text, "newton {}", model_.bonded ? "on off" : "off");
+    text += "comm_modify vel yes\n";
+    if (model_.bonded) line(text, "comm_modify cutoff {}", exact(2 * longest_bond()));
+    if (model_.bonded) text += "special_bonds lj 0 1 1 coul 1 1 1\n";
+    text += "read_data assembly.data\n";
+    return text;
+  }
+
+  [[nodiscard]] std::string bonds() const {
+    std::string text = "bond_style bpm/rotational break no smooth no\n";
+    for (const auto& [springs, type] : bond_types_)
+      line(text, "bond_coeff {} {} {} 0 0 1e30 1e30 1e30 1e30 0 0 0 0", type, exact(springs.first),
+           exact(springs.second));
+    if (bond_types_.empty()) text += "bond_coeff 1 1 0 0 0 1e30 1e30 1e30 1e30 0 0 0 0\n";
+    line(text, "pair_style zero {}\npair_coeff * *", exact(1.2 * longest_bond()));
+    line(text, "neighbor {} bin", exact(0.2 * longest_bond()));
+    text += "compute turn all property/atom quatw quatk\n";
+    return text;
+  }
+
+  /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
+  [[nodiscard]] bool by_mass() const {
+    if (common_mass(model_)) return !differ_between_bodies();
+    return !model_.found.contains(EngineFeature::normal_dashpots) &&
+           !model_.found.contains(EngineFeature::tangential_dashpots) && !differ_between_bodies();
+  }
+
+  [[nodiscard]] bool differ_between_bodies() const {
+    const PairProperties& first = model_.between(types_.begin()->first, types_.begin()->first);
+    for (const auto& [a, type_a] : types_)
+      for (const auto& [b, type_b] : types_)
+        if (!(model_.between(a, b) == first)) return true;
+    return false;
+  }
+
+  /// kn kt gamma_n gamma_t xmu dampflag, the dashpots over the reduced mass.
+  [[nodiscard]] std::string coefficients_by_mass(const PairProperties& pair, double mass) const {
+    const double kN = pair.stiffness, kT = stiffness_along(pair);
+    const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(kN / mass);
+    const double along = 2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * kT / mass);
+    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(normal), exact(pair.friction > 0 ? along : 0),
+                       exact(pair.friction));
+  }
+
+  /// A contact without friction has a tangential spring that carries nothing: LAMMPS divides by its stiffness.
+  [[nodiscard]] static double stiffness_along(const PairProperties& pair) {
+    return pair.stiffness * (pair.friction > 0 ? pair.tangential_ratio : 2.0 / 7);
+  }
+
+  /// The style granular: the normal dashpot 2 zeta sqrt(m k) by the restitution of zeta at zero overlap, the tangential
+  /// one as a multiple of it.
+  [[nodiscard]] std::string coefficients_by_restitution(const PairProperties& pair) const {
+    const double zeta = damping_ratio(NormalLaw::linear_dashpot, pair);
+    const double along =
+        zeta == 0 ? 0
+                  : pair.tangential_damping / zeta *
+                        std::sqrt(tangential_mass_share(model_.body) * stiffness_along(pair) / pair.stiffness);
+    return fmt::format("hooke {} {} tangential linear_history {} {} {} damping coeff_restitution{}",
+                       exact(pair.stiffness), exact(restitution_of(zeta, ContactEnd::at_zero_overlap)),
+                       exact(stiffness_along(pair)), exact(along), exact(pair.friction), limit(pair));
+  }
+
+  [[nodiscard]] static const char* limit(const PairProperties& pair) {
+    return pair.end == ContactEnd::at_zero_force && pair.restitution < 1 ? " limit_damping" : "";
+  }
+
+  [[nodiscard]] std::string contacts() const {
+    std::string text;
+    if (by_mass()) {
+      const PairProperties& pair = model_.between(types_.begin()->first, types_.begin()->first);
+      line(text, "pair_style gran/hooke/history {}{}",
+           coefficients_by_mass(pair, 0.5 * model_.bodies.front().inertia.mass), limit(pair));
+      text += "pair_coeff * *\n";
+    } else {
+      text += "pair_style granular\n";
+      for (const auto& [a, type_a] : types_)
+        for (const auto& [b, type_b] : types_)
+          if (type_a <= type_b)
+            line(text, "pair_coeff {} {} {}", type_a, type_b, coefficients_by_restitution(model_.between(a, b)));
+    }
+    line(text, "neighbor {} bin\nneigh_modify delay 0 every 1 check yes", exact(0.3 * largest_radius()));
+    return text;
+  }
+
+  /// The walls: each by a fix for each kind of bodies.
+  [[nodiscard]] std::string walls() const {
+    std::string text;
+    for (std::size_t k = 0; k < model_.walls.size(); ++k) {
+      const Wall& wall = model_.walls[k];
+      line(text, "region wall_{} plane {} {} 0 {} {} 0 side in", k, exact(wall.point.x), exact(wall.point.y),
+           exact(wall.normal.x), exact(wall.normal.y));
+      for (const auto& [kind, type] : types_) {
+        line(text, "group kind_{} type {}", type, type);
+        text += fmt::format("fix wall_{}_{} kind_{} wall/gran/region ", k, type, type);
+        if (model_.bonded) {
+          text += fmt::format("hooke/history {} {} 0 0 0 0", exact(wall.kN), exact(wall.kN));
+        } else {
+          const PairProperties& pair = model_.between(kind, wall.kind);
+          text += by_mass() ? fmt::format("hooke/history {}{}",
+                                          coefficients_by_mass(pair, model_.bodies.front().inertia.mass), limit(pair))
+                            : "granular " + coefficients_by_restitution(pair);
+        }
+        line(text, " region wall_{}", k);
+      }
+    }
+    return text;
+  }
+
+  /// The ids of bodies as `group NAME id ...` commands.
+  template <typename Chosen>
+  [[nodiscard]] std::string group_of(const std::string& name, const Chosen& chosen) const {
+    constexpr int most = 16;  // ranges in a command
+    std::string text;
+    int written = 0;
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      if (!chosen(model_.bodies[k])) continue;
+      const std::size_t first = k + 1;
+      while (k + 1 < model_.bodies.size() && chosen(model_.bodies[k + 1])) ++k;
+      if (written++ % most == 0) text += fmt::format("{}group {} id", text.empty() ? "" : "\n", name);
+      text += first == k + 1 ? fmt::format(" {}", first) : fmt::format(" {}:{}", first, k + 1);
+    }
+    return text.empty() ? text : text + "\n";
+  }
+
+  /// Gravity, loads, walls, supports, damping, motion, in the order in which they change the forces.
+  [[nodiscard]] std::string actions() const {
+    std::string text = walls();
+    if (model_.gravity != Vec2{})
+      line(text, "fix gravity all gravity {} vector {} {} 0", exact(norm(model_.gravity)),
+           exact(model_.gravity.x / norm(model_.gravity)), exact(model_.gravity.y / norm(model_.gravity)));
+    const bool x = !loads(true).empty(), y = !loads(false).empty();
+    if (x) text += "variable load_x atomfile load_x.txt\n";
+    if (y) text += "variable load_y atomfile load_y.txt\n";
+    if (x || y) line(text, "fix loads all addforce {} {} 0", x ? "v_load_x" : "0", y ? "v_load_y" : "0");
+    const std::string held_x = group_of("held_x", [](const EngineBody& body) { return body.held[0].has_value(); });
+    const std::string held_y = group_of("held_y", [](const EngineBody& body) { return body.held[1].has_value(); });
+    const std::string rigid = group_of("rigid", [](const EngineBody& body) { return body.held[2].has_value(); });
+    text += held_x + held_y + rigid;
+    if (!held_x.empty()) text += "fix hold_x held_x setforce 0 NULL NULL\n";
+    if (!held_y.empty()) text += "fix hold_y held_y setforce NULL 0 NULL\n";
+    if (model_.local_damping > 0)
+      line(text, "fix damping all damping/cundall {} {}", exact(model_.local_damping), exact(model_.local_damping));
+    const char* of_disc = model_.body == Body::disc ? " disc" : "";
+    if (rigid.empty()) {
+      line(text, "fix motion all nve/{}{}", style(), of_disc);
+    } else {
+      line(text, "group turning subtract all rigid\nfix motion turning nve/{}{}\nfix translation rigid nve", style(),
+           of_disc);
+    }
+    text += "fix plane all enforce2d\n";
+    return text;
+  }
+
+  /// The bonds have taken their reference; what supports prescribe is there from now on.
+  [[nodiscard]] std::string displacements() const {
+    std::string text;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::map<double, int> values;
+      for (const EngineBody& body : model_.bodies)
+        if (body.held[c].value_or(0) != 0) values.try_emplace(*body.held[c], 0);
+      for (const auto& [value, unused] : values) {
+        text += group_of("given", [&, given = value](const EngineBody& body) { return body.held[c] == given; });
+        if (c == 2)
+          line(text, "set group given quat 0 0 1 {}", exact(value * 180 / std::numbers::pi));
+        else
+          line(text, "displace_atoms given move {} {} 0 units box", exact(c == 0 ? value : 0),
+               exact(c == 1 ? value : 0));
+        text += "group given delete\n";
+      }
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string stop_at_rest() const {
+    std::string text = "variable unbalanced atom sqrt(fx*fx+fy*fy)\ncompute largest all reduce max v_unbalanced\n";
+    text += "variable largest equal c_largest\nthermo_style custom step time ke v_largest\n";
+    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-11 * force_scale(model_)));
+    return text;
+  }
+
+  const EngineModel& model_;
+  std::map<std::pair<double, double>, int> bond_types_;
+  std::map<int, int> types_;  // atom type of each kind of bodies
+};
+
+}  // namespace
+
+std::vector<EngineFile> lammps_files(const EngineModel& model) {
+  const LammpsWriter writer(model);
+  std::vector<EngineFile> files{{"in.equidem", writer.input()}, {"assembly.data", writer.data()}};
+  for (const bool along_x : {true, false})
+    if (std::string text = writer.loads(along_x); !text.empty())
+      files.push_back({along_x ? "load_x.txt" : "load_y.txt", std::move(text)});
+  files.push_back(readme_of(model, Engine::lammps));
+  return files;
+}
+
+}  // namespace equidem

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// YADE: ScGeom6D has its contact point at the radius of the first body less half the overlap. With
+/// avoidGranularRatcheting = False its slip is that of the material points there, our law for small motions.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "equidem/core/text.hpp"
+#include "equidem/output/export/engine_files.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::string_view bodies_of_bonds = R"(
+O.materials.append(CohFrictMat(young=1, poisson=1, density=1, frictionAngle=0, isCohesive=True, normalCohesion=1e30,
+                               shearCohesion=1e30, momentRotationLaw=False, fragile=False))
+)";
+
+constexpr std::string_view make_bodies = R"(
+PRESCRIBED = []
+for number, row in enumerate(BODIES.strip().split("\n")):
+    words = row.split()
+    x, y, radius, mass, moment, vx, vy, spin, fx, fy, torque = map(float, words[:11])
+    body = utils.sphere((x, y, 0), radius, material=int(words[11]))
+    body.state.mass, body.state.inertia = mass, (moment, moment, moment)
+    held = words[12:]
+    body.state.blockedDOFs = "zXY" + "".join(letter for letter, value in zip("xyZ", held) if value != "-")
+    body.state.vel, body.state.angVel = (vx, vy, 0), (0, 0, spin)
+    O.bodies.append(body)
+    if fx or fy:
+        O.forces.setPermF(number, (fx, fy, 0))
+    if torque:
+        O.forces.setPermT(number, (0, 0, torque))
+    given = [0.0 if value == "-" else float(value) for value in held]
+    if any(given):
+        PRESCRIBED.append((number, given))
+)";
+
+constexpr std::string_view make_bonds = R"(
+O.engines = [
+    ForceResetter(),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom6D(avoidGranularRatcheting=False)],
+        [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True, setCohesionOnNewContacts=True)],
+        [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=False)],
+    ),
+    NewtonIntegrator(damping=DAMPING, gravity=GRAVITY),
+]
+for row in BONDS.strip().split("\n") if BONDS.strip() else []:
+    i, j, kn, ks = row.split()
+    bond = utils.createInteraction(int(i), int(j))
+    bond.phys.kn, bond.phys.ks = float(kn), float(ks)
+    bond.phys.normalAdhesion = bond.phys.shearAdhesion = 1e30 * float(kn)
+    bond.phys.unp = bond.geom.penetrationDepth  # no force at the start
+)";
+
+constexpr std::string_view make_contacts = R"(
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+        [
+            Ip2_FrictMat_FrictMat_FrictPhys(
+                kn=MatchMaker(matches=[(a, b, kn) for a, b, kn, ks, angle in PAIRS]),
+                ks=MatchMaker(matches=[(a, b, ks) for a, b, kn, ks, angle in PAIRS]),
+                frictAngle=MatchMaker(matches=[(a, b, angle) for a, b, kn, ks, angle in PAIRS]),
+            )
+        ],
+        [Law2_ScGeom_FrictPhys_CundallStrack()],
+    ),
+    NewtonIntegrator(damping=DAMPING, gravity=GRAVITY),
+]
+)";
+
+constexpr std::string_view run_to_rest = R"(
+
+def unbalanced():
+    """The largest force on a body in the directions in which it is free, N/m."""
+    largest = 0.0
+    for body in O.bodies:
+        force, mass, blocked = O.forces.f(body.id), body.state.mass, body.state.blockedDOFs
+        free = [force[k] + mass * GRAVITY[k] for k in (0, 1) if "xy"[k] not in blocked]
+        largest = max(largest, math.hypot(*free)) if free else largest
+    return largest
+
+
+RAMP = 1000  # steps over which prescribed displacements grow: tangential forces follow velocities
+for number, (ux, uy, turn) in PRESCRIBED:
+    state = O.bodies[number].state
+    state.vel, state.angVel = (ux / (RAMP * O.dt), uy / (RAMP * O.dt), 0), (0, 0, turn / (RAMP * O.dt))
+if PRESCRIBED:
+    O.run(RAMP, True)
+for number, given in PRESCRIBED:
+    state = O.bodies[number].state
+    state.vel, state.angVel = (0, 0, 0), (0, 0, 0)
+while O.iter < STEPS:
+    O.run(500, True)
+    if unbalanced() < TOLERANCE:
+        break
+)";
+
+constexpr std::string_view run_steps = R"(
+O.run(STEPS, True)
+)";
+
+constexpr std::string_view write_end = R"(
+with open("end.txt", "w") as file:
+    file.write("# x y rotation ux uy vx vy spin, m, rad, s\n")
+    for body in O.bodies:
+        if not isinstance(body.shape, Sphere):
+            continue
+        state = body.state
+        numbers = (*state.pos[:2], state.rot()[2], *state.displ()[:2], *state.vel[:2], state.angVel[2])
+        file.write(" ".join("%.17g" % number for number in numbers) + "\n")
+with open("end_contacts.txt", "w") as file:
+    file.write("# i j overlap, m; forces on j: normal x y, tangential x y, N/m\n")
+    for contact in O.interactions:
+        if contact.isReal:
+            numbers = (contact.geom.penetrationDepth, *contact.phys.normalForce[:2], *contact.phys.shearForce[:2])
+            file.write("%d %d " % (contact.id1, contact.id2) + " ".join("%.17g" % number for number in numbers) + "\n")
+print("step", O.iter, "of", STEPS)
+)";
+
+class YadeWriter {
+ public:
+  explicit YadeWriter(const EngineModel& model) : model_(model) {}
+
+  [[nodiscard]] std::string script() const {
+    std::string text = fmt::format(
+        "# Written by equidem. SI units, {}.\n# yade -n -x run_equidem.py\nimport math\n\nfrom yade import utils\n\n",
+        model_.body == Body::disc ? "masses and forces per metre of depth" : "spheres");
+    text += fmt::format("STEPS = {}\n", steps_of(model_));
+    text += fmt::format("DAMPING = {}  # share of the resultant that acts against the velocity\n",
+                        exact(model_.local_damping));
+    text += fmt::format("GRAVITY = ({}, {}, 0.0)\n", exact(model_.gravity.x), exact(model_.gravity.y));
+    if (model_.to_rest)
+      text += fmt::format("TOLERANCE = {}  # N/m, of the unbalanced force\n", exact(1e-11 * force_scale(model_)));
+    text += bodies();
+    if (model_.bonded) text += bonds();
+    text += model_.bonded ? bodies_of_bonds : materials();
+    text += make_bodies;
+    if (!model_.bonded) text += walls();
+    text += model_.bonded ? make_bonds : make_contacts;
+    text += fmt::format("O.dt = {}\n# Motion\n", exact(model_.time_step));
+    text += model_.to_rest ? run_to_rest : run_steps;
+    text += write_end;
+    return text;
+  }
+
+ private:
+  /// The loops above split rows by '\n' and words by ' '.
+  [[nodiscard]] std::string bodies() const {
+    std::string text =
+        "# x y radius mass moment_of_inertia vx vy spin Fx Fy moment material, held: ux uy rotation or -\nBODIES = "
+        "\"\"\"\n";
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      const EngineBody& body = model_.bodies[k];
+      const double radius = model_.bonded ? model_.lever_radii[k] : body.radius;
+      for (const double value :
+           {body.position.x, body.position.y, radius, body.inertia.mass, body.inertia.moment, body.velocity.x,
+            body.velocity.y, body.spin, body.load.force.x, body.load.force.y, body.load.moment})
+        text += exact(value) + " ";
+      text += fmt::format("{}", model_.bonded ? 0 : body.kind);
+      for (const auto& held : body.held) text += " " + (held ? exact(*held) : "-");
+      text += '\n';
+    }
+    return text + "\"\"\"\n";
+  }
+
+  [[nodiscard]] std::string bonds() const {
+    std::string text = "# i j kn ks\nBONDS = \"\"\"\n";
+    for (const EngineBond& bond : model_.bonds)
+      fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", bond.i, bond.j, exact(bond.springs.kN),
+                     exact(bond.springs.kT));
+    return text + "\"\"\"\n";
+  }
+
+  /// A material for each kind; their stiffness and friction are those of PAIRS.
+  [[nodiscard]] std::string materials() const {
+    std::string text = "# material material kn ks angle_of_friction\nPAIRS = [\n";
+    for (int a = 0; a < model_.kinds; ++a)
+      for (int b = a; b < model_.kinds; ++b) {
+        const PairProperties& pair = model_.between(a, b);
+        const double ratio = pair.friction > 0 ? pair.tangential_ratio : 2.0 / 7;
+        text += fmt::format("    ({}, {}, {}, {}, {}),\n", a, b, exact(pair.stiffness), exact(ratio * pair.stiffness),
+                            exact(std::atan(pair.friction)));
+      }
+    text += fmt::format("]\nfor _ in range({}):\n", model_.kinds);
+    return text + "    O.materials.append(FrictMat(young=1, poisson=1, density=1, frictionAngle=0))\n";
+  }
+
+  [[nodiscard]] std::string walls() const {
+    std::string text;
+    for (const Wall& wall : model_.walls) {
+      const bool along_x = wall.normal.x != 0;
+      const double place = along_x ? wall.point.x : wall.point.y;
+      const int sense = (along_x ? wall.normal.x : wall.normal.y) > 0 ? 1 : -1;
+      text += fmt::format("O.bodies.append(utils.wall({}, {}, sense={}, material={}))\n", exact(place), along_x ? 0 : 1,
+                          sense, wall.kind);
+    }
+    return text;
+  }
+
+  const EngineModel& model_;
+};
+
+}  // namespace
+
+std::vector<EngineFile> yade_files(const EngineModel& model) {
+  return {{"run_equidem.py", YadeWriter(model).script()}, readme_of(model, Engine::yade)};
+}
+
+}  // namespace equidem
