@@ -14,17 +14,22 @@ namespace {
 /// A type of MPI of several doubles, for the life of one exchange.
 class DiscValues {
  public:
-  explicit DiscValues(int per_disc) {
+  /// PETSc does not add types of one double.
+  explicit DiscValues(int per_disc) : made_(per_disc > 1) {
+    if (!made_) return;
     MPI_Type_contiguous(per_disc, MPI_DOUBLE, &type_);
     MPI_Type_commit(&type_);
   }
-  ~DiscValues() { MPI_Type_free(&type_); }
+  ~DiscValues() {
+    if (made_) MPI_Type_free(&type_);
+  }
   DiscValues(const DiscValues&) = delete;
   DiscValues& operator=(const DiscValues&) = delete;
   [[nodiscard]] MPI_Datatype type() const { return type_; }
 
  private:
-  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+  bool made_;
+  MPI_Datatype type_ = MPI_DOUBLE;
 };
 
 }  // namespace

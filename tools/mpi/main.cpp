@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem-mpi: statics on several processes, by PETSc.
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,11 +71,10 @@ void start_without_threads(char** argv) {
   execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
 }
 
-bool is_verb(std::string_view word) {
-  for (const equidem::Verb& verb : equidem::parallel_verbs) {
-    if (word == verb.name) return true;
-  }
-  return false;
+/// Help is printed without MPI: installers ask for manual pages where none can be started.
+bool asks_for_help(int argc, char** argv) {
+  constexpr std::string_view words[] = {"help", "--help", "--version"};
+  return argc > 1 && std::ranges::find(words, argv[1]) != std::end(words);
 }
 
 }  // namespace
@@ -84,14 +85,13 @@ int main(int argc, char** argv) {
   return_freed_memory();
   set_thread_count(1);
   Words words = divided(argc, argv);
-  const bool parallel = argc > 1 && is_verb(argv[1]);
+  const bool parallel = !asks_for_help(argc, argv);
   if (parallel) {
     int count = static_cast<int>(words.of_petsc.size()) - 1;
     char** list = words.of_petsc.data();
     if (PetscInitialize(&count, &list, nullptr, nullptr) != 0) return 1;
     PetscPopSignalHandler();
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-    PetscOptionsSetValue(nullptr, "-options_left", "no");
     silence_other_ranks();
   }
   const Program program{

@@ -235,7 +235,8 @@ Results rank_results(const Ranks& ranks, const petsc::Network& network, const pe
       .note("; in all ")
       .add("messages", "", static_cast<std::int64_t>(messages), "message", {Shown::count})
       .add("message_bytes", "of", bytes, "", {Shown::bytes})
-      .add("sums_over_ranks", "", static_cast<std::int64_t>(sums), "sum over all ranks", {Shown::count});
+      .add("sums_over_ranks", "", static_cast<std::int64_t>(sums), "sum", {Shown::count})
+      .note(" over all ranks");
   return out;
 }
 
