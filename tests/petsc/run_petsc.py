@@ -145,7 +145,7 @@ def blocks(folder):
     yield "points of chance", CASES / "delaunay_tension.toml", ("--set", "assembly.discs=900", "--set",
                                                                 "assembly.points=random", "--set", "assembly.aspect=3")
     yield "unequal discs", CASES / "delaunay_tension.toml", ("--set", "assembly.discs=900", "--set", "assembly.radius=none",
-                                                             "--set", "assembly.radii=[0.004, 0.008]")
+                                                             "--set", "assembly.radii={smallest = 0.004, largest = 0.008}")
 
 
 NUMBERS = ("poisson_ratio", "stiffness_ratio", "fitted_poisson_ratio", "energy", "largest_deformation")
@@ -298,13 +298,23 @@ def start_long():
     words, environment = command(2, "solve", CASES / "abe1996_fig6.toml", "--set", "assembly.columns=401", "--set",
                                  "assembly.rows=401", "-equidem_pc_type", "jacobi", "-equidem_ksp_max_it", "100000")
     process = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    for _ in range(600):
-        ranks = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout.split()
-        if len(ranks) >= 2:
-            break
+    ranks = []
+    while len(ranks) < 2 and process.poll() is None:
         time.sleep(0.05)
+        children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="utf-8")
+        ranks = [int(rank) for rank in children.split()]
     time.sleep(2)
-    return process, [int(rank) for rank in ranks]
+    assert process.poll() is None, process.communicate()
+    return process, ranks
+
+
+def lives(process):
+    """A process that has ended may remain as a zombie where nobody waits for it."""
+    try:
+        status = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return False
+    return status.rpartition(")")[2].split()[0] not in "ZX"
 
 
 def a_rank_that_dies_ends_all(_):
@@ -314,7 +324,7 @@ def a_rank_that_dies_ends_all(_):
     assert process.returncode != 0, errors
     print(process.returncode, errors)
     for rank in ranks:
-        assert not pathlib.Path(f"/proc/{rank}").exists(), rank
+        assert not lives(rank), rank
 
 
 def an_interrupted_run_ends(_):
@@ -324,7 +334,7 @@ def an_interrupted_run_ends(_):
     print(process.returncode, errors)
     assert process.returncode != 0, errors
     for rank in ranks:
-        assert not pathlib.Path(f"/proc/{rank}").exists(), rank
+        assert not lives(rank), rank
 
 
 if __name__ == "__main__":
