@@ -12,8 +12,8 @@
 
 namespace equidem::petsc {
 
-/// Blocks in the order: on the diagonal of each owned disc; for every contact those of (i, j) and (j, i) and, where j is
-/// a ghost, of (j, j). Entries of rows of other ranks are sent there by PETSc and added. Rows and columns of held
+/// Blocks in the order: on the diagonal of each owned disc; for every contact those of (i, j) and (j, i) and, where j
+/// is a ghost, of (j, j). Entries of rows of other ranks are sent there by PETSc and added. Rows and columns of held
 /// components are those of the unit matrix times the stiffest spring.
 struct Coordinates {
   std::vector<PetscInt> rows, columns;

@@ -10,6 +10,7 @@
 
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/statics/equilibrium.hpp"
+
 #include "petsc/refinement.hpp"
 
 namespace equidem::petsc {
@@ -17,8 +18,8 @@ namespace equidem::petsc {
 /// The numbers are those of the whole, the same on all ranks; motions and forces those of the part.
 struct PartEquilibrium {
   Equilibrium state;
-  Tensor2 stress;                ///< Pa, mean; 0 where the area is not known
-  double moment_per_area = 0;    ///< Pa
+  Tensor2 stress;                  ///< Pa, mean; 0 where the area is not known
+  double moment_per_area = 0;      ///< Pa
   double largest_deformation = 0;  ///< of a contact, over the sum of its radii
 };
 
@@ -28,12 +29,10 @@ class PartSolver {
   /// \param known_to_be_held no motion without energy is left: check_rigidity has seen the whole
   /// \throws Error on all ranks, as EquilibriumSolver where it does not need the whole assembly for it
   PartSolver(const Ranks& ranks, const Part& part, const Whole& whole, const ContactSprings& springs,
-             const Effects& effects, std::span<const Support> supports, SolverMethod method,
-             bool known_to_be_held);
+             const Effects& effects, std::span<const Support> supports, SolverMethod method, bool known_to_be_held);
 
   [[nodiscard]] PartEquilibrium solve(const LoadCase& loads);
   [[nodiscard]] const Network& network() const { return network_; }
-  [[nodiscard]] PetscSolver& solver() { return *solver_; }
 
  private:
   [[nodiscard]] std::vector<double> assemble(const LoadCase& loads) const;

@@ -135,8 +135,8 @@ BlockGrid::BlockGrid(const RowLattice& lattice, int ranks) : lattice_(lattice) {
   const LatticeOptions& options = lattice.options();
   const std::int64_t discs = lattice.first(options.rows);
   if (ranks > discs) {
-    bad_input(fmt::format("{} ranks are to share {}", ranks, counted(discs, "disc")), "each rank needs a disc of its own",
-              "Start fewer ranks (mpirun -n)");
+    bad_input(fmt::format("{} ranks are to share {}", ranks, counted(discs, "disc")),
+              "each rank needs a disc of its own", "Start fewer ranks (mpirun -n)");
   }
   const double height = lattice.pattern().row_distance / (2 * options.radius);
   double shortest = std::numeric_limits<double>::infinity();
@@ -182,8 +182,8 @@ std::int64_t BlockGrid::discs_below(const Block& block, int row) const {
 Part lattice_part(const Ranks& ranks, const RowLattice& lattice) {
   check_row_lattice(lattice.options(), lattice.pattern());
   const double discs = static_cast<double>(lattice.first(lattice.options().rows)) / ranks.count();
-  require_memory(bytes_of_network(discs), fmt::format("a part of {} discs needs about",
-                                                      grouped(static_cast<std::int64_t>(discs))));
+  require_memory(bytes_of_network(discs),
+                 fmt::format("a part of {} discs needs about", grouped(static_cast<std::int64_t>(discs))));
   return BlockMaker(ranks, lattice).make();
 }
 

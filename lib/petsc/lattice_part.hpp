@@ -4,6 +4,7 @@
 #pragma once
 
 #include "equidem/assembly/lattices/row_lattice.hpp"
+
 #include "petsc/part.hpp"
 
 namespace equidem::petsc {
@@ -26,8 +27,6 @@ class BlockGrid {
   [[nodiscard]] int rank_of(int row, int column) const;
   /// Discs of a block in the rows from its first one up to `row`.
   [[nodiscard]] std::int64_t discs_below(const Block& block, int row) const;
-  [[nodiscard]] int across() const { return across_; }
-  [[nodiscard]] int along() const { return along_; }
 
  private:
   [[nodiscard]] int cut(int count, int parts, int part) const {
@@ -39,8 +38,8 @@ class BlockGrid {
   int along_ = 1;   ///< blocks one above the other
 };
 
-/// The block of a rank with its ghosts; no rank holds more than that and the sides. Names are the numbers of row_lattice.
-/// \throws Error (bad_input) as row_lattice; where there are more ranks than discs
+/// The block of a rank with its ghosts; no rank holds more than that and the sides. Names are the numbers of
+/// row_lattice. \throws Error (bad_input) as row_lattice; where there are more ranks than discs
 Part lattice_part(const Ranks& ranks, const RowLattice& lattice);
 
 }  // namespace equidem::petsc

@@ -150,8 +150,9 @@ void check_held(const Network& network, const Effects& effects) {
   const double left = gram[2] - square_over(gram[1], gram[0]) - square_over(gram[4], gram[3]);
   const bool turns = !assembly.periodic() && gram[5] == 0 && !effects.restrained &&
                      left <= negligible * std::max(gram[2], 1.0) * std::max(1.0, gram[0] + gram[3]);
-  if (!x && !y) refuse_free(false, "translation along x and along y, and rotation",
-                            "Hold one disc in x and y, and another one across the line that joins them");
+  if (!x && !y)
+    refuse_free(false, "translation along x and along y, and rotation",
+                "Hold one disc in x and y, and another one across the line that joins them");
   if (!x) refuse_free(true, "translation along x", "Hold a disc in x");
   if (!y) refuse_free(true, "translation along y", "Hold a disc in y");
   if (turns) refuse_free(true, "rotation", "Hold one more disc, along a line that does not pass through that point");

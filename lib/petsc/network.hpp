@@ -13,6 +13,7 @@
 #include "equidem/linear/spring_network.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/supports.hpp"
+
 #include "petsc/part.hpp"
 
 namespace equidem::petsc {
@@ -75,8 +76,8 @@ class Network {
   std::int64_t free_count_ = 0, free_rotations_ = 0;
 };
 
-/// Refuse supports that leave a rigid motion of the assembly free, or discs that can counter-rotate on a square lattice.
-/// \throws Error (bad_input) on all ranks
+/// Refuse supports that leave a rigid motion of the assembly free, or discs that can counter-rotate on a square
+/// lattice. \throws Error (bad_input) on all ranks
 void check_held(const Network& network, const Effects& effects);
 
 }  // namespace equidem::petsc

@@ -56,8 +56,7 @@ Halo::Halo(const Ranks& ranks, const Part& part, std::span<const std::int64_t> b
   for (PetscInt k = 0; k < mirrors; ++k) {
     if (mirror_ranks[k] == ranks.rank()) continue;
     ++neighbours_;
-    ++traffic_.messages;
-    traffic_.bytes += static_cast<double>(first[k + 1] - first[k]) * sizeof(double);
+    bytes_ += static_cast<double>(first[k + 1] - first[k]) * sizeof(double);
   }
 }
 

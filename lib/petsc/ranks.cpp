@@ -34,12 +34,6 @@ double Ranks::largest(double number) const {
   return number;
 }
 
-std::int64_t Ranks::sum_below(std::int64_t number) const {
-  std::int64_t below = 0;
-  MPI_Exscan(&number, &below, 1, MPI_INT64_T, MPI_SUM, communicator_);
-  return first() ? 0 : below;
-}
-
 std::vector<std::int64_t> Ranks::joined(std::span<const std::int64_t> numbers) const {
   const int size = static_cast<int>(numbers.size());
   std::vector<int> sizes(static_cast<std::size_t>(count_)), places(sizes.size(), 0);
@@ -49,13 +43,6 @@ std::vector<std::int64_t> Ranks::joined(std::span<const std::int64_t> numbers) c
   MPI_Allgatherv(numbers.data(), size, MPI_INT64_T, all.data(), sizes.data(), places.data(), MPI_INT64_T,
                  communicator_);
   return all;
-}
-
-void Ranks::spread(std::string& text) const {
-  auto size = static_cast<std::int64_t>(text.size());
-  MPI_Bcast(&size, 1, MPI_INT64_T, 0, communicator_);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, communicator_);
 }
 
 void Ranks::together(const std::function<void()>& work) const {

@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The processes ("ranks") of a parallel program: sums over them, errors that all of them throw, messages that are
-/// counted.
+/// The processes ("ranks") of a parallel program: sums over them, errors that all of them throw.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <petscsys.h>
 
 namespace equidem::petsc {
-
-/// Messages and bytes that this rank has sent.
-struct Traffic {
-  std::int64_t messages = 0;
-  double bytes = 0;
-};
 
 /// All members that communicate are called by all ranks, in the same order.
 class Ranks {
@@ -37,12 +29,8 @@ class Ranks {
   [[nodiscard]] double largest(double number) const;
   [[nodiscard]] double smallest(double number) const { return -largest(-number); }
   [[nodiscard]] bool any(bool holds) const { return largest(holds ? 1 : 0) > 0; }
-  /// The sum over the ranks below this one.
-  [[nodiscard]] std::int64_t sum_below(std::int64_t number) const;
   /// The numbers of all ranks, one after another.
   [[nodiscard]] std::vector<std::int64_t> joined(std::span<const std::int64_t> numbers) const;
-  /// Rank 0 gives the text to all.
-  void spread(std::string& text) const;
 
   /// Calls work, which does not communicate. Where it throws an Error on some ranks, all throw that of the lowest of
   /// them.

@@ -8,6 +8,7 @@
 
 #include "equidem/core/vector.hpp"
 #include "equidem/statics/internal_force.hpp"
+
 #include "petsc/solver.hpp"
 
 namespace equidem::petsc {

@@ -18,7 +18,7 @@ namespace {
 class Packed {
  public:
   template <typename Value>
-    requires std::is_trivially_copyable_v<Value>
+  requires std::is_trivially_copyable_v<Value>
   void operator()(const Value& value) {
     const auto* first = reinterpret_cast<const char*>(&value);
     bytes.insert(bytes.end(), first, first + sizeof value);
@@ -45,7 +45,7 @@ class Unpacked {
   explicit Unpacked(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
 
   template <typename Value>
-    requires std::is_trivially_copyable_v<Value>
+  requires std::is_trivially_copyable_v<Value>
   void operator()(Value& value) {
     std::memcpy(&value, bytes_.data() + at_, sizeof value);
     at_ += sizeof value;

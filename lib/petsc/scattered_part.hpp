@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "equidem/contact/contact_springs.hpp"
+
 #include "petsc/part.hpp"
 
 namespace equidem::petsc {

@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
+
 #include "petsc/coordinates.hpp"
 
 namespace equidem::petsc {
@@ -129,8 +130,7 @@ void PetscSolver::set_near_null_space() {
 
 void PetscSolver::set_up(SolverMethod method) {
   const Network& n = network_;
-  const bool eliminates =
-      method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
+  const bool eliminates = method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
   check(KSPCreate(n.ranks().communicator(), &solver_));
   check(KSPSetOptionsPrefix(solver_, prefix));
   check(KSPSetOperators(solver_, matrix_, matrix_));
@@ -151,8 +151,7 @@ void PetscSolver::set_up(SolverMethod method) {
   check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
   PetscBool elimination = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &elimination));
-  if (elimination == PETSC_FALSE)
-    check(KSPSetConvergenceTest(solver_, Interruption::test, interruption_, nullptr));
+  if (elimination == PETSC_FALSE) check(KSPSetConvergenceTest(solver_, Interruption::test, interruption_, nullptr));
   n.ranks().stop_if_interrupted();
   check(KSPSetUp(solver_));
   n.ranks().stop_if_interrupted();
@@ -191,12 +190,6 @@ std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) 
   }
   n.halo().mirror(d, n.unknowns().per_disc);
   return iterations;
-}
-
-bool PetscSolver::direct() const {
-  PetscBool elimination = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &elimination));
-  return elimination == PETSC_TRUE;
 }
 
 std::string PetscSolver::name() const {

@@ -12,12 +12,13 @@
 
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
+
 #include "petsc/network.hpp"
 
 namespace equidem::petsc {
 
-/// The rows of K by PETSc: conjugate gradients with its multigrid of aggregates (GAMG) where no spring is negative, else
-/// MUMPS; a method of the case that eliminates means MUMPS, one that iterates GAMG.
+/// The rows of K by PETSc: conjugate gradients with its multigrid of aggregates (GAMG) where no spring is negative,
+/// else MUMPS; a method of the case that eliminates means MUMPS, one that iterates GAMG.
 class PetscSolver {
  public:
   /// Assembles K and sets the solver up. Held components have rows of the unit matrix times a spring.
@@ -36,7 +37,6 @@ class PetscSolver {
 
   /// "PETSc 3.18.5: cg, gamg on 2 ranks".
   [[nodiscard]] std::string name() const;
-  [[nodiscard]] bool direct() const;
   /// Of all ranks: entries of K, bytes of grids or factor as PETSc tells them (0: not known).
   [[nodiscard]] double entries() const;
   [[nodiscard]] double grid_bytes() const;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "equidem/homogenize/effective_stiffness.hpp"
+
 #include "petsc/refinement.hpp"
 
 namespace equidem::petsc {

@@ -5,6 +5,7 @@
 
 #include "equidem/assembly/lattices/row_lattice.hpp"
 #include "equidem/homogenize/tension_test.hpp"
+
 #include "petsc/equilibrium.hpp"
 
 namespace equidem::petsc {

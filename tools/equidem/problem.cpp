@@ -202,8 +202,7 @@ LargestDeformation largest_deformation(const Assembly& assembly, const ContactSp
 }
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads) {
-  SolvedCase result{
-      .name = loads.name, .equilibrium = solver.solve(loads.loads)};
+  SolvedCase result{.name = loads.name, .equilibrium = solver.solve(loads.loads)};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
     result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);

@@ -18,9 +18,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/output/quantities.hpp"
-#include "petsc/solver.hpp"
 
 #include "mpi_verbs.hpp"
+#include "petsc/solver.hpp"
 #include "rank_program.hpp"
 
 namespace {
@@ -31,15 +31,15 @@ constexpr const char* footer = R"(Examples:
   mpirun -n 4 equidem-mpi homogenize cell.toml -equidem_pc_type hypre
   mpirun -n 2 equidem-mpi solve block.toml --set solver.method=multifrontal      by MUMPS
 
-Words that begin with one dash are options of PETSc, with the words that follow them. -equidem_ begins the names of those
-of the solver (-equidem_ksp_rtol, -equidem_pc_type, ...); -log_view measures. Options that PETSc does not use are named at
-the end.
+Words that begin with one dash are options of PETSc, with the words that follow them. -equidem_ begins the names of
+those of the solver (-equidem_ksp_rtol, -equidem_pc_type, ...); -log_view measures. Options that PETSc does not use are
+named at the end.
 
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted. Where a
 process dies, mpirun ends the others, and its exit code is not 0.)";
 
-/// The words of the command line for equidem and for PETSc: a word with one dash and a letter begins an option of PETSc,
-/// one with two dashes an option of equidem; others belong to the option before them.
+/// The words of the command line for equidem and for PETSc: a word with one dash and a letter begins an option of
+/// PETSc, one with two dashes an option of equidem; others belong to the option before them.
 struct Words {
   std::vector<char*> own, of_petsc;
 };

@@ -9,12 +9,12 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/bounds.hpp"
-#include "petsc/stiffness.hpp"
 
 #include "homogenize/homogenize_results.hpp"
 #include "mpi_verbs.hpp"
 #include "part_files.hpp"
 #include "part_problem.hpp"
+#include "petsc/stiffness.hpp"
 #include "rank_program.hpp"
 
 namespace equidem {
@@ -83,7 +83,8 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
   const char* status = result.unstable_modes < 0 ? "unjudged" : "solved";
-  deliver(options, status, std::move(all), std::move(times), [&](Results&) { write_case(options, p.problem.resolved); });
+  deliver(options, status, std::move(all), std::move(times),
+          [&](Results&) { write_case(options, p.problem.resolved); });
 }
 
 }  // namespace

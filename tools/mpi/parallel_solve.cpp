@@ -8,11 +8,11 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/core/text.hpp"
-#include "petsc/tension.hpp"
 
 #include "mpi_verbs.hpp"
 #include "part_files.hpp"
 #include "part_problem.hpp"
+#include "petsc/tension.hpp"
 #include "rank_program.hpp"
 #include "solve/solve_results.hpp"
 
@@ -71,9 +71,8 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
   Results all = solve_results(problem, part_problem_results(ranks, p), results);
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
-  deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
-    write_case(options, problem.resolved);
-  });
+  deliver(options, results.front().status(), std::move(all), std::move(times),
+          [&](Results&) { write_case(options, problem.resolved); });
 }
 
 }  // namespace

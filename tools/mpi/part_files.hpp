@@ -8,9 +8,9 @@
 #include <string>
 
 #include "equidem/contact/frame.hpp"
-#include "petsc/part.hpp"
 
 #include "command.hpp"
+#include "petsc/part.hpp"
 
 namespace equidem {
 

@@ -11,6 +11,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
+
 #include "petsc/delaunay_part.hpp"
 #include "petsc/lattice_part.hpp"
 #include "petsc/stiffness.hpp"
@@ -36,9 +37,8 @@ void check_case(const Case& resolved, bool homogenize) {
   }
   const auto& boundary = resolved.homogenize.boundary;
   if (homogenize && boundary && *boundary != Boundary::periodic) {
-    bad_input_at(resolved.where("homogenize.boundary"),
-                 fmt::format("the boundary is \"{}\"", to_string(*boundary)), "equidem-mpi homogenizes periodic cells",
-                 "Leave it out, or use 'equidem homogenize'");
+    bad_input_at(resolved.where("homogenize.boundary"), fmt::format("the boundary is \"{}\"", to_string(*boundary)),
+                 "equidem-mpi homogenizes periodic cells", "Leave it out, or use 'equidem homogenize'");
   }
   if (homogenize || acts(resolved)) return;
   bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
@@ -58,10 +58,9 @@ void add_groups(Part& part, const Case& resolved) {
     DiscGroup& group = part.assembly.groups[wanted.name];
     for (std::int32_t d = 0; d < part.owned; ++d) {
       const Vec2 x = part.assembly.centres[static_cast<std::size_t>(d)];
-      const bool inside = wanted.box
-                              ? x.x >= wanted.box->low.x && x.x <= wanted.box->high.x && x.y >= wanted.box->low.y &&
-                                    x.y <= wanted.box->high.y
-                              : std::ranges::binary_search(names, part.names[static_cast<std::size_t>(d)]);
+      const bool inside = wanted.box ? x.x >= wanted.box->low.x && x.x <= wanted.box->high.x &&
+                                           x.y >= wanted.box->low.y && x.y <= wanted.box->high.y
+                                     : std::ranges::binary_search(names, part.names[static_cast<std::size_t>(d)]);
       if (inside) group.discs.push_back(d);
     }
   }
@@ -100,8 +99,8 @@ BuiltSprings springs_of(const PartProblem& p) {
   const MaterialCase& material = *resolved.material;
   const bool voronoi = resolved.weighting == SpringWeighting::voronoi;
   const double z = 2 * static_cast<double>(p.whole.contacts) / static_cast<double>(p.whole.discs);
-  const IsotropicMeasures measures = voronoi ? IsotropicMeasures{0.5, 1.0}
-                                             : IsotropicMeasures{p.whole.solid_fraction, z / (2 * std::numbers::pi)};
+  const IsotropicMeasures measures =
+      voronoi ? IsotropicMeasures{0.5, 1.0} : IsotropicMeasures{p.whole.solid_fraction, z / (2 * std::numbers::pi)};
   try {
     resolved.springs = springs_for(material.moduli, isotropic_relation, measures,
                                    material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
@@ -126,7 +125,8 @@ void make_part(const Ranks& ranks, PartProblem& p, bool homogenize) {
     case AssemblyKind::lattice:
       ranks.together([&] {
         if (wanted.arrangement->rows == nullptr) {
-          bad_input_at(where, fmt::format("equidem-mpi does not make the lattice \"{}\" in parts", wanted.arrangement->name),
+          bad_input_at(where,
+                       fmt::format("equidem-mpi does not make the lattice \"{}\" in parts", wanted.arrangement->name),
                        "its file gives no rows", "Write the assembly into a file, and solve that");
         }
         try {
@@ -159,7 +159,8 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
   std::unique_ptr<PartProblem> made;
   ranks.together([&] {
     if (options.dry_run)
-      bad_input("equidem-mpi has no --dry-run", "what it takes is planned by hand", "See data/petsc.md, or leave it out");
+      bad_input("equidem-mpi has no --dry-run", "what it takes is planned by hand",
+                "See data/petsc.md, or leave it out");
     made = std::make_unique<PartProblem>(read_case(options));
     check_case(made->problem.resolved, homogenize);
   });
@@ -219,8 +220,7 @@ Results rank_results(const Ranks& ranks, const petsc::Network& network, const pe
   const double messages = ranks.largest(after.messages - before.messages);
   const double bytes = ranks.largest(after.bytes - before.bytes);
   const double sums = ranks.largest(after.sums - before.sums);
-  const auto exchange = network.halo().traffic();
-  const double exchanged = ranks.largest(exchange.bytes) * static_cast<double>(network.block());
+  const double exchanged = ranks.largest(network.halo().bytes()) * static_cast<double>(network.block());
   const auto neighbours = static_cast<std::int64_t>(ranks.largest(network.halo().neighbours()));
   Results out;
   out.line("ranks")

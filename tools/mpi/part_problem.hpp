@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "petsc/equilibrium.hpp"
-
 #include "command.hpp"
+#include "petsc/equilibrium.hpp"
 #include "problem.hpp"
 
 namespace equidem {

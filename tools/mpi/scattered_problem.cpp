@@ -9,9 +9,9 @@
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/rigidity.hpp"
-#include "petsc/scattered_part.hpp"
 
 #include "part_problem.hpp"
+#include "petsc/scattered_part.hpp"
 
 namespace equidem {
 namespace {
@@ -22,9 +22,7 @@ struct WholeProblem {
   Effects effects;
   LoadBearingNetwork bearing;
 
-  [[nodiscard]] const Assembly& assembly() const {
-    return bearing.part ? bearing.part->assembly : problem->assembly;
-  }
+  [[nodiscard]] const Assembly& assembly() const { return bearing.part ? bearing.part->assembly : problem->assembly; }
   [[nodiscard]] const ContactSprings& springs() const {
     return bearing.part ? bearing.part->springs : problem->springs.springs;
   }
@@ -33,8 +31,7 @@ struct WholeProblem {
 void check_whole(WholeProblem& whole) {
   const Problem& problem = *whole.problem;
   const Assembly& assembly = problem.assembly;
-  const DegreesOfFreedom unknowns =
-      number_unknowns(assembly, problem.springs.springs, whole.effects, problem.supports);
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, problem.springs.springs, whole.effects, problem.supports);
   check_rigidity(assembly, ContactGraph(assembly), problem.springs.springs, unknowns);
 }
 

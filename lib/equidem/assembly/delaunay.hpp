@@ -51,7 +51,7 @@ Assembly delaunay_assembly(const DelaunayOptions& options);
 
 /// What one process has of an assembly that delaunay_assembly makes: all discs, and the network of one strip.
 struct DelaunayStrip {
-  Assembly assembly;                 ///< contacts that start in the strip; cells of its discs, of others parts; all sides
+  Assembly assembly;  ///< contacts that start in the strip; cells of its discs, of others parts; all sides
   std::vector<std::int32_t> strips;  ///< per disc: its strip
 };
 

@@ -37,7 +37,8 @@ struct PowerCells {
 ///         that too many images would be needed
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain = {});
 
-/// One of several strips of a sample, of which each belongs to a process of its own; these agree by calls that all make.
+/// One of several strips of a sample, of which each belongs to a process of its own; these agree by calls that all
+/// make.
 struct StripShare {
   std::size_t strip = 0, count = 1;
   std::function<bool(bool)> any;  ///< whether it holds for one of the strips

@@ -217,8 +217,7 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
     bad_input("the tension test is asked of discs without contacts", "nothing carries the load",
               "Give the assembly contacts");
   }
-  TensionSetup setup =
-      tension_loads(test, total_length(side(assembly, "left")), total_length(side(assembly, "right")));
+  TensionSetup setup = tension_loads(test, total_length(side(assembly, "left")), total_length(side(assembly, "right")));
   const Lattice* lattice = find_lattice(assembly.kind);
   if (lattice != nullptr && lattice->alignment != RowAlignment::irregular) {
     LatticeGauges(assembly, lattice->alignment, test.gauge).place(setup);
@@ -323,7 +322,8 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
   if (!(determinant > 1e-13 * trace * trace)) {
-    bad_input(fmt::format("a displacement gradient cannot be fitted to {}", counted(static_cast<std::int64_t>(first[5]), "disc")),
+    bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
+                          counted(static_cast<std::int64_t>(first[5]), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
   const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};

@@ -25,8 +25,8 @@ void add_load(const Load& load, const DiscGroup& discs, std::int64_t count, cons
   check_load(load);
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   if (count == 0) {
-    bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group),
-              "there is no disc to carry it", "Choose a group with discs or mend its definition");
+    bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
+              "Choose a group with discs or mend its definition");
   }
   if (load.kind == LoadKind::traction && !discs.discs.empty() && discs.tributary_lengths.empty()) {
     bad_input(fmt::format("a traction acts on the group '{}'", load.group),

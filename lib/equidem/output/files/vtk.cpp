@@ -145,8 +145,8 @@ void write_vtk_index(const std::filesystem::path& folder, const std::string& nam
   for (const char* what : {"discs", "contacts"}) {
     blocks += fmt::format("    <Block index=\"{}\" name=\"{}\">\n", block++, what);
     for (int piece = 0; piece < pieces; ++piece) {
-      blocks += fmt::format("      <DataSet index=\"{}\" file=\"{}\"/>\n", piece,
-                            escape_xml(piece_name(name, what, piece)));
+      blocks +=
+          fmt::format("      <DataSet index=\"{}\" file=\"{}\"/>\n", piece, escape_xml(piece_name(name, what, piece)));
     }
     blocks += "    </Block>\n";
   }
