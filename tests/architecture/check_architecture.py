@@ -37,7 +37,7 @@ PARTS = [
     ("benchmark/*", ["tools/bench/*"], 0),
     ("CLI/*", ["tools/*"], 0),
     ("pybind11/*", ["lib/python/*"], 0),
-    ("petsc*", ["tools/bench/peers/matrix_petsc.cpp"], 1),
+    ("petsc*", ["lib/petsc/*", "tools/mpi/main.cpp", "tools/bench/peers/matrix_petsc.cpp"], 0),
     ("catch2/*", ["tests/support/*"], 0),
 ]
 # Headers of the operating system and the compiler.

@@ -68,11 +68,10 @@ void add_found_contacts(Results& results, const Assembly& assembly) {
 }
 
 /// Says where contacts join discs that do not just touch, as edges of a triangulation do.
-void add_gaps(Results& results, const Assembly& assembly) {
+void add_gaps(Results& results, const GapRange& gaps, bool found) {
   constexpr double noticeable = 0.01;
-  const GapRange gaps = gaps_at_contacts(assembly);
   results.set("largest_overlap", std::max(-gaps.smallest, 0.0)).set("largest_gap", std::max(gaps.largest, 0.0));
-  if (assembly.gap_tolerance || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
+  if (found || (gaps.smallest > -noticeable && gaps.largest < noticeable)) return;
   results.line("");
   if (gaps.smallest > -noticeable) {
     results.note(fmt::format("contacts are bonds: their discs are up to {} of the sum of the radii apart",
@@ -86,13 +85,12 @@ void add_gaps(Results& results, const Assembly& assembly) {
 }
 
 /// Questions springs that are softer than any solid, 1e4 Pa being a gel. Assemblies of large discs may have no units.
-void question_springs(Results& results, const Assembly& assembly, const ContactSprings& springs) {
+void question_springs(Results& results, double mean_radius, double largest) {
   constexpr double soft = 1e4, large = 0.1;  // Pa, m
-  const double largest = springs.largest();
-  if (!(largest > 0 && largest < soft && assembly.mean_radius() < large)) return;
+  if (!(largest > 0 && largest < soft && mean_radius < large)) return;
   results.line("", fmt::format("springs of {:.3g} Pa between discs of {:.3g} m are softer than any solid: moduli or "
                                "springs may be in MPa or GPa where Pa are meant",
-                               largest, assembly.mean_radius()));
+                               largest, mean_radius));
 }
 
 /// The tables that decide the assembly, as text: all but those that surely do not. Springs move bodies that fall.
@@ -189,14 +187,29 @@ Problem build_problem(Case resolved) {
   return problem;
 }
 
+LargestDeformation largest_deformation(const Assembly& assembly, const ContactSprings& springs,
+                                       std::span<const ContactForce> forces) {
+  LargestDeformation largest;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Contact& contact = assembly.contacts[c];
+    const double kN = springs[c].kN;
+    if (kN == 0) continue;
+    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
+    largest.of_radii = std::max(largest.of_radii, std::abs(forces[c].normal / kN) / radii);
+  }
+  for (const double radius : assembly.radii) largest.radius = std::max(largest.radius, radius);
+  return largest;
+}
+
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads) {
-  SolvedCase result{
-      .name = loads.name, .equilibrium = solver.solve(loads.loads), .stress = {}, .moment_per_area = 0, .tension = {}};
+  SolvedCase result{.name = loads.name, .equilibrium = solver.solve(loads.loads)};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
     result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
     result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
+    result.empty_cells = !cells_hold_area(problem.assembly);
   }
+  result.deformation = largest_deformation(problem.assembly, problem.springs.springs, equilibrium.contact_forces);
   if (problem.tension)
     result.tension = evaluate_tension(problem.assembly, problem.springs.springs, *problem.resolved.test,
                                       *problem.tension, equilibrium);
@@ -226,40 +239,65 @@ ResultValue known(std::int64_t count) {
   return count < 0 ? ResultValue(nullptr) : ResultValue(count);
 }
 
+AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
+  AssemblySummary summary{.kind = a.kind,
+                          .discs = std::ssize(a.centres),
+                          .contacts = std::ssize(a.contacts),
+                          .area = {},
+                          .solid_fraction = 0,
+                          .mean_radius = a.mean_radius(),
+                          .stiffest = springs.largest(),
+                          .gaps = gaps_at_contacts(a),
+                          .periodic = a.periodic(),
+                          .contacts_found = a.gap_tolerance.has_value()};
+  if (!a.periodic() && a.cell_areas.empty()) return summary;
+  summary.area = a.area();
+  summary.solid_fraction = a.solid_fraction();
+  return summary;
+}
+
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys) {
   const Assembly& a = problem.assembly;
+  Results of_whole;
+  if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
+    of_whole.line("",
+                  "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and "
+                  "the outlines of the bodies are not known.");
+  }
+  add_found_contacts(of_whole, a);
+  constexpr std::size_t most_discs = 200000;  // beyond them the void costs as much as the solution
+  if (problem.resolved.assembly.kind == AssemblyKind::packing && a.sections.empty() && a.size() <= most_discs)
+    add_largest_void(of_whole, a);
+  return problem_results(problem, summary_of(a, problem.springs.springs), of_whole, effects, keys);
+}
+
+Results problem_results(const Problem& problem, const AssemblySummary& a, const Results& of_whole,
+                        const Effects& effects, AssemblyKeys keys) {
   const auto key = [&](const char* name) { return keys == AssemblyKeys::all ? name : ""; };
   Results results;
   results.set("title", problem.resolved.title);
   if (!problem.resolved.title.empty()) results.block(problem.resolved.title + "\n\n");
+  const double coordination = a.discs == 0 ? 0 : 2 * static_cast<double>(a.contacts) / static_cast<double>(a.discs);
   results.line("assembly", a.kind)
-      .add("discs", "", a.size(), "disc", {Shown::count})
-      .add("contacts", "", a.contacts.size(), "contact", {Shown::count})
-      .add(key("coordination_number"), "z =", a.coordination_number(), "", {.digits = 4});
-  if (a.periodic() || !a.cell_areas.empty()) {
+      .add("discs", "", a.discs, "disc", {Shown::count})
+      .add("contacts", "", a.contacts, "contact", {Shown::count})
+      .add(key("coordination_number"), "z =", coordination, "", {.digits = 4});
+  if (a.area) {
     results.line("")
-        .add(key("area"), "area", a.area(), "m²")
-        .add(key("solid_fraction"), "solid fraction", a.solid_fraction())
-        .note(a.periodic() ? ", periodic" : "");
+        .add(key("area"), "area", *a.area, "m²")
+        .add(key("solid_fraction"), "solid fraction", a.solid_fraction)
+        .note(a.periodic ? ", periodic" : "");
   }
-  if ((a.periodic() || !a.cell_areas.empty()) && a.solid_fraction() > 1) {
+  if (a.area && a.solid_fraction > 1) {
     results.line("",
                  "The solid fraction exceeds 1, since discs overlap and each is counted whole: it is the sum of their "
                  "areas over the area, not the share that they cover.");
   }
-  if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
-    results.line("",
-                 "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and the "
-                 "outlines of the bodies are not known.");
-  }
-  add_found_contacts(results, a);
-  constexpr std::size_t most_discs = 200000;  // beyond them the void costs as much as the solution
-  if (problem.resolved.assembly.kind == AssemblyKind::packing && a.sections.empty() && a.size() <= most_discs)
-    add_largest_void(results, a);
-  add_gaps(results, a);
+  results.append(of_whole);
+  add_gaps(results, a.gaps, a.contacts_found);
   add_left_out(results, problem.left_out);
   results.line("springs", problem.springs.report);
-  question_springs(results, a, problem.springs.springs);
+  question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);
   add_effects(results, effects);

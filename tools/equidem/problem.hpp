@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,15 +90,25 @@ bool acts(const Case& resolved);
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
 Problem build_problem(Case resolved);
 
+/// The largest change of a contact under normal forces.
+struct LargestDeformation {
+  double of_radii = 0;  ///< of the sum of its radii
+  double radius = 0;    ///< m, the largest
+};
+LargestDeformation largest_deformation(const Assembly& assembly, const ContactSprings& springs,
+                                       std::span<const ContactForce> forces);
+
 /// One load case, solved and evaluated.
 struct SolvedCase {
   std::string name;  ///< name of the load case, may be empty
   Equilibrium equilibrium;
-  std::optional<Tensor2> stress;  ///< Pa, of the assembly, not made symmetric
+  LargestDeformation deformation = {};
+  std::optional<Tensor2> stress = {};  ///< Pa, of the assembly, not made symmetric
+  bool empty_cells = false;            ///< some disc has a cell without area, so that its stress is not known
   /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It equals
   /// the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).
   double moment_per_area = 0;
-  std::optional<TensionResult> tension;
+  std::optional<TensionResult> tension = {};
 
   /// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
   [[nodiscard]] std::string status() const {
@@ -124,6 +135,23 @@ enum class AssemblyKeys {
 };
 /// Title, assembly, springs, effects.
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
+
+/// Numbers of an assembly in a report.
+struct AssemblySummary {
+  std::string kind;
+  std::int64_t discs = 0, contacts = 0;
+  std::optional<double> area;  ///< m²; none: not known
+  double solid_fraction = 0;   ///< where the area is known
+  double mean_radius = 0;      ///< m
+  double stiffest = 0;         ///< Pa: the largest spring
+  GapRange gaps;
+  bool periodic = false;
+  bool contacts_found = false;  ///< by a tolerance
+};
+AssemblySummary summary_of(const Assembly& assembly, const ContactSprings& springs);
+/// The same results from a summary. \param of_whole lines that need the whole assembly, after those of its area
+Results problem_results(const Problem& problem, const AssemblySummary& summary, const Results& of_whole,
+                        const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
 
 /// The largest circle that no disc reaches into; nothing where there is none.
 void add_largest_void(Results& results, const Assembly& assembly);

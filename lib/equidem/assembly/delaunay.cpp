@@ -117,9 +117,8 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
 /// Leave out discs that hang loose: those without contacts, whose power cell their neighbours have taken, and those in
 /// a corner with a single neighbour, which would roll about it without energy. Where many have a single neighbour the
 /// rectangle is a strip one disc wide, and they stay. Returns how many are left out.
-std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
-  std::vector<int> contacts(assembly.size(), 0);
-  for (const Contact& c : cells.neighbours) ++contacts[c.i], ++contacts[c.j];
+/// \param contacts per disc: how many it has, exact below 2
+std::size_t drop_loose_discs(Assembly& assembly, const std::vector<std::int32_t>& contacts) {
   const auto single = static_cast<std::size_t>(std::count(contacts.begin(), contacts.end(), 1));
   const int least = 20 * single <= assembly.size() ? 2 : 1;
   std::size_t kept = 0;
@@ -133,6 +132,12 @@ std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
   assembly.centres.resize(kept);
   assembly.radii.resize(kept);
   return dropped;
+}
+
+std::size_t drop_loose_discs(Assembly& assembly, const PowerCells& cells) {
+  std::vector<std::int32_t> contacts(assembly.size(), 0);
+  for (const Contact& c : cells.neighbours) ++contacts[c.i], ++contacts[c.j];
+  return drop_loose_discs(assembly, contacts);
 }
 
 [[noreturn]] void refuse_collinear(const Assembly& assembly) {
@@ -162,11 +167,9 @@ std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii) {
   return static_cast<std::int64_t>(discs);
 }
 
-Assembly delaunay_assembly(const DelaunayOptions& options) {
+/// The discs and the rectangle that their cells fill.
+static Assembly delaunay_discs(const DelaunayOptions& options, Rectangle& rectangle) {
   check(options);
-  constexpr double bytes_per_disc = 300;  // measured at 10⁶ and 10⁷ discs: the triangulation beside the assembly
-  require_memory(bytes_per_disc * static_cast<double>(options.discs),
-                 fmt::format("the triangulation of {} discs needs about", grouped(options.discs)));
   Random random(options.seed);
   PointSet set = points_of(options, random);
   if (options.box) stretch(set, *options.box, options.periodic);
@@ -180,7 +183,17 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
     for (double& radius : assembly.radii) radius = random.uniform(options.radii.smallest, options.radii.largest);
   }
   if (options.periodic) assembly.period = set.extent;
-  const Rectangle rectangle{.low = {0, 0}, .high = set.extent};
+  rectangle = {.low = {0, 0}, .high = set.extent};
+  return assembly;
+}
+
+Assembly delaunay_assembly(const DelaunayOptions& options) {
+  constexpr double bytes_per_disc = 300;  // measured at 10⁶ and 10⁷ discs: the triangulation beside the assembly
+  check(options);
+  require_memory(bytes_per_disc * static_cast<double>(options.discs),
+                 fmt::format("the triangulation of {} discs needs about", grouped(options.discs)));
+  Rectangle rectangle;
+  Assembly assembly = delaunay_discs(options, rectangle);
   PowerCells cells = power_cells(assembly, rectangle);
   while (!cells.collinear && drop_loose_discs(assembly, cells) > 0) {
     cells = {};  // before the next take their memory
@@ -189,6 +202,28 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
   if (cells.collinear && !assembly.periodic()) refuse_collinear(assembly);
   take_network(assembly, std::move(cells));
   return assembly;
+}
+
+DelaunayStrip delaunay_strip(const DelaunayOptions& options, const StripShare& share) {
+  Rectangle rectangle;
+  DelaunayStrip result{.assembly = delaunay_discs(options, rectangle), .strips = {}};
+  for (;;) {
+    StripCells found = strip_cells(result.assembly, rectangle, share);
+    if (found.cells.collinear) refuse_collinear(result.assembly);
+    std::vector<std::int32_t> few[2];  // discs of all strips with one contact and with none
+    for (std::size_t d = 0; d < result.assembly.size(); ++d) {
+      if (found.strips[d] != static_cast<std::int32_t>(share.strip) || found.contacts[d] > 1) continue;
+      few[found.contacts[d] == 0 ? 1 : 0].push_back(static_cast<std::int32_t>(d));
+    }
+    const std::vector<std::int32_t> single = share.joined(few[0]), none = share.joined(few[1]);
+    std::vector<std::int32_t> contacts(result.assembly.size(), 2);
+    for (const std::int32_t d : single) contacts[d] = 1;
+    for (const std::int32_t d : none) contacts[d] = 0;
+    if (drop_loose_discs(result.assembly, contacts) > 0) continue;
+    result.strips = std::move(found.strips);
+    take_network(result.assembly, std::move(found.cells));
+    return result;
+  }
 }
 
 void triangulate(Assembly& assembly) {

@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/point_process.hpp"
+#include "equidem/assembly/power_cells.hpp"
 
 namespace equidem {
 
@@ -46,6 +48,16 @@ std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii);
 /// curve. Groups of a free assembly: the discs whose cells touch a side or hold a corner, with the length of the side
 /// in their cell. Same options, same assembly, on every machine. \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);
+
+/// What one process has of an assembly that delaunay_assembly makes: all discs, and the network of one strip.
+struct DelaunayStrip {
+  Assembly assembly;  ///< contacts that start in the strip; cells of its discs, of others parts; all sides
+  std::vector<std::int32_t> strips;  ///< per disc: its strip
+};
+
+/// All processes call it, each for a strip of its own.
+/// \throws Error (bad_input) as delaunay_assembly
+DelaunayStrip delaunay_strip(const DelaunayOptions& options, const StripShare& share);
 
 /// Contacts, facets, cells and, where free, sides by (regular) triangulation of given discs; `assembly` brings
 /// centres, radii and period. Cells of a free assembly fill the smallest rectangle that holds all discs. Contacts and

@@ -4,6 +4,9 @@
 /// the sides of a rectangle that the cells take.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -33,6 +36,26 @@ struct PowerCells {
 /// \throws Error (bad_input) naming two discs with the same centre; where the period is so narrow
 ///         that too many images would be needed
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain = {});
+
+/// One of several strips of a sample, of which each belongs to a process of its own; these agree by calls that all
+/// make.
+struct StripShare {
+  std::size_t strip = 0, count = 1;
+  std::function<bool(bool)> any;  ///< whether it holds for one of the strips
+  /// The numbers of all strips together.
+  std::function<std::vector<std::int32_t>(const std::vector<std::int32_t>&)> joined;
+};
+
+struct StripCells {
+  PowerCells cells;                    ///< neighbours that start in the strip; areas of its discs; all sides
+  std::vector<std::int32_t> strips;    ///< per disc: its strip
+  std::vector<std::int32_t> contacts;  ///< per disc of this strip: its neighbours
+};
+
+/// The cells of one strip: that of the whole assembly alone is held as points, the triangulation is that of the strip.
+/// \param domain the rectangle of a free assembly; of a periodic one its cell
+/// \throws Error (bad_input) as power_cells
+StripCells strip_cells(const Assembly& assembly, const Rectangle& domain, const StripShare& share);
 
 /// The sides of the cells of a free assembly, without its triangulation.
 std::map<std::string, DiscGroup> measured_sides(const Assembly& assembly);

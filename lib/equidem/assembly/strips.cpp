@@ -79,15 +79,25 @@ Strips::Strips(const Sites& sites) : sites_(sites) {
   width_ = longer / static_cast<double>(count_);
 }
 
-std::size_t Strips::strip_of(Vec2 place) const {
+void Strips::choose(std::size_t strip, std::size_t count, const Rectangle& region) {
+  chosen_ = strip;
+  count_ = count;
+  const Vec2 extent = region.high - region.low;
+  upright_ = extent.y > extent.x;
+  low_ = along(region.low);
+  width_ = std::max(extent.x, extent.y) / static_cast<double>(count);
+}
+
+std::size_t Strips::cut_of(Vec2 place) const {
   if (count_ == 1) return 0;
   return static_cast<std::size_t>(
       std::clamp(std::floor((along(place) - low_) / width_), 0.0, static_cast<double>(count_ - 1)));
 }
 
 double Strips::known(std::int32_t a, Vec2 place) const {
-  const std::size_t strip = strip_of(sites_.position(a));
   double clear = std::numeric_limits<double>::infinity();
+  if (count() == 1) return clear;
+  const std::size_t strip = chosen_ ? *chosen_ : strip_of(sites_.position(a));
   if (strip > 0) clear = std::min(clear, along(place) - (cut(strip) - margin_));
   if (strip + 1 < count_) clear = std::min(clear, cut(strip + 1) + margin_ - along(place));
   return clear;
@@ -105,11 +115,23 @@ std::vector<std::vector<std::int32_t>> Strips::members() const {
   return members;
 }
 
+std::vector<std::int32_t> Strips::members_of(std::size_t strip) const {
+  std::vector<std::int32_t> members;
+  for (const std::int32_t site : sites_.insertion_order()) {
+    const double place = along(sites_.position(site));
+    const bool above = strip == 0 || place >= cut(strip) - margin_;
+    const bool below = strip + 1 == count_ || place <= cut(strip + 1) + margin_;
+    if (above && below) members.push_back(site);
+  }
+  return members;
+}
+
 std::vector<TriangulationEdge> Strips::edges_of(std::size_t strip, std::vector<std::int32_t> members) const {
   std::vector<TriangulationEdge> edges = triangulation_edges(sites_.positions(), sites_.weights(), members);
   for (TriangulationEdge& edge : edges) orient(edge, sites_);
   if (sites_.images() > 0 || count_ > 1) {
     std::erase_if(edges, [&](const TriangulationEdge& edge) {
+      if (chosen_) return !holds(edge.a) && !holds(edge.b);
       return (!sites_.in_cell(edge.a) && !sites_.in_cell(edge.b)) || strip_of(sites_.position(edge.a)) != strip;
     });
     edges.shrink_to_fit();
@@ -118,9 +140,11 @@ std::vector<TriangulationEdge> Strips::edges_of(std::size_t strip, std::vector<s
 }
 
 std::vector<TriangulationEdge> Strips::edges() const {
-  std::vector<std::vector<TriangulationEdge>> edges(count_);
-  if (count_ == 1) {
+  std::vector<std::vector<TriangulationEdge>> edges(chosen_ ? 1 : count());
+  if (count() == 1) {
     edges[0] = edges_of(0, {sites_.insertion_order().begin(), sites_.insertion_order().end()});
+  } else if (chosen_) {
+    edges[0] = edges_of(*chosen_, members_of(*chosen_));
   } else {
     std::vector<std::vector<std::int32_t>> parts = members();
     parallel_tasks(count_, [&](std::size_t strip, int) { edges[strip] = edges_of(strip, std::move(parts[strip])); });

@@ -15,17 +15,6 @@
 namespace equidem {
 namespace {
 
-/// Hill & Mandel: mean stress times mean strain is the mean of the powers.
-double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Voigt s = voigt_stress(stresses[k]);
-    const double row[] = {s.xx, s.yy, s.xy};
-    for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
-  }
-  return largest / largest_entry(stiffness);
-}
-
 /// Sums over the contacts of the part that carries load.
 struct StrainSums {
   PairEnergies energies;
@@ -37,7 +26,7 @@ struct StrainSums {
 
 StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
                   const std::vector<Solution>& solutions) {
-  constexpr std::size_t most_cases = std::size(unit_gradients), first_stress = pair_sums;
+  constexpr std::size_t most_cases = strain_cases, first_stress = pair_sums;
   const Assembly& assembly = solver.assembly();
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
   const double scale = solver.unknowns().rotation_scale;
@@ -77,7 +66,18 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
   return result;
 }
 
-/// Stresses of unit displacement gradients xx, yy, xy, yx from those of unit strains and of the unit rotation.
+}  // namespace
+
+double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Voigt s = voigt_stress(stresses[k]);
+    const double row[] = {s.xx, s.yy, s.xy};
+    for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
+  }
+  return largest / largest_entry(stiffness);
+}
+
 void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStiffness& result) {
   const Tensor2 turned = stresses.size() > 3 ? stresses[3] : Tensor2{};
   const Tensor2 columns[] = {stresses[0], stresses[1], stresses[2] + (-0.5) * turned, stresses[2] + 0.5 * turned};
@@ -90,8 +90,6 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   }
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
-
-}  // namespace
 
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                    EffectiveStiffness& result) {

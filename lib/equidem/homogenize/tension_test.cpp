@@ -135,37 +135,6 @@ Disc nearest_disc(const Assembly& assembly, Vec2 point, double spacing) {
   return nearest;
 }
 
-void place_nearest_gauges(const Assembly& assembly, GaugePlacement placement, TensionSetup& setup) {
-  const Extents block = extents_of(assembly);
-  const double spacing = mean_branch_length(assembly);
-  const auto half_length = [&](double extent) {
-    switch (placement) {
-      case GaugePlacement::centre:
-        return 2 * spacing;
-      case GaugePlacement::quarter:
-        return extent / 4;
-      case GaugePlacement::ends:
-        break;
-    }
-    return extent / 2;
-  };
-  const Vec2 half{half_length(block.size().x), half_length(block.size().y)};
-  const auto pair_at = [&](Vec2 reach) {
-    return StrainGauge{nearest_disc(assembly, block.middle() - reach, spacing),
-                       nearest_disc(assembly, block.middle() + reach, spacing)};
-  };
-  setup.horizontal = pair_at({half.x, 0});
-  setup.vertical = pair_at({0, half.y});
-  const double slack = 1e-9 * spacing;
-  const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
-  if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
-    refuse_size(placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
-                fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
-                            (placement == GaugePlacement::centre ? 4 : 2) * spacing,
-                            placement == GaugePlacement::centre ? 4 : 2));
-  }
-}
-
 /// The side by that name with its tributary lengths.
 const DiscGroup& side(const Assembly& assembly, const std::string& name) {
   const DiscGroup& discs = group(assembly, name);
@@ -190,11 +159,56 @@ double mean_normal_spring(const Assembly& assembly, const ContactSprings& spring
 
 }  // namespace
 
-TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
+void place_nearest_gauges(const Rectangle& extents, double spacing, GaugePlacement placement,
+                          const std::function<std::int32_t(Vec2 point)>& nearest, TensionSetup& setup) {
+  const Extents block{extents.low, extents.high};
+  const auto half_length = [&](double extent) {
+    switch (placement) {
+      case GaugePlacement::centre:
+        return 2 * spacing;
+      case GaugePlacement::quarter:
+        return extent / 4;
+      case GaugePlacement::ends:
+        break;
+    }
+    return extent / 2;
+  };
+  const Vec2 half{half_length(block.size().x), half_length(block.size().y)};
+  const auto pair_at = [&](Vec2 reach) {
+    const std::int32_t first = nearest(block.middle() - reach), second = nearest(block.middle() + reach);
+    return StrainGauge{first, second};
+  };
+  setup.horizontal = pair_at({half.x, 0});
+  setup.vertical = pair_at({0, half.y});
+  const double slack = 1e-9 * spacing;
+  const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
+  if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
+    refuse_size(placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+                fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
+                            (placement == GaugePlacement::centre ? 4 : 2) * spacing,
+                            placement == GaugePlacement::centre ? 4 : 2));
+  }
+}
+
+TensionSetup tension_loads(const TensionTest& test, double left_height, double right_height) {
   if (!std::isfinite(test.stress) || test.stress == 0) {
     bad_input(fmt::format("the tension test pulls with a stress of {} Pa", test.stress),
               "the ratios it measures need a finite stress other than zero", "Give a stress, 1e6 for example");
   }
+  TensionSetup setup;
+  setup.height = left_height;
+  if (!(setup.height > 0) || std::abs(right_height - setup.height) > 1e-9 * setup.height) {
+    bad_input(fmt::format("the left side is {} m high and the right side {} m", setup.height, right_height),
+              "the two pulls of the test must balance", "Correct the tributary lengths of the two groups");
+  }
+  setup.supports = {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}},
+                    {.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
+  setup.loads = {{.group = "left", .kind = LoadKind::traction, .force = {-test.stress, 0}},
+                 {.group = "right", .kind = LoadKind::traction, .force = {test.stress, 0}}};
+  return setup;
+}
+
+TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
   if (assembly.periodic()) {
     bad_input("the tension test is asked of a periodic cell", "a periodic cell has no sides to pull at",
               "Set periodic = false, or homogenize the cell");
@@ -203,50 +217,51 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
     bad_input("the tension test is asked of discs without contacts", "nothing carries the load",
               "Give the assembly contacts");
   }
-  TensionSetup setup;
-  setup.height = total_length(side(assembly, "left"));
-  const double other = total_length(side(assembly, "right"));
-  if (!(setup.height > 0) || std::abs(other - setup.height) > 1e-9 * setup.height) {
-    bad_input(fmt::format("the left side is {} m high and the right side {} m", setup.height, other),
-              "the two pulls of the test must balance", "Correct the tributary lengths of the two groups");
-  }
-  setup.supports = {{.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}},
-                    {.group = "bottom_left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  setup.loads = {{.group = "left", .kind = LoadKind::traction, .force = {-test.stress, 0}},
-                 {.group = "right", .kind = LoadKind::traction, .force = {test.stress, 0}}};
+  TensionSetup setup = tension_loads(test, total_length(side(assembly, "left")), total_length(side(assembly, "right")));
   const Lattice* lattice = find_lattice(assembly.kind);
   if (lattice != nullptr && lattice->alignment != RowAlignment::irregular) {
     LatticeGauges(assembly, lattice->alignment, test.gauge).place(setup);
-  } else {
-    place_nearest_gauges(assembly, test.gauge, setup);
+    return setup;
   }
+  const auto [low, high] = extents_of(assembly);
+  const double spacing = mean_branch_length(assembly);
+  const auto nearest = [&](Vec2 point) { return nearest_disc(assembly, point, spacing); };
+  place_nearest_gauges({low, high}, spacing, test.gauge, nearest, setup);
   return setup;
+}
+
+Rectangle inner_half(const Rectangle& extents, double spacing) {
+  const Extents block{extents.low, extents.high};
+  const double slack = 1e-9 * spacing;  // rounding must not decide which discs on the rim of the region count
+  const Vec2 half{std::max(block.size().x / 4, spacing) + slack, std::max(block.size().y / 4, spacing) + slack};
+  return {block.middle() - half, block.middle() + half};
+}
+
+TensionResult tension_result(const TensionTest& test, double e11, double e22, double mean_kN,
+                             const Tensor2& fitted_gradient) {
+  TensionResult result;
+  // Total load / height: the traction itself, spread over that height.
+  result.stress = {.xx = test.stress, .yy = 0, .xy = 0};
+  result.poisson_ratio = poisson_ratio_of_strains(e11, e22);
+  result.stiffness_ratio = test.stress / (mean_kN * e11);
+  result.fitted_gradient = fitted_gradient;
+  result.fitted_poisson_ratio = poisson_ratio_of_strains(fitted_gradient.xx, fitted_gradient.yy);
+  result.strain = {.xx = e11, .yy = e22, .xy = voigt_strain(fitted_gradient).xy};
+  return result;
 }
 
 TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs, const TensionTest& test,
                                const TensionSetup& setup, const Equilibrium& equilibrium) {
   const std::vector<DiscMotion>& motions = equilibrium.motions;
-  TensionResult result;
-  const double e11 = gauge_strain(assembly, motions, setup.horizontal);
-  const double e22 = gauge_strain(assembly, motions, setup.vertical);
-  // Total load / height: the traction itself, spread over that height.
-  result.stress = {.xx = test.stress, .yy = 0, .xy = 0};
-  result.poisson_ratio = poisson_ratio_of_strains(e11, e22);
-  result.stiffness_ratio = test.stress / (mean_normal_spring(assembly, springs) * e11);
-
-  const Extents block = extents_of(assembly);
-  const Vec2 middle = block.middle();
-  const double spacing = mean_branch_length(assembly);
-  const double slack = 1e-9 * spacing;  // rounding must not decide which discs on the rim of the region count
-  const Vec2 half{std::max(block.size().x / 4, spacing) + slack, std::max(block.size().y / 4, spacing) + slack};
-  result.fitted_gradient = fitted_displacement_gradient(assembly, motions, [&](std::size_t disc) {
+  const auto [low, high] = extents_of(assembly);
+  const Rectangle inner = inner_half({low, high}, mean_branch_length(assembly));
+  const Vec2 middle = 0.5 * (inner.low + inner.high), half = 0.5 * (inner.high - inner.low);
+  const Tensor2 fitted = fitted_displacement_gradient(assembly, motions, [&](std::size_t disc) {
     const Vec2 d = assembly.centres[disc] - middle;
     return std::abs(d.x) <= half.x && std::abs(d.y) <= half.y;
   });
-  result.fitted_poisson_ratio = poisson_ratio_of_strains(result.fitted_gradient.xx, result.fitted_gradient.yy);
-  const Voigt fitted = voigt_strain(result.fitted_gradient);
-  result.strain = {.xx = e11, .yy = e22, .xy = fitted.xy};
-  return result;
+  return tension_result(test, gauge_strain(assembly, motions, setup.horizontal),
+                        gauge_strain(assembly, motions, setup.vertical), mean_normal_spring(assembly, springs), fitted);
 }
 
 double gauge_length(const Assembly& assembly, const StrainGauge& gauge) {
@@ -261,33 +276,45 @@ double gauge_strain(const Assembly& assembly, std::span<const DiscMotion> motion
 }
 
 Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const DiscMotion> motions,
-                                     const std::function<bool(std::size_t disc)>& inside) {
+                                     const std::function<bool(std::size_t disc)>& inside,
+                                     const std::function<void(std::span<double>)>& sum_up) {
   assert(motions.size() == assembly.size());
   std::vector<std::size_t> chosen;
   for (std::size_t disc = 0; disc < assembly.size(); ++disc)
     if (inside(disc)) chosen.push_back(disc);
   const auto weight = [&](std::size_t disc) { return assembly.cell_areas.empty() ? 1.0 : assembly.cell_areas[disc]; };
 
-  double total = 0;
-  Vec2 centre;
-  Vec2 mean;
+  const auto of_all = [&](std::span<double> sums) {
+    if (sum_up) sum_up(sums);
+  };
+  double first[6] = {0, 0, 0, 0, 0, static_cast<double>(chosen.size())};
   for (const std::size_t disc : chosen) {
-    total += weight(disc);
-    centre += weight(disc) * assembly.centres[disc];
-    mean += weight(disc) * motions[disc].u;
+    const double w = weight(disc);
+    const Vec2 x = assembly.centres[disc], u = motions[disc].u;
+    first[0] += w, first[1] += w * x.x, first[2] += w * x.y, first[3] += w * u.x, first[4] += w * u.y;
   }
+  of_all(first);
+  const double total = first[0];
   // Sums about the centroid: no digits are lost far from the origin or by a large rigid motion.
   // h = (sum w du dx^T) (sum w dx dx^T)^-1.
   Tensor2 second_moment;
   Tensor2 covariance;
   if (total > 0) {
-    centre *= 1 / total;
-    mean *= 1 / total;
+    const Vec2 centre = Vec2{first[1], first[2]} / total, mean = Vec2{first[3], first[4]} / total;
     for (const std::size_t disc : chosen) {
       const Vec2 dx = assembly.centres[disc] - centre;
       second_moment += weight(disc) * outer(dx, dx);
       covariance += weight(disc) * outer(motions[disc].u - mean, dx);
     }
+    double second[8];
+    Tensor2* const both[] = {&second_moment, &covariance};
+    for (std::size_t k = 0; k < 2; ++k) {
+      second[4 * k] = both[k]->xx, second[4 * k + 1] = both[k]->xy;
+      second[4 * k + 2] = both[k]->yx, second[4 * k + 3] = both[k]->yy;
+    }
+    of_all(second);
+    for (std::size_t k = 0; k < 2; ++k)
+      *both[k] = {second[4 * k], second[4 * k + 1], second[4 * k + 2], second[4 * k + 3]};
   }
   const Tensor2& s = second_moment;
   const double determinant = s.xx * s.yy - s.xy * s.yx;
@@ -295,7 +322,8 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
   if (!(determinant > 1e-13 * trace * trace)) {
-    bad_input(fmt::format("a displacement gradient cannot be fitted to {}", counted(chosen.size(), "disc")),
+    bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
+                          counted(static_cast<std::int64_t>(first[5]), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
   const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};

@@ -32,9 +32,11 @@ double gauge_strain(const Assembly& assembly, std::span<const DiscMotion> motion
 
 /// The displacement gradient h_ij = du_i/dx_j that fits the motion of the chosen discs best (least squares, each disc
 /// weighted by its cell area where known). Exact for any uniform gradient.
+/// \param sum_up adds to each of the numbers those of other parts of the sample; none: the assembly is the whole
 /// \throws Error (bad_input) where fewer than three discs are chosen or all lie on one line
 Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const DiscMotion> motions,
-                                     const std::function<bool(std::size_t disc)>& inside);
+                                     const std::function<bool(std::size_t disc)>& inside,
+                                     const std::function<void(std::span<double>)>& sum_up = {});
 
 /// Places of the two strain gauges A-B (along x) and C-D (along y). On the lattices A and B are discs of the middle
 /// row (of two middle rows of a hexagonal block, the one with a disc in its middle), the nearest pair symmetric about
@@ -76,6 +78,17 @@ struct TensionSetup {
 ///         sides to pull at, or where the stress is zero or not finite
 TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test);
 
+/// The supports and loads of the test, and its height, without gauges.
+/// \throws Error (bad_input) where the stress is zero or not finite, or the heights of the sides differ
+TensionSetup tension_loads(const TensionTest& test, double left_height, double right_height);
+
+/// Place the gauges at the discs nearest to the points wanted.
+/// \param extents of the centres \param spacing mean branch length, m
+/// \param nearest the disc nearest to a point
+/// \throws Error (bad_input) where the block is too small
+void place_nearest_gauges(const Rectangle& extents, double spacing, GaugePlacement placement,
+                          const std::function<std::int32_t(Vec2 point)>& nearest, TensionSetup& setup);
+
 struct TensionResult {
   double poisson_ratio = 0;         ///< nu = -e22/(e11 - e22), plane strain, eq. (35), from the two gauges
   double stiffness_ratio = 0;       ///< 2G/((1 - nu) kN) = s11/(kN e11), eq. (36); kN is the mean over contacts
@@ -85,6 +98,13 @@ struct TensionResult {
                                     ///< spacing either side of its middle
   double fitted_poisson_ratio = 0;  ///< eq. (35) from the fitted field
 };
+
+/// The region of the fitted field: the inner half of the block, at least one spacing either side of its middle.
+Rectangle inner_half(const Rectangle& extents, double spacing);
+
+/// \param e11, e22 of the gauges
+TensionResult tension_result(const TensionTest& test, double e11, double e22, double mean_kN,
+                             const Tensor2& fitted_gradient);
 
 TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs, const TensionTest& test,
                                const TensionSetup& setup, const Equilibrium& equilibrium);

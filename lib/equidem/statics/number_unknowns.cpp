@@ -32,25 +32,11 @@ void check_value(const std::optional<double>& value, const std::string& key, con
 
 void apply(const Assembly& assembly, const Effects& effects, const Support& support, DegreesOfFreedom& unknowns) {
   const DiscGroup& discs = group(assembly, support.group);
-  check_value(support.ux, "ux", support.group);
-  check_value(support.uy, "uy", support.group);
-  check_value(support.rotation, "rotation", support.group);
   if (discs.discs.empty()) {
     bad_input(fmt::format("the support acts on the group '{}', which is empty", support.group), "it would hold nothing",
               "Choose a group with discs or mend its definition");
   }
-  if (support.rotation && *support.rotation != 0 && !effects.rotation) {
-    bad_input(fmt::format("the support of '{}' prescribes a rotation of {} rad", support.group, *support.rotation),
-              "rotations are no unknowns of this scene and stay at zero",
-              "Remove it, or let rotation = \"free\" with tangential springs");
-  }
-  for (const std::int32_t disc : discs.discs) {
-    if (support.ux) hold(unknowns, disc, 0, *support.ux, support.group);
-    if (support.uy) hold(unknowns, disc, 1, *support.uy, support.group);
-    if (support.rotation && effects.rotation) {
-      hold(unknowns, disc, 2, unknowns.rotation_scale * *support.rotation, support.group);
-    }
-  }
+  hold_group(discs, support, effects, unknowns);
 }
 
 /// Rotations that no contact resists: every contact of the disc lies on the line of centres and has kT = 0 or a lever
@@ -72,6 +58,24 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
 }
 
 }  // namespace
+
+void hold_group(const DiscGroup& discs, const Support& support, const Effects& effects, DegreesOfFreedom& unknowns) {
+  check_value(support.ux, "ux", support.group);
+  check_value(support.uy, "uy", support.group);
+  check_value(support.rotation, "rotation", support.group);
+  if (support.rotation && *support.rotation != 0 && !effects.rotation) {
+    bad_input(fmt::format("the support of '{}' prescribes a rotation of {} rad", support.group, *support.rotation),
+              "rotations are no unknowns of this scene and stay at zero",
+              "Remove it, or let rotation = \"free\" with tangential springs");
+  }
+  for (const std::int32_t disc : discs.discs) {
+    if (support.ux) hold(unknowns, disc, 0, *support.ux, support.group);
+    if (support.uy) hold(unknowns, disc, 1, *support.uy, support.group);
+    if (support.rotation && effects.rotation) {
+      hold(unknowns, disc, 2, unknowns.rotation_scale * *support.rotation, support.group);
+    }
+  }
+}
 
 DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                                  std::span<const Support> supports) {

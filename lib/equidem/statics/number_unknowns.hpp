@@ -20,6 +20,10 @@ namespace equidem {
 DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                                  std::span<const Support> supports);
 
+/// Hold the components of the discs of a group that a support prescribes.
+/// \throws Error (bad_input) as number_unknowns, but for a group that is empty or missing
+void hold_group(const DiscGroup& discs, const Support& support, const Effects& effects, DegreesOfFreedom& unknowns);
+
 /// Components (u_x, u_y[, a theta]) of all discs as their motions.
 std::vector<DiscMotion> disc_motions(const DegreesOfFreedom& unknowns, std::span<const double> components);
 

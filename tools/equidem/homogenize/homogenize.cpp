@@ -54,16 +54,9 @@ BoundsOptions bounds_options(const Case& resolved) {
   return options;
 }
 
-/// Moduli by the relation of Abe (1996), where the springs stand for an isotropic continuum.
 std::optional<RelationBeside> relation_of(const Problem& problem) {
   if (!problem.springs.constants) return {};
-  const ChosenRelation chosen = spring_relation(problem.resolved, problem.assembly);
-  try {
-    const ElasticModuli moduli = moduli_of(*problem.springs.constants, chosen.relation, chosen.measures, Plane::stress);
-    return RelationBeside{chosen.relation.name, moduli.bulk_modulus_2d(), moduli.shear_modulus};
-  } catch (const Error&) {
-    return {};
-  }
+  return relation_beside(*problem.springs.constants, spring_relation(problem.resolved, problem.assembly));
 }
 
 BoundedStiffness homogenize(const Problem& problem) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/fabric.hpp"
@@ -26,10 +27,10 @@ std::string boundary_condition(Boundary boundary) {
   return {};
 }
 
-void add_mean_strain(Results& out, const Problem& problem, Boundary used) {
+void add_mean_strain(Results& out, const Problem& problem, bool periodic, Boundary used) {
   const std::string boundary = to_string(used);
   out.line("mean strain").add("boundary", "", boundary).note(": " + boundary_condition(used));
-  if (!problem.assembly.periodic()) {
+  if (!periodic) {
     out.line("",
              "A free sample lacks the contacts across its boundary: it is softer than its bulk by about the share of "
              "the cells there.");
@@ -244,17 +245,31 @@ void add_restrained(Results& out, const EffectiveStiffness& r) {
 
 }  // namespace
 
+std::optional<RelationBeside> relation_beside(const SpringConstants& springs, const ChosenRelation& chosen) {
+  try {
+    const ElasticModuli moduli = moduli_of(springs, chosen.relation, chosen.measures, Plane::stress);
+    return RelationBeside{chosen.relation.name, moduli.bulk_modulus_2d(), moduli.shear_modulus};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 Results homogenized_results(const Problem& problem, const BoundedStiffness& h,
                             const std::optional<RelationBeside>& relation) {
+  return homogenized_results(problem, problem_results(problem, h.result.effects), problem.assembly.periodic(), h,
+                             fabric(problem.assembly), relation);
+}
+
+Results homogenized_results(const Problem& problem, Results out, bool periodic, const BoundedStiffness& h,
+                            const std::optional<Fabric>& fabric, const std::optional<RelationBeside>& relation) {
   const EffectiveStiffness& r = h.result;
   const EffectiveModuli moduli = effective_moduli(r.stiffness);
-  Results out = problem_results(problem, r.effects);
-  add_mean_strain(out, problem, r.boundary);
+  add_mean_strain(out, problem, periodic, r.boundary);
   add_rigidity(out, r);
   add_stiffness(out, r);
   out.append(moduli_results(moduli));
   add_anisotropy(out, r.stiffness, moduli.anisotropy);
-  add_fabric(out, fabric(problem.assembly));
+  if (fabric) add_fabric(out, *fabric);
   add_bounds(out, h, relation);
   add_order(out, h, problem.springs.springs);
   if (relation) add_relation(out, *relation);

@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "equidem/contact/material_springs.hpp"
 #include "equidem/homogenize/bounds.hpp"
+#include "equidem/homogenize/fabric.hpp"
 #include "equidem/output/results.hpp"
 
 #include "problem.hpp"
@@ -23,5 +25,11 @@ struct RelationBeside {
 /// Report and JSON of the verb.
 Results homogenized_results(const Problem& problem, const BoundedStiffness& homogenized,
                             const std::optional<RelationBeside>& relation);
+/// The same. \param of_problem results of the problem, which come first \param fabric none: not known
+Results homogenized_results(const Problem& problem, Results of_problem, bool periodic,
+                            const BoundedStiffness& homogenized, const std::optional<Fabric>& fabric,
+                            const std::optional<RelationBeside>& relation);
+/// Moduli by the relation of Abe (1996), where the springs stand for an isotropic continuum.
+std::optional<RelationBeside> relation_beside(const SpringConstants& springs, const ChosenRelation& chosen);
 
 }  // namespace equidem

@@ -288,7 +288,7 @@ Results BondedRun::relax(StageTimes& times) {
                     .set("steps", rest.steps)
                     .set("force_evaluations", rest.evaluations)
                     .set("relative_unbalanced_force", rest.relative_unbalanced);
-  add_deformation(out, problem_, forces_of(scene_, run().motion, at_rest_), run().motion == LoopKind::Motion::small);
+  add_deformation(out, deformation_at(at_rest_), run().motion == LoopKind::Motion::small);
   if (const std::optional<TensionTest>& test = problem_.resolved.test) {
     problem_.tension = tension_setup(problem_.assembly, *test);
     Equilibrium reached;
@@ -299,10 +299,13 @@ Results BondedRun::relax(StageTimes& times) {
   return out;
 }
 
+LargestDeformation BondedRun::deformation_at(const std::vector<DiscMotion>& motions) const {
+  return largest_deformation(problem_.assembly, problem_.springs.springs, forces_of(scene_, run().motion, motions));
+}
+
 Results BondedRun::events() const {
   Results out = waves_.results(stiffness_of_waves());
-  add_deformation(out, problem_, forces_of(scene_, run().motion, simulation_.motions()),
-                  run().motion == LoopKind::Motion::small);
+  add_deformation(out, deformation_at(simulation_.motions()), run().motion == LoopKind::Motion::small);
   return out;
 }
 

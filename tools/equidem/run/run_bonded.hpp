@@ -68,6 +68,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] RelaxationOptions relaxation_options() const;
   /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
   [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
+  [[nodiscard]] LargestDeformation deformation_at(const std::vector<DiscMotion>& motions) const;
   void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
   Problem problem_;

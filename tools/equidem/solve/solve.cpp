@@ -101,7 +101,7 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
   } else if (accuracy) {
     reached = bound_of(results, *accuracy, times.total());
   }
-  Results all = solve_results(problem, effects, results);
+  Results all = solve_results(problem, problem_results(problem, effects), results);
   if (reached) all.append(accuracy_results(*reached));
   deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
     if (options.out) write_outputs(options, problem.resolved.output, problem, results);

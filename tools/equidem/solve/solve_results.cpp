@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
@@ -27,13 +26,13 @@ std::string stability(const Problem& problem, const Equilibrium& result) {
                      problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
 }
 
-void add_stress(Results& out, const Problem& problem, const SolvedCase& result) {
+void add_stress(Results& out, const SolvedCase& result) {
   out.line("stress");
   if (!result.stress) {
     out.note("not known: the assembly has no cell areas");
     return;
   }
-  if (!cells_hold_area(problem.assembly)) {
+  if (result.empty_cells) {
     out.note("discs: not known, because the power cell of at least one disc has no area");
     out.line("");
   }
@@ -100,27 +99,18 @@ Results load_case_results(const Problem& problem, const SolvedCase& result, bool
   constexpr double doubtful = 1e-10;
   if (e.condition > 0 && e.relative_residual > doubtful)
     out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
-  add_deformation(out, problem, e.contact_forces);
+  add_deformation(out, result.deformation, true);
   out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
-  add_stress(out, problem, result);
+  add_stress(out, result);
   if (result.tension) out.append(tension_results(problem, *result.tension));
   return out;
 }
 
 }  // namespace
 
-void add_deformation(Results& out, const Problem& problem, std::span<const ContactForce> forces, bool small_motions) {
+void add_deformation(Results& out, const LargestDeformation& deformation, bool small_motions) {
   constexpr double large = 0.05, doubtful = 1e-9;
-  const Assembly& assembly = problem.assembly;
-  double most = 0, largest_radius = 0;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const Contact& contact = assembly.contacts[c];
-    const double kN = problem.springs.springs[c].kN;
-    if (kN == 0) continue;
-    const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
-    most = std::max(most, std::abs(forces[c].normal / kN) / radii);
-  }
-  for (const double radius : assembly.radii) largest_radius = std::max(largest_radius, radius);
+  const auto& [most, largest_radius] = deformation;
   out.line("deformation")
       .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
   if (most > large && small_motions) {
@@ -173,8 +163,7 @@ Results tension_results(const Problem& problem, const TensionResult& t) {
   return out;
 }
 
-Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results) {
-  Results out = problem_results(problem, effects);
+Results solve_results(const Problem& problem, Results out, std::span<const SolvedCase> results) {
   const Case& resolved = problem.resolved;
   if (resolved.run || !resolved.schedules.empty()) {
     out.line("not used",

@@ -9,13 +9,12 @@
 
 namespace equidem {
 
-/// Assembly, solver, and of each load case residual, energy, stress and, of the tension test, the moduli beside theory.
-Results solve_results(const Problem& problem, const Effects& effects, std::span<const SolvedCase> results);
+/// Solver, and of each load case residual, energy, stress and, of the tension test, the moduli beside theory.
+/// \param of_problem results of the problem, which come first
+Results solve_results(const Problem& problem, Results of_problem, std::span<const SolvedCase> results);
 
-/// How much contacts deform, relative to the sum of their radii: forces over kN. A deformation that is hardly one is
-/// questioned: units may be other ones than meant. \param forces one for each contact
-void add_deformation(Results& out, const Problem& problem, std::span<const ContactForce> forces,
-                     bool small_motions = true);
+/// How much contacts deform. A deformation that is hardly one is questioned: units may be other ones than meant.
+void add_deformation(Results& out, const LargestDeformation& deformation, bool small_motions);
 
 /// Strains, Poisson's ratio and Young's modulus of a tension test beside the theory of the lattice.
 /// \param problem with its tension test

@@ -10,19 +10,22 @@
 
 namespace equidem {
 
+inline RowPattern hexagonal_rows(double a) {
+  constexpr double sqrt3 = std::numbers::sqrt3;
+  return {.kind = "hexagonal",
+          .staggered = true,
+          .row_distance = sqrt3 * a,
+          .cell_area = 2 * sqrt3 * a * a,
+          .facet_length = 2 * a / sqrt3};
+}
+
 /// Free: rows alternate `columns` and `columns - 1` discs, the first and every other one long, each short row shifted
 /// by one radius. Periodic: `columns` discs in each row, `rows` even. The area per disc is 2 sqrt3 a²; the height of a
 /// free block is rows * sqrt3 a. Groups as of row_lattice, tributary lengths sqrt3 a on left and right, 2a on bottom
 /// and top.
 /// \throws Error (bad_input) on counts or a radius that make no lattice, odd `rows` where periodic
 inline Assembly hexagonal_lattice(const LatticeOptions& options) {
-  constexpr double sqrt3 = std::numbers::sqrt3;
-  const double a = options.radius;
-  return row_lattice(options, {.kind = "hexagonal",
-                               .staggered = true,
-                               .row_distance = sqrt3 * a,
-                               .cell_area = 2 * sqrt3 * a * a,
-                               .facet_length = 2 * a / sqrt3});
+  return row_lattice(options, hexagonal_rows(options.radius));
 }
 
 /// 2G/((1 - nu) kN) = 2 sqrt3 (1 + r)/(3 + r), r = kT/kN: eq. (37).
@@ -65,6 +68,7 @@ inline constexpr Lattice hexagonal{
     .counts = "free: rows alternate columns and columns - 1 discs; periodic: the number of rows is even",
     .alignment = RowAlignment::staggered,
     .make = hexagonal_lattice,
+    .rows = hexagonal_rows,
     .relation = {
         .name = "hexagonal lattice, eq. (34)",
         .place = "hexagonal lattice",

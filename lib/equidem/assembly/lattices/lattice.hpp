@@ -17,6 +17,15 @@
 
 namespace equidem {
 
+/// Rows of touching discs, in line or staggered (row_lattice.hpp).
+struct RowPattern {
+  const char* kind;
+  bool staggered;       ///< every other row is shifted by one radius
+  double row_distance;  ///< m
+  double cell_area;     ///< m², of a disc
+  double facet_length;  ///< m, of a contact
+};
+
 /// A block of a lattice. Rows run along x, the first at the bottom.
 struct LatticeOptions {
   int columns = 21;       ///< discs in a row, >= 1
@@ -44,6 +53,9 @@ struct Lattice {
   RowAlignment alignment = RowAlignment::irregular;
   /// \throws Error (bad_input) on options that make no such lattice
   Assembly (*make)(const LatticeOptions& options);
+  /// The rows that `make` gives to row_lattice, by the radius: parts of such a lattice can be made without the rest;
+  /// null where it is not made by row_lattice.
+  RowPattern (*rows)(double radius) = nullptr;
 
   /// Between equal springs and moduli as the stress shows them; calibrate uses it with rotation restrained, too.
   /// Neither function may be null. `moduli` throws Error (bad_input) where nothing is known: homogenize then leaves the

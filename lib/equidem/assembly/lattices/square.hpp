@@ -8,13 +8,14 @@
 
 namespace equidem {
 
+inline RowPattern square_rows(double a) {
+  return {.kind = "square", .staggered = false, .row_distance = 2 * a, .cell_area = 4 * a * a, .facet_length = 2 * a};
+}
+
 /// Groups as of row_lattice, tributary lengths 2a. The area per disc is 4 a².
 /// \throws Error (bad_input) on counts or a radius that make no lattice
 inline Assembly square_lattice(const LatticeOptions& options) {
-  const double a = options.radius;
-  return row_lattice(
-      options,
-      {.kind = "square", .staggered = false, .row_distance = 2 * a, .cell_area = 4 * a * a, .facet_length = 2 * a});
+  return row_lattice(options, square_rows(options.radius));
 }
 
 namespace lattices {
@@ -24,6 +25,7 @@ inline constexpr Lattice square{
     .name = "square",
     .alignment = RowAlignment::aligned,
     .make = square_lattice,
+    .rows = square_rows,
     .relation = {
         .name = "square lattice, eq. (31)",
         .place = "square lattice",

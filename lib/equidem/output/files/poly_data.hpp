@@ -71,6 +71,7 @@ class PolyData {
   static constexpr const char* vtk_type() {
     if constexpr (std::is_same_v<Number, double>) return "Float64";
     if constexpr (std::is_same_v<Number, std::int32_t>) return "Int32";
+    if constexpr (std::is_same_v<Number, std::int64_t>) return "Int64";
   }
   template <class Number>
   static void append_bytes(std::string& text, Number number) {

@@ -11,9 +11,13 @@
 namespace equidem {
 namespace {
 
-std::string state_discs_text(const AssemblyState& state) {
+/// \param discs of which the data are, the first ones \param numbers of discs; empty: not written
+std::string state_discs_text(const AssemblyState& state, std::size_t discs, std::span<const std::int64_t> numbers) {
   const Assembly& assembly = state.assembly;
-  PolyData data(assembly.size(), assembly.size(), 0);
+  PolyData data(discs, discs, 0);
+  if (!numbers.empty()) {
+    data.declare<std::int64_t>("PointData", "number", discs, 1, [=](std::size_t disc, int) { return numbers[disc]; });
+  }
   data.point_numbers("radius", [&](std::size_t disc) { return assembly.radii[disc]; });
   if (!assembly.cell_areas.empty()) {
     data.point_numbers("cell_area", [&](std::size_t disc) { return assembly.cell_areas[disc]; });
@@ -27,7 +31,7 @@ std::string state_discs_text(const AssemblyState& state) {
     data.point_numbers("stress_yy", [&](std::size_t disc) { return state.stresses[disc].yy; });
     data.point_numbers("stress_xy", [&](std::size_t disc) { return state.stresses[disc].xy; });
     data.point_numbers("stress_yx", [&](std::size_t disc) { return state.stresses[disc].yx; });
-    data.point_numbers("mean_stress", [&](std::size_t disc) { return mean_stress(state.stresses[disc]); });
+    data.point_numbers("mean_stress", [=](std::size_t disc) { return mean_stress(state.stresses[disc]); });
   }
   data.places([&](std::size_t disc) { return assembly.centres[disc]; });
   return data.text();
@@ -43,14 +47,16 @@ std::string state_contacts_text(const AssemblyState& state) {
   return contacts_text({.places = assembly.centres, .motions = state.motions}, contacts, !state.contact_forces.empty());
 }
 
-std::string index_text(const std::string& discs, const std::string& contacts) {
+/// \param blocks lines of the index
+std::string index_text(const std::string& blocks) {
   return fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"{}\" "
-      "header_type=\"UInt64\">\n  <vtkMultiBlockDataSet>\n"
-      "    <DataSet index=\"0\" name=\"discs\" file=\"{}\"/>\n"
-      "    <DataSet index=\"1\" name=\"contacts\" file=\"{}\"/>\n"
-      "  </vtkMultiBlockDataSet>\n</VTKFile>\n",
-      vtk_byte_order(), escape_xml(discs), escape_xml(contacts));
+      "header_type=\"UInt64\">\n  <vtkMultiBlockDataSet>\n{}  </vtkMultiBlockDataSet>\n</VTKFile>\n",
+      vtk_byte_order(), blocks);
+}
+
+std::string piece_name(const std::string& name, const char* what, int piece) {
+  return fmt::format("{}_{}_{}.vtp", name, what, piece);
 }
 
 }  // namespace
@@ -111,10 +117,40 @@ std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder
   const std::string contacts = name + "_contacts.vtp";
   const std::vector<std::filesystem::path> paths{folder / (name + ".vtm"), folder / discs, folder / contacts};
   for (const auto& path : paths) check_writable(path, overwrite);
-  write_file(paths[1], state_discs_text(state), overwrite);
+  write_file(paths[1], state_discs_text(state, state.assembly.size(), {}), overwrite);
   write_file(paths[2], state_contacts_text(state), overwrite);
-  write_file(paths[0], index_text(discs, contacts), overwrite);
+  const std::string blocks = fmt::format(
+      "    <DataSet index=\"0\" name=\"discs\" file=\"{}\"/>\n"
+      "    <DataSet index=\"1\" name=\"contacts\" file=\"{}\"/>\n",
+      escape_xml(discs), escape_xml(contacts));
+  write_file(paths[0], index_text(blocks), overwrite);
   return paths;
+}
+
+std::vector<std::string> vtk_piece_names(const std::string& name, int piece) {
+  return {piece_name(name, "discs", piece), piece_name(name, "contacts", piece)};
+}
+
+void write_vtk_piece(const std::filesystem::path& folder, const std::string& name, int piece,
+                     const AssemblyState& state, std::span<const std::int64_t> numbers, bool overwrite) {
+  assert_consistent(state);
+  const std::vector<std::string> names = vtk_piece_names(name, piece);
+  write_file(folder / names[0], state_discs_text(state, numbers.size(), numbers), overwrite);
+  write_file(folder / names[1], state_contacts_text(state), overwrite);
+}
+
+void write_vtk_index(const std::filesystem::path& folder, const std::string& name, int pieces, bool overwrite) {
+  std::string blocks;
+  int block = 0;
+  for (const char* what : {"discs", "contacts"}) {
+    blocks += fmt::format("    <Block index=\"{}\" name=\"{}\">\n", block++, what);
+    for (int piece = 0; piece < pieces; ++piece) {
+      blocks +=
+          fmt::format("      <DataSet index=\"{}\" file=\"{}\"/>\n", piece, escape_xml(piece_name(name, what, piece)));
+    }
+    blocks += "    </Block>\n";
+  }
+  write_file(folder / (name + ".vtm"), index_text(blocks), overwrite);
 }
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 /// Files that ParaView and VTK's own readers open.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -37,5 +38,15 @@ std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContac
 /// \throws Error (bad_input) as write_file does, before anything is written where one of the three exists
 std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder, const std::string& name,
                                              const AssemblyState& state, bool overwrite);
+
+/// Write one piece of an assembly that several processes hold: NAME_discs_K.vtp and NAME_contacts_K.vtp as write_vtk.
+/// Discs have the array `number`, that in the whole assembly; `i` and `j` of contacts count the points of the piece.
+/// \param numbers of the discs that are written, the first ones of the state; contacts may reach the others
+void write_vtk_piece(const std::filesystem::path& folder, const std::string& name, int piece,
+                     const AssemblyState& state, std::span<const std::int64_t> numbers, bool overwrite);
+/// The names of these two files.
+std::vector<std::string> vtk_piece_names(const std::string& name, int piece);
+/// Write NAME.vtm, the index of all pieces: a block of discs and one of contacts.
+void write_vtk_index(const std::filesystem::path& folder, const std::string& name, int pieces, bool overwrite);
 
 }  // namespace equidem

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "petsc/solver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+
+#include "petsc/coordinates.hpp"
+
+namespace equidem::petsc {
+namespace {
+
+constexpr const char* prefix = "equidem_";
+/// Each pass of refinement gains so many digits; the last digits cost fewer iterations this way.
+constexpr double tolerance_of_a_pass = 1e-8;
+constexpr int most_iterations_of_a_pass = 1000;
+
+bool is_type(KSP solver, PC pc, const char* ksp_type, const char* pc_type) {
+  PetscBool first = PETSC_FALSE, second = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver), ksp_type, &first));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), pc_type, &second));
+  return first == PETSC_TRUE && second == PETSC_TRUE;
+}
+
+}  // namespace
+
+/// Ends the iterations of all ranks where one of them was asked to stop.
+struct PetscSolver::Interruption {
+  const Ranks& ranks;
+  void* by_tolerance = nullptr;
+  bool stopped = false;
+
+  static PetscErrorCode test(KSP solver, PetscInt iteration, PetscReal residual, KSPConvergedReason* reason,
+                             void* context) {
+    auto& self = *static_cast<Interruption*>(context);
+    const PetscErrorCode code = KSPConvergedDefault(solver, iteration, residual, reason, self.by_tolerance);
+    if (code != 0 || *reason != KSP_CONVERGED_ITERATING) return code;
+    bool asked = false;
+    try {
+      equidem::stop_if_interrupted();
+    } catch (const Error&) {
+      asked = true;
+    }
+    self.stopped = self.ranks.any(asked);
+    if (self.stopped) *reason = KSP_DIVERGED_NULL;
+    return 0;
+  }
+};
+
+PetscSolver::PetscSolver(const Network& network, SolverMethod method, StageTimes& times) : network_(network) {
+  Stopwatch watch;
+  assemble();
+  set_near_null_space();
+  times.add("assemble", watch.lap());
+  set_up(method);
+  times.add("set up", watch.lap());
+}
+
+PetscSolver::~PetscSolver() {
+  KSPDestroy(&solver_);
+  VecDestroy(&load_);
+  VecDestroy(&solution_);
+  MatDestroy(&matrix_);
+  if (interruption_ != nullptr) KSPConvergedDefaultDestroy(interruption_->by_tolerance);
+  delete interruption_;
+}
+
+void PetscSolver::assemble() {
+  const Network& n = network_;
+  const auto b = static_cast<PetscInt>(n.block());
+  const auto rows = static_cast<PetscInt>(n.owned());
+  check(MatCreate(n.ranks().communicator(), &matrix_));
+  check(MatSetSizes(matrix_, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetBlockSize(matrix_, b));
+  check(MatSetType(matrix_, MATAIJ));
+  check(MatSetOptionsPrefix(matrix_, prefix));
+  check(MatSetFromOptions(matrix_));
+  {
+    Coordinates coordinates(n);
+    check(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(coordinates.rows.size()), coordinates.rows.data(),
+                                 coordinates.columns.data()));
+    coordinates.rows = coordinates.columns = {};
+    coordinates.fill(n);
+    check(MatSetValuesCOO(matrix_, coordinates.values.data(), INSERT_VALUES));
+  }
+  // A copy does not keep the places of the coordinates, which take more memory than the matrix.
+  Mat copy = nullptr;
+  check(MatDuplicate(matrix_, MAT_COPY_VALUES, &copy));
+  check(MatDestroy(&matrix_));
+  matrix_ = copy;
+  check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
+  if (!n.any_negative()) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  check(MatCreateVecs(matrix_, &solution_, &load_));
+}
+
+/// Two translations and the rotation about the middle, in which discs turn too, orthonormal.
+void PetscSolver::set_near_null_space() {
+  const Network& n = network_;
+  const Vec2 middle = 0.5 * (n.whole().extents.low + n.whole().extents.high);
+  std::array<Vec, 3> motions{};
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    check(VecDuplicate(solution_, &motions[m]));
+    double* values = nullptr;
+    check(VecGetArray(motions[m], &values));
+    for (std::size_t k = 0; k < n.owned(); ++k) {
+      const std::size_t component = k % n.block();
+      const Vec2 at = n.assembly().centres[k / n.block()] - middle;
+      const double turn = component == 0 ? -at.y : component == 1 ? at.x : n.unknowns().rotation_scale;
+      values[k] = m < 2 ? static_cast<double>(component == m) : turn;
+    }
+    check(VecRestoreArray(motions[m], &values));
+    for (std::size_t l = 0; l < m; ++l) {
+      double product = 0;
+      check(VecDot(motions[m], motions[l], &product));
+      check(VecAXPY(motions[m], -product, motions[l]));
+    }
+    check(VecNormalize(motions[m], nullptr));
+  }
+  MatNullSpace space = nullptr;
+  check(MatNullSpaceCreate(n.ranks().communicator(), PETSC_FALSE, 3, motions.data(), &space));
+  check(MatSetNearNullSpace(matrix_, space));
+  check(MatNullSpaceDestroy(&space));
+  for (Vec& motion : motions) check(VecDestroy(&motion));
+}
+
+void PetscSolver::set_up(SolverMethod method) {
+  const Network& n = network_;
+  const bool eliminates = method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
+  check(KSPCreate(n.ranks().communicator(), &solver_));
+  check(KSPSetOptionsPrefix(solver_, prefix));
+  check(KSPSetOperators(solver_, matrix_, matrix_));
+  PC pc = nullptr;
+  check(KSPGetPC(solver_, &pc));
+  if (eliminates) {
+    check(KSPSetType(solver_, KSPPREONLY));
+    check(PCSetType(pc, PCCHOLESKY));
+    check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  } else {
+    check(KSPSetType(solver_, KSPCG));
+    check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
+    check(PCSetType(pc, PCGAMG));
+  }
+  check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
+  check(KSPSetFromOptions(solver_));
+  interruption_ = new Interruption{n.ranks()};
+  check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
+  PetscBool elimination = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &elimination));
+  if (elimination == PETSC_FALSE) check(KSPSetConvergenceTest(solver_, Interruption::test, interruption_, nullptr));
+  n.ranks().stop_if_interrupted();
+  check(KSPSetUp(solver_));
+  n.ranks().stop_if_interrupted();
+}
+
+std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) {
+  const Network& n = network_;
+  double* values = nullptr;
+  check(VecGetArrayWrite(load_, &values));
+  std::copy_n(r.begin(), n.owned(), values);
+  check(VecRestoreArrayWrite(load_, &values));
+  check(KSPSolve(solver_, load_, solution_));
+  if (interruption_->stopped) {
+    throw Error(ErrorKind::interrupted, "stopped as asked", "nothing is kept of a solution that has not converged", "");
+  }
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(solver_, &reason));
+  PetscInt iterations = 0;
+  check(KSPGetIterationNumber(solver_, &iterations));
+  if (reason < 0) {
+    computation_failed(
+        fmt::format("the solver of PETSc did not converge ({} after {})", KSPConvergedReasons[reason],
+                    counted(iterations, "iteration")),
+        n.any_negative() ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
+                         : "the assembly may have a mechanism, or be close to one",
+        n.any_negative() ? "Take MUMPS: leave -equidem_ksp_type and -equidem_pc_type out"
+                         : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
+                           "--set solver.method=multifrontal takes MUMPS");
+  }
+  const double* found = nullptr;
+  check(VecGetArrayRead(solution_, &found));
+  std::copy_n(found, n.owned(), d.begin());
+  check(VecRestoreArrayRead(solution_, &found));
+  for (std::size_t k = 0; k < n.owned(); ++k) {
+    if (n.unknowns().held[k] != 0) d[k] = 0;
+  }
+  n.halo().mirror(d, n.unknowns().per_disc);
+  return iterations;
+}
+
+std::string PetscSolver::name() const {
+  PC pc = nullptr;
+  KSPType method = nullptr;
+  PCType preconditioner = nullptr;
+  check(KSPGetPC(solver_, &pc));
+  check(KSPGetType(solver_, &method));
+  check(PCGetType(pc, &preconditioner));
+  std::string name = fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+                                 PETSC_VERSION_SUBMINOR, method, preconditioner);
+  MatSolverType package = nullptr;
+  const bool factors = is_type(solver_, pc, method, PCCHOLESKY) || is_type(solver_, pc, method, PCLU);
+  if (factors) check(PCFactorGetMatSolverType(pc, &package));
+  if (package != nullptr) name += fmt::format(" by {}", package);
+  return fmt::format("{}, on {}", name, counted(network_.ranks().count(), "rank"));
+}
+
+double PetscSolver::entries() const {
+  MatInfo info;
+  check(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
+  return info.nz_used;
+}
+
+double PetscSolver::grid_bytes() const {
+  PC pc = nullptr;
+  check(KSPGetPC(solver_, &pc));
+  PetscBool gamg = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &gamg));
+  if (gamg == PETSC_FALSE) return 0;
+  PetscReal grids = 0, operators = 0;
+  check(PCMGGetGridComplexity(pc, &grids, &operators));
+  return operators * entries() * (sizeof(double) + sizeof(PetscInt));
+}
+
+Counted counted_messages() {
+  return {.messages = petsc_isend_ct + petsc_send_ct,
+          .bytes = petsc_isend_len + petsc_send_len,
+          .sums = petsc_allreduce_ct};
+}
+
+std::vector<std::string> unused_options() {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::vector<std::string> unused;
+  for (PetscInt k = 0; k < count; ++k) unused.push_back(fmt::format("-{}", names[k]));
+  check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  return unused;
+}
+
+}  // namespace equidem::petsc

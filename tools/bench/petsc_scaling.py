@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tools/bench/petsc_scaling.py --build FOLDER [--discs N,...] [--repetitions N] [--markdown FILE]
+
+The page data/petsc.md: equidem-mpi on one rank and on two, strong and weak scaling, memory and messages by formula and
+counted, and what a billion discs on a thousand ranks need by these constants."""
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+CASE = """schema = "equidem/1"
+[assembly]
+kind = "hexagonal"
+columns = {columns}
+rows = {rows}
+radius = 0.005
+[springs]
+kN = 1.0e9
+kT = 0.5e9
+[test]
+kind = "uniaxial_tension"
+stress = 1.0e6
+"""
+# Of a network that a cluster has; assumed, not measured.
+LATENCY, BANDWIDTH = 2e-6, 10e9  # s, B/s
+SQRT3 = math.sqrt(3)
+
+
+def shape(discs):
+    """Columns and rows of a block about as high as wide."""
+    columns = max(8, round(math.sqrt(discs * SQRT3 / 2)))
+    return columns, max(8, round(discs / columns))
+
+
+def run(build, folder, discs, ranks, options=()):
+    columns, rows = shape(discs)
+    case, out = folder / "block.toml", folder / "result.json"
+    case.write_text(CASE.format(columns=columns, rows=rows), encoding="utf-8")
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
+                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
+    subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
+                    "--json", out, *options], env=environment, check=True, stdout=subprocess.DEVNULL)
+    result = json.loads(out.read_text(encoding="utf-8"))
+    times = result["times"]
+    return {"discs": result["discs"], "ranks": ranks, "columns": columns, "rows": rows, "iterations": result["iterations"],
+            "passes": result["refinements"] + 1, "before": times["assembly"] + times["assemble"], "set_up": times["set up"],
+            "solve": times["solve"], "all": sum(times.values()), "peak": result["peak_bytes"],
+            "owned": result["discs_of_a_rank"], "ghosts": result["ghosts_of_a_rank"], "exchange": result["exchange_bytes"],
+            "messages": result["messages"], "bytes": result["message_bytes"], "sums": result["sums_over_ranks"],
+            "residual": result["relative_residual"]}
+
+
+def least(build, folder, jobs, repetitions):
+    """The fastest of several runs of each job, which take turns."""
+    best = {}
+    for _ in range(repetitions):
+        for job in jobs:
+            one = run(build, folder, *job)
+            if job not in best or one["all"] < best[job]["all"]:
+                best[job] = one
+            print(f"{one['discs']} discs, {one['ranks']} ranks: {one['all']:.1f} s", file=sys.stderr)
+    return best
+
+
+def grid(columns, rows, ranks):
+    """Blocks side by side and one above the other, as equidem-mpi cuts a hexagonal block."""
+    pairs = [(a, ranks // a) for a in range(1, ranks + 1) if ranks % a == 0]
+    return min(pairs, key=lambda p: (p[0] - 1) * rows * SQRT3 / 2 + (p[1] - 1) * columns)
+
+
+def exchange_by_formula(columns, rows, ranks):
+    """Bytes that an inner block sends for one value of each unknown: its left column and its lowest row are mirrored, and of
+    the staggered rows one disc more or, at every other row, the right column."""
+    across, along = grid(columns, rows, ranks)
+    wide, high = columns / across, rows / along
+    left = high if across > 1 else 0
+    right = high / 2 if across > 1 else 0  # short rows reach up and left
+    lowest = wide if along > 1 else 0
+    return 8 * 3 * (left + right + lowest)
+
+
+def si(number, unit="B"):
+    for size, prefix in ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if number >= size:
+            return f"{number / size:.3g} {prefix}{unit}"
+    return f"{number:.3g} {unit}"
+
+
+def table(lines, head, rows):
+    lines.append("| " + " | ".join(head) + " |")
+    lines.append("|" + "---|" * len(head))
+    lines.extend("| " + " | ".join(row) + " |" for row in rows)
+    lines.append("")
+
+
+def base_memory(build, folder):
+    return run(build, folder, 100, 1)["peak"]
+
+
+def page(command, sizes, best, cuts, base):
+    lines = ["# Statics on PETSc: measured, and planned past it", "",
+             f"`{command}` writes this page. {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the end: times of a "
+             "machine on which others work scatter, and only their ratios within a row mean anything; memory, iterations and "
+             "messages do not depend on that. The tension test of hexagonal blocks, conjugate gradients with GAMG, each pass to "
+             "1e-8, two passes to the digits of a double. Numbers of a rank are those of the rank with most.", "",
+             "## Strong scaling", ""]
+    rows = []
+    for discs in sizes:
+        one, two = best[(discs, 1)], best[(discs, 2)]
+        for r in (one, two):
+            rows.append([f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), f"{r['set_up']:.2f}", f"{r['solve']:.2f}",
+                         f"{r['all']:.2f}", f"{one['all'] / r['all']:.2f}", str(r["iterations"]), f"{r['residual']:.0e}",
+                         si(r["peak"]), f"{(r['peak'] - base) / r['owned']:.0f}"])
+    table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "faster by", "iterations", "residual", "memory of a rank",
+                  f"of it for a disc, B (beyond {si(base)})"], rows)
+    lines += ["## Weak scaling", "", "Twice the discs on two ranks take as long as on one where nothing is lost.", ""]
+    rows = []
+    for discs in sizes:
+        if (2 * discs, 2) in best:
+            one, two = best[(discs, 1)], best[(2 * discs, 2)]
+            rows.append([f"{discs:.0e}", f"{one['all']:.2f}", f"{two['all']:.2f}", f"{one['all'] / two['all']:.2f}",
+                         f"{one['iterations']}, {two['iterations']}"])
+    table(lines, ["discs of a rank", "one rank, s", "two ranks, s", "share kept", "iterations"], rows)
+    lines += ["## Messages", "",
+              "A rank has a block of w columns and h rows. It sends 8 B for each component of the discs that others mirror: the left "
+              "column and the lowest row, and in every other row the right column, since short rows reach up and to the left: "
+              "24 (h + h/2 + w) B where it has neighbours on all sides.", ""]
+    rows = [[f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), si(exchange_by_formula(r["columns"], r["rows"], r["ranks"])),
+             si(r["exchange"]), str(r["messages"]), si(r["bytes"]), str(r["sums"]),
+             f"{r['messages'] / r['iterations']:.1f}", f"{r['sums'] / r['iterations']:.1f}"] for r in cuts]
+    table(lines, ["discs", "ranks", "one exchange by formula", "counted", "messages in all", "bytes in all", "sums over ranks",
+                  "messages of an iteration", "sums of an iteration"], rows)
+    lines += plan(sizes, best, cuts, base)
+    return "\n".join(lines)
+
+
+def plan(sizes, best, cuts, base):
+    runs = [best[(discs, ranks)] for discs in sizes for ranks in (1, 2)]
+    large = max(sizes)
+    memory = [(r["peak"] - base) / r["owned"] for r in runs if r["discs"] >= 0.3 * large]
+    set_up = [(r["before"] + r["set_up"]) * r["ranks"] / r["discs"] for r in runs if r["discs"] >= 0.3 * large]
+    step = [r["solve"] * r["ranks"] / r["discs"] / r["iterations"] for r in runs if r["discs"] >= 0.3 * large]
+    small, big = best[(min(sizes), 1)], best[(large, 1)] if (large, 1) in best else best[(large, 2)]
+    decades = math.log10(big["discs"] / small["discs"])
+    growth = (big["iterations"] - small["iterations"]) / decades if decades > 0 else 0
+    discs, ranks = 1e9, 1000
+    own = discs / ranks
+    few = big["iterations"]
+    many = max(few, big["iterations"] + 2 * growth * math.log10(discs / big["discs"]), 1.5 * few)
+    columns, rows = shape(discs)
+    exchange = exchange_by_formula(columns, rows, ranks)
+    per_iteration = max(r["messages"] / r["iterations"] for r in cuts)
+    volume = max(r["bytes"] / r["exchange"] / r["iterations"] for r in cuts if r["exchange"] > 0)
+    sums = max(r["sums"] / r["iterations"] for r in cuts)
+    # Inner blocks have more neighbours than those that were counted: six of a hexagonal grid of blocks at most.
+    neighbours = 6 / 2
+    wire = lambda iterations: iterations * (neighbours * per_iteration * LATENCY + volume * exchange / BANDWIDTH
+                                            + sums * LATENCY * math.log2(ranks))
+    low = own * (min(set_up) + few * min(step)) + wire(few)
+    high = own * (max(set_up) + many * max(step)) + wire(many)
+    wide = 1.35  # indices of 8 B in place of 4: entries of 16 B in place of 12, and their lists
+    return ["## A billion discs on a thousand ranks", "",
+            "Constants of the larger blocks above; the smallest and the largest one measured span the range.", "",
+            "| quantity | value | from |", "|---|---|---|",
+            f"| discs of a rank | {own:.0e}, and {exchange / 24:.0f} that neighbours mirror | 1e9/1000; formula above |",
+            f"| memory of a rank | {si(base + own * wide * min(memory))} to {si(base + own * wide * max(memory))} | "
+            f"{min(memory):.0f} to {max(memory):.0f} B a disc, times {wide} for indices of 64 bits, which 3e9 unknowns need |",
+            f"| memory in all | {si(ranks * own * wide * max(memory))} | 1000 ranks |",
+            f"| iterations, both passes | {few} to {many:.0f} | {growth:+.1f} for ten times as many discs measured; twice that, or half "
+            "as many more, at most |",
+            f"| one exchange | {si(exchange)} to send, up to 6 neighbours | formula |",
+            f"| messages of a rank | {neighbours * per_iteration * few:.0f} to {neighbours * per_iteration * many:.0f} | "
+            f"{per_iteration:.1f} an iteration counted with up to 2 neighbours, times {neighbours:.0f} |",
+            f"| sums over ranks | {sums * few:.0f} to {sums * many:.0f} | {sums:.1f} an iteration counted |",
+            f"| messages take | {wire(few):.2f} to {wire(many):.2f} s | {LATENCY * 1e6:.0f} µs and {BANDWIDTH / 1e9:.0f} GB/s assumed, "
+            "a sum over ranks log2(1000) latencies |",
+            f"| time | {low:.0f} to {high:.0f} s | {min(set_up) * 1e6:.1f} to {max(set_up) * 1e6:.1f} µs a disc before the iterations, "
+            f"{min(step) * 1e6:.2f} to {max(step) * 1e6:.2f} µs a disc and iteration |", "",
+            "What is not in these numbers: coarse grids of GAMG have fewer unknowns than ranks and are gathered on some of them, which "
+            "costs time beyond a hundred ranks that two cannot show; the cores of a node share its memory, so that a full node is "
+            "slower than two cores by up to its share of bandwidth. The time may be three times as long for either reason. A PETSc of "
+            "64-bit indices is needed from 7.2e8 discs on (Debian: petsc64-dev); with one of 32 bits equidem-mpi refuses. The files "
+            "for ParaView have 260 B for a disc: 260 GB, in 2000 pieces.", ""]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, required=True, help="a build folder with equidem-mpi")
+    parser.add_argument("--discs", default="1e4,1e5,2e5,1e6", help="sizes of blocks; default %(default)s")
+    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--markdown", type=Path, help="the page; left out: stdout")
+    request = parser.parse_args()
+    sizes = [int(float(word)) for word in request.discs.split(",")]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        base = base_memory(request.build.resolve(), folder)
+        jobs = [(discs, ranks) for discs in sizes for ranks in (1, 2)]
+        jobs += [(2 * discs, 2) for discs in sizes if 2 * discs <= max(sizes) and (2 * discs, 2) not in jobs]
+        best = least(request.build.resolve(), folder, jobs, request.repetitions)
+        cuts = [best[(discs, 2)] for discs in sizes]
+        cuts += [run(request.build.resolve(), folder, sizes[0], ranks) for ranks in (4, 9)]
+    command = f"tools/bench/petsc_scaling.py --build build/release --discs {request.discs} --markdown data/petsc.md"
+    text = page(command, sizes, best, cuts, base)
+    if request.markdown:
+        request.markdown.write_text(text, encoding="utf-8")
+    else:
+        print(text)
+
+
+if __name__ == "__main__":
+    main()
