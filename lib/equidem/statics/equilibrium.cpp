@@ -177,11 +177,11 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) const {
   const Implementation& self = *implementation_;
-  return self.solve(load_vector(self.assembly, self.solver.unknowns(), loads));
+  return self.solve(assemble_loads(self.assembly, self.solver.unknowns(), loads));
 }
 Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) const {
   assert(loads.size() == implementation_->assembly.size());
-  return implementation_->solve(load_vector(implementation_->solver.unknowns(), loads));
+  return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads));
 }
 const Effects& EquilibriumSolver::effects() const {
   return implementation_->effects;
