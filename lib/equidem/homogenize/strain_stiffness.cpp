@@ -9,7 +9,6 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
-#include "equidem/homogenize/strain_system.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
