@@ -58,6 +58,7 @@ mathjax2_config = {
     "menuSettings": {"zoom": "None"},
     "tex2jax": {"ignoreClass": ".*", "processClass": "math"},
     "SVG": {"scale": 95},
+    "fast-preview": {"disabled": True},  # that of Debian 13 leaves the bars of fractions out
 }
 
 
