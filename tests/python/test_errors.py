@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Wrong input is answered with one sentence: the problem, why it is one, what to do."""
 
+import pathlib
+
 import numpy as np
 import pytest
 
 import equidem as eq
 
+PACKINGS = pathlib.Path(__file__).resolve().parents[2] / "data/packings"
 CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
 BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
 HELD = [{"group": "left", "ux": 0, "uy": 0}]
@@ -24,6 +27,10 @@ WRONG = {
     "contacts_that_are_no_whole_numbers": (lambda: eq.Assembly(CENTRES, 1.0, [[0.0, 1.5]]), "whole numbers"),
     "discs_that_touch_nothing": (lambda: eq.Assembly(CENTRES, 0.1), "contact"),
     "levers_without_contacts": (lambda: eq.Assembly(CENTRES, 1.0, levers=[[1, 1]]), "contacts"),
+    "a_packing_without_a_unit": (lambda: eq.read(PACKINGS / "packing.data"), "unit of length"),
+    "a_packing_without_boundaries":
+        (lambda: eq.read(PACKINGS / "packing.data", unit_of_length="m"), "whether its box is periodic"),
+    "a_frame_that_does_not_exist": (lambda: eq.read(PACKINGS / "packing.dump", frame=7), "no frame of time step 7"),
     "an_unknown_kind": (lambda: eq.assembly(kind="hexagnal"), 'Did you mean "hexagonal"'),
     "an_unknown_key": (lambda: eq.hexagonal(colums=4), "columns"),
     "no_springs": (lambda: eq.tension_test(BLOCK), "springs"),

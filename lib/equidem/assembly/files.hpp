@@ -26,14 +26,14 @@ struct EnumNames<AssemblyFormat> {
 /// "assembly.json" or "assembly.h5".
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 
-/// What a file leaves open. All but the gap tolerance are for files of other programs.
+/// Settings for what a file does not say. All but the gap tolerance are for files of other programs.
 struct AssemblyFileOptions {
-  double gap_tolerance = 0;  ///< of a file without contacts: the largest gap that is bonded, of the sum of the radii
+  double gap_tolerance = 0;  ///< largest gap that is bonded, of the sum of the radii, without contacts in the file
   std::string unit_of_length = {};                     ///< "mm", "2.5 mm"; empty: the file says it
-  std::optional<std::int64_t> frame = {};              ///< time step of a LAMMPS dump; none: its last
+  std::optional<std::int64_t> frame = {};              ///< time step in a LAMMPS dump; none: its last
   std::optional<std::filesystem::path> contacts = {};  ///< table of contacts
   std::optional<bool> periodic_box = {};               ///< whether the box of a LAMMPS file is the periodic cell
-  std::optional<Vec2> period = {};                     ///< m, of a file without a box; none: free
+  std::optional<Vec2> period = {};                     ///< m, the cell where the file has no box; none: free
 };
 
 /// Read an assembly, or copy the Given<Assembly> of that name. As JSON: `contacts` missing: those of touching_discs, at

@@ -97,7 +97,7 @@ enum class FactorPrecision { automatic, single_precision, double_precision };
 
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
-  CholmodOrdering ordering = CholmodOrdering::equidem;     ///< of SolverMethod::cholmod alone
+  CholmodOrdering ordering = CholmodOrdering::equidem;     ///< for SolverMethod::cholmod alone
   FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
   int max_refinements =
       4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision

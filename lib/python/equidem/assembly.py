@@ -177,7 +177,7 @@ def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_le
     gap_tolerance : float
         For a file without contacts: pairs whose gap is at most this share of the sum of their radii touch.
     unit_of_length : str
-        Of a file of another program that does not say it: "m", "mm", a length such as "2.5 mm".
+        Unit of lengths in a file of another program that does not say it: "m", "mm", a length such as "2.5 mm".
     frame : int, optional
         Time step of the frame of a LAMMPS dump; default: its last.
     contacts : path, optional

@@ -75,7 +75,8 @@ void bind_assembly(File<CaseTables>& file) {
                "a LAMMPS data file or dump, a text export of YADE, a table with the columns x, y and radius or "
                "diameter"),
            key("unit_of_length", &A::file, &F::unit_of_length, when("kind", from_file),
-               "of a file of another program that does not say it: m, cm, mm, um, nm, or a length such as \"2.5 mm\""),
+               "unit of lengths in a file of another program that does not say it: m, cm, mm, um, nm, or a length such "
+               "as \"2.5 mm\""),
            key("frame", &A::file, &F::frame, from(0, 9e15), when("kind", from_file),
                "time step of the frame of a LAMMPS dump; left out: its last"),
            key("contacts", &A::file, &F::contacts, when("kind", from_file),

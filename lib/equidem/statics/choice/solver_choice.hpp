@@ -22,7 +22,7 @@ struct System {
   const DegreesOfFreedom& unknowns;
   std::shared_ptr<const SymbolicFactor> symbolic;  ///< null for iterative methods
   int max_iterations = most_iterations;            ///< after which an iterative method gives up
-  SolverOptions options = {};                      ///< of back ends
+  SolverOptions options = {};                      ///< settings that back ends use
 };
 
 /// \param single whether the factor consists of floats
