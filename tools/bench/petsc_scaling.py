@@ -9,6 +9,7 @@ import argparse
 import json
 import math
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -38,22 +39,29 @@ def shape(discs):
     return columns, max(8, round(discs / columns))
 
 
+def processor_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 def run(build, folder, discs, ranks, options=()):
     columns, rows = shape(discs)
     case, out = folder / "block.toml", folder / "result.json"
     case.write_text(CASE.format(columns=columns, rows=rows), encoding="utf-8")
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
                        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
+    used = processor_seconds()
     subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
                     "--json", out, *options], env=environment, check=True, stdout=subprocess.DEVNULL)
     result = json.loads(out.read_text(encoding="utf-8"))
+    used = processor_seconds() - used
     times = result["times"]
     return {"discs": result["discs"], "ranks": ranks, "columns": columns, "rows": rows, "iterations": result["iterations"],
             "passes": result["refinements"] + 1, "before": times["assembly"] + times["assemble"], "set_up": times["set up"],
             "solve": times["solve"], "all": sum(times.values()), "peak": result["peak_bytes"],
             "owned": result["discs_of_a_rank"], "ghosts": result["ghosts_of_a_rank"], "exchange": result["exchange_bytes"],
             "messages": result["messages"], "bytes": result["message_bytes"], "sums": result["sums_over_ranks"],
-            "residual": result["relative_residual"]}
+            "residual": result["relative_residual"], "processor": used}
 
 
 def least(build, folder, jobs, repetitions):
@@ -75,12 +83,12 @@ def grid(columns, rows, ranks):
 
 
 def exchange_by_formula(columns, rows, ranks):
-    """Bytes that an inner block sends for one value of each unknown: its left column and its lowest row are mirrored, and of
-    the staggered rows one disc more or, at every other row, the right column."""
+    """Bytes that the block with most neighbours sends for one value of each unknown: its left column and its lowest row are
+    mirrored and, where it has a block on its right too, every other disc of the right column."""
     across, along = grid(columns, rows, ranks)
     wide, high = columns / across, rows / along
     left = high if across > 1 else 0
-    right = high / 2 if across > 1 else 0  # short rows reach up and left
+    right = high / 2 if across > 2 else 0
     lowest = wide if along > 1 else 0
     return 8 * 3 * (left + right + lowest)
 
@@ -107,7 +115,7 @@ def page(command, sizes, best, cuts, base):
     lines = ["# Statics on PETSc: measured, and planned past it", "",
              f"`{command}` writes this page. {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the end: times of a "
              "machine on which others work scatter, and only their ratios within a row mean anything; memory, iterations and "
-             "messages do not depend on that. The tension test of hexagonal blocks, conjugate gradients with GAMG, each pass to "
+             "messages do not depend on that, and the processor time of one rank hardly; two ranks spend theirs on waiting, too. The tension test of hexagonal blocks, conjugate gradients with GAMG, each pass to "
              "1e-8, two passes to the digits of a double. Numbers of a rank are those of the rank with most.", "",
              "## Strong scaling", ""]
     rows = []
@@ -115,9 +123,9 @@ def page(command, sizes, best, cuts, base):
         one, two = best[(discs, 1)], best[(discs, 2)]
         for r in (one, two):
             rows.append([f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), f"{r['set_up']:.2f}", f"{r['solve']:.2f}",
-                         f"{r['all']:.2f}", f"{one['all'] / r['all']:.2f}", str(r["iterations"]), f"{r['residual']:.0e}",
+                         f"{r['all']:.2f}", f"{r['processor']:.1f}", f"{one['all'] / r['all']:.2f}", str(r["iterations"]), f"{r['residual']:.0e}",
                          si(r["peak"]), f"{(r['peak'] - base) / r['owned']:.0f}"])
-    table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "faster by", "iterations", "residual", "memory of a rank",
+    table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster by", "iterations", "residual", "memory of a rank",
                   f"of it for a disc, B (beyond {si(base)})"], rows)
     lines += ["## Weak scaling", "", "Twice the discs on two ranks take as long as on one where nothing is lost.", ""]
     rows = []
@@ -129,8 +137,8 @@ def page(command, sizes, best, cuts, base):
     table(lines, ["discs of a rank", "one rank, s", "two ranks, s", "share kept", "iterations"], rows)
     lines += ["## Messages", "",
               "A rank has a block of w columns and h rows. It sends 8 B for each component of the discs that others mirror: the left "
-              "column and the lowest row, and in every other row the right column, since short rows reach up and to the left: "
-              "24 (h + h/2 + w) B where it has neighbours on all sides.", ""]
+              "column, the lowest row, and every other disc of the right column, which upper left contacts reach: "
+              "24 (h + w + h/2) B where it has neighbours on all sides.", ""]
     rows = [[f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), si(exchange_by_formula(r["columns"], r["rows"], r["ranks"])),
              si(r["exchange"]), str(r["messages"]), si(r["bytes"]), str(r["sums"]),
              f"{r['messages'] / r['iterations']:.1f}", f"{r['sums'] / r['iterations']:.1f}"] for r in cuts]
@@ -141,11 +149,13 @@ def page(command, sizes, best, cuts, base):
 
 
 def plan(sizes, best, cuts, base):
-    runs = [best[(discs, ranks)] for discs in sizes for ranks in (1, 2)]
+    runs = [best[(discs, ranks)] for discs in sizes for ranks in (1, 2) if 4 * discs >= max(sizes)]
     large = max(sizes)
-    memory = [(r["peak"] - base) / r["owned"] for r in runs if r["discs"] >= 0.3 * large]
-    set_up = [(r["before"] + r["set_up"]) * r["ranks"] / r["discs"] for r in runs if r["discs"] >= 0.3 * large]
-    step = [r["solve"] * r["ranks"] / r["discs"] / r["iterations"] for r in runs if r["discs"] >= 0.3 * large]
+    memory = [(r["peak"] - base) / r["owned"] for r in runs]
+    # Of one rank, less what others took of its processor.
+    alone = [(r, min(1, r["processor"] / r["all"]) / r["discs"]) for r in runs if r["ranks"] == 1]
+    set_up = [(r["before"] + r["set_up"]) * share for r, share in alone]
+    step = [r["solve"] * share / r["iterations"] for r, share in alone]
     small, big = best[(min(sizes), 1)], best[(large, 1)] if (large, 1) in best else best[(large, 2)]
     decades = math.log10(big["discs"] / small["discs"])
     growth = (big["iterations"] - small["iterations"]) / decades if decades > 0 else 0
@@ -155,15 +165,18 @@ def plan(sizes, best, cuts, base):
     many = max(few, big["iterations"] + 2 * growth * math.log10(discs / big["discs"]), 1.5 * few)
     columns, rows = shape(discs)
     exchange = exchange_by_formula(columns, rows, ranks)
-    per_iteration = max(r["messages"] / r["iterations"] for r in cuts)
-    volume = max(r["bytes"] / r["exchange"] / r["iterations"] for r in cuts if r["exchange"] > 0)
+    inner = cuts[-1]  # nine blocks: the middle one has neighbours on all sides
+    per_iteration = inner["messages"] / inner["iterations"]
+    volume = inner["bytes"] / inner["exchange"] / inner["iterations"]
     sums = max(r["sums"] / r["iterations"] for r in cuts)
-    # Inner blocks have more neighbours than those that were counted: six of a hexagonal grid of blocks at most.
-    neighbours = 6 / 2
-    wire = lambda iterations: iterations * (neighbours * per_iteration * LATENCY + volume * exchange / BANDWIDTH
-                                            + sums * LATENCY * math.log2(ranks))
-    low = own * (min(set_up) + few * min(step)) + wire(few)
-    high = own * (max(set_up) + many * max(step)) + wire(many)
+    deeper = 2  # more grids than those of the blocks that were counted
+
+    def wire(iterations, grids):
+        return iterations * (grids * per_iteration * LATENCY + volume * exchange / BANDWIDTH
+                             + sums * LATENCY * math.log2(ranks))
+
+    low = own * (min(set_up) + few * min(step)) + wire(few, 1)
+    high = own * (max(set_up) + many * max(step)) + wire(many, deeper)
     wide = 1.35  # indices of 8 B in place of 4: entries of 16 B in place of 12, and their lists
     return ["## A billion discs on a thousand ranks", "",
             "Constants of the larger blocks above; the smallest and the largest one measured span the range.", "",
@@ -175,10 +188,10 @@ def plan(sizes, best, cuts, base):
             f"| iterations, both passes | {few} to {many:.0f} | {growth:+.1f} for ten times as many discs measured; twice that, or half "
             "as many more, at most |",
             f"| one exchange | {si(exchange)} to send, up to 6 neighbours | formula |",
-            f"| messages of a rank | {neighbours * per_iteration * few:.0f} to {neighbours * per_iteration * many:.0f} | "
-            f"{per_iteration:.1f} an iteration counted with up to 2 neighbours, times {neighbours:.0f} |",
+            f"| messages of a rank | {per_iteration * few:.0f} to {deeper * per_iteration * many:.0f} | {per_iteration:.0f} an "
+            f"iteration counted on nine ranks, all grids together; up to {deeper} times as many for more grids |",
             f"| sums over ranks | {sums * few:.0f} to {sums * many:.0f} | {sums:.1f} an iteration counted |",
-            f"| messages take | {wire(few):.2f} to {wire(many):.2f} s | {LATENCY * 1e6:.0f} µs and {BANDWIDTH / 1e9:.0f} GB/s assumed, "
+            f"| messages take | {wire(few, 1):.2f} to {wire(many, deeper):.2f} s | {LATENCY * 1e6:.0f} µs and {BANDWIDTH / 1e9:.0f} GB/s assumed, "
             "a sum over ranks log2(1000) latencies |",
             f"| time | {low:.0f} to {high:.0f} s | {min(set_up) * 1e6:.1f} to {max(set_up) * 1e6:.1f} µs a disc before the iterations, "
             f"{min(step) * 1e6:.2f} to {max(step) * 1e6:.2f} µs a disc and iteration |", "",
