@@ -315,7 +315,7 @@ class LammpsWriter {
   [[nodiscard]] std::string stop_at_rest() const {
     std::string text = "variable unbalanced atom sqrt(fx*fx+fy*fy)\ncompute largest all reduce max v_unbalanced\n";
     text += "variable largest equal c_largest\nthermo_style custom step time ke v_largest\n";
-    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-11 * force_scale(model_)));
+    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-10 * force_scale(model_)));
     return text;
   }
 
