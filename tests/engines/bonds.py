@@ -148,7 +148,7 @@ def tension(sign):
 
 
 def shear(sign):
-    return SHEAR.format(ux=sign * 3e-6, turn=sign * 3e-4, force=sign * 3e3)
+    return SHEAR.format(ux=sign * 2e-6, turn=sign * 3e-4, force=sign * 2e3)
 
 
 def shear_with_moments(sign):

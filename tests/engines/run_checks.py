@@ -32,9 +32,12 @@ CHECKS = [
     ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, bonds.yade_period),
     ("lammps_grains", "LAMMPS", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.lammps_motion),
     ("lammps_grains", "LAMMPS", "overlaps and normal forces when they have settled", 1e-6, grains.lammps_settled),
-    ("lammps_bonds", "LAMMPS", "places of 20 unequal discs that fall in a box, after 0.1 s (granular)", 1e-6,
+    ("lammps_grains", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls", 1e-6, grains.lammps_sliding),
+    ("lammps_grains", "LAMMPS", "overlaps when they have settled with friction (other levers, see below)", 2e-2,
+     grains.lammps_friction),
+    ("lammps_bonds", "LAMMPS", "places of 20 unequal discs that fall in a box, after 0.1 s (style granular)", 1e-6,
      grains.lammps_motion_graded),
-    ("yade_grains", "YADE", "normal forces of a settled box of 20 unequal discs, first step", 1e-6, grains.yade_settled),
+    ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6, grains.yade_settled),
 ]
 
 

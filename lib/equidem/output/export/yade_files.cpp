@@ -113,7 +113,8 @@ for number, velocity, spin in VELOCITIES:
     state.pos += O.dt * velocity
     state.ori = Quaternion((0, 0, 1), O.dt * spin) * state.ori
     state.vel, state.angVel = state.vel + velocity, state.angVel + Vector3(0, 0, spin)
-O.run(STEPS - 1, True)
+if STEPS > 1:
+    O.run(STEPS - 1, True)
 )";
 
 constexpr std::string_view write_end = R"(
