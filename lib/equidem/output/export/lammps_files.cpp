@@ -138,7 +138,7 @@ class LammpsWriter {
     line(text, "# Written by equidem. SI units, {}.",
          model_.body == Body::disc ? "masses and forces per metre of depth" : "spheres");
     text += "# Densities of the data file are those by which a sphere has the mass of the body.\n";
-    line(text, "units si\ndimension 2\nboundary {} p\natom_style {}", model_.period ? "p p" : "s s", style());
+    line(text, "units si\ndimension 2\nboundary {} p\natom_style {}", model_.period ? "p p" : "m m", style());
     line(text, "newton {}", model_.bonded ? "on off" : "off");
     text += "comm_modify vel yes\n";
     if (model_.bonded) line(text, "comm_modify cutoff {}", exact(2 * longest_bond()));
@@ -315,7 +315,7 @@ class LammpsWriter {
   [[nodiscard]] std::string stop_at_rest() const {
     std::string text = "variable unbalanced atom sqrt(fx*fx+fy*fy)\ncompute largest all reduce max v_unbalanced\n";
     text += "variable largest equal c_largest\nthermo_style custom step time ke v_largest\n";
-    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-11 * force_scale(model_)));
+    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-10 * force_scale(model_)));
     return text;
   }
 
