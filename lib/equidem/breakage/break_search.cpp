@@ -35,7 +35,7 @@ void meet(double a, double b, BreakMode mode, bool by_least_load, Moment& first)
 
 Moment moment_of(const BreakSearch& search, std::size_t contact) {
   const auto cut = [](ContactForce f, double none) {
-    return std::max(std::abs(f.normal), std::abs(f.tangential)) <= none ? ContactForce{} : f;
+    return ContactForce{std::abs(f.normal) <= none ? 0 : f.normal, std::abs(f.tangential) <= none ? 0 : f.tangential};
   };
   const ContactForce f1 = cut(search.pattern[contact], search.no_pattern);
   const ContactForce f0 = search.dead.empty() ? ContactForce{} : cut(search.dead[contact], search.no_dead);

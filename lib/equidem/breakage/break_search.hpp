@@ -44,8 +44,8 @@ struct BreakSearch {
   const ContactStrengths& strengths;
   std::span<const ContactForce> pattern;  ///< N/m, at lambda = 1, without dead loads
   std::span<const ContactForce> dead;     ///< N/m; empty: none
-  /// N/m of each of the two, below which a force is round-off. A contact that carries no force does not break, whatever
-  /// its strength.
+  /// N/m of each of the two, below which a component of a force is round-off and counts as 0. A contact that carries no
+  /// force does not break, whatever its strength.
   double no_pattern = 0, no_dead = 0;
   double from = 0;             ///< lambda_0
   double direction = 1;        ///< of lambda, 1 or -1
