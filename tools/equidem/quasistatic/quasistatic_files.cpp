@@ -43,8 +43,8 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
   plot.y.label = with_unit(driven_by == DrivenBy::strain ? "stress" : "load", unit_of_load(driven_by));
   plot.series = {
       series("events", curve_of(run), SeriesStyle::line, PlotColour::sky_blue),
-      series("what the motion controls", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
-      series("what the load controls", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)};
+      series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
+      series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)};
   write_plot(*options.out, "curve", plot, options.overwrite);
   if (!wanted.picture) return;
   PictureOptions picture{.title = title, .colour = DiscColour::none};
