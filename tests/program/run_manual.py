@@ -15,8 +15,8 @@ sys.path.insert(0, str(SOURCE / "cmake" / "debian"))
 
 import changelog  # noqa: E402
 
-VERBS = ("solve", "homogenize", "calibrate", "stability", "pack", "run", "sweep", "study")
-PAGES = ("", *VERBS, "case", "result")
+VERBS = ("solve", "homogenize", "calibrate", "stability", "pack", "run", "export", "sweep", "study")
+PAGES = ("", *VERBS, "case", "result", "engines")
 
 
 def shown(page):
@@ -37,7 +37,7 @@ class Manual(ProgramTest):
 
     def test_the_first_page_refers_to_all_others(self):
         pages = re.findall(r"^\.BR equidem-(\w+) \((\d)\)", shown(self.page("")), re.MULTILINE)
-        self.assertEqual(pages, [*((verb, "1") for verb in VERBS), ("case", "5"), ("result", "5")])
+        self.assertEqual(pages, [*((verb, "1") for verb in VERBS), ("case", "5"), ("result", "5"), ("engines", "5")])
 
     def test_pages_have_the_sections_of_a_manual(self):
         self.assertEqual(re.findall(r"^\.SH (.*)", self.page(""), re.MULTILINE),

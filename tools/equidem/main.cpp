@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/memory.hpp"
+#include "equidem/output/export/engine_features.hpp"
 #include "equidem/output/quantities.hpp"
 
 #include "verbs.hpp"
@@ -18,9 +19,11 @@ constexpr const char* footer = R"(Examples:
   equidem run data/cases/run_pulse.toml --out pulse
   equidem run data/cases/grains_cradle.toml --out cradle
   equidem pack data/cases/pack_jammed.toml --out jammed
+  equidem export data/cases/abe1996_fig6.toml --to lammps --out handed
   equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
   equidem help result        numbers of result.json, their units and meanings
+  equidem help engines       what LAMMPS, YADE and PFC carry of a model
   equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
   equidem help completion bash    completion for the shell; also zsh and fish
 
@@ -43,7 +46,8 @@ int main(int argc, char** argv) {
       .footer = footer,
       .verbs = verbs,
       .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page},
-                 {"result", "the numbers of result.json of equidem, their units and meanings", describe_result}},
+                 {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
+                 {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
                     "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
                    {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",

@@ -227,6 +227,21 @@ class Case:
         """The dynamics of the table `run`, to its end; `simulation` steps it."""
         return self.run_verb("run", **options)
 
+    def export(self, to: str, out: str | os.PathLike[str], **options: Any) -> Result:
+        """The model as input of another program, in the folder `out`.
+
+        Parameters
+        ----------
+        to
+            "lammps", "yade", "pfc", ...: what ``equidem export --to`` takes.
+
+        Raises
+        ------
+        BadInput
+            A part of the model that the program does not carry, by its name; files in `out` without ``overwrite=True``.
+        """
+        return self.run_verb("export", to=to, out=out, **options)
+
     def simulation(self) -> Simulation:
         """The dynamics of the table `run`, ready to be stepped."""
         return Simulation(_core.Steps(*self._inputs()))

@@ -11,17 +11,18 @@ void require_carried(const FoundFeatures& found, Engine engine) {
     const EngineFeatureRow& row = entry_of(feature);
     if (row.carried_by(engine)) continue;
     bad_input(fmt::format("the export to {} does not carry {}{}", to_string(engine), row.name,
-                          instance.empty() ? "" : " (" + instance + ")"),
+                          instance.empty() ? "" : ", here " + instance),
               row.why, row.remedy);
   }
 }
 
 std::string engine_features_table() {
-  std::string text = "| | " + joined(names_of<Engine>(), " | ") + " |\n|---|---|---|---|\n";
+  const auto names = names_of<Engine>();
+  std::string text = fmt::format("| part of a model | {} |\n|---|---|---|---|\n", joined(names, " | "));
   for (const EngineFeatureRow& row : EnumNames<EngineFeature>::list) {
-    text += fmt::format("| {} |", row.name);
-    for (const auto& engine : EnumNames<Engine>::list) text += row.carried_by(engine.value) ? " yes |" : " refused |";
-    text += '\n';
+    std::vector<std::string> cells;
+    for (const auto& engine : EnumNames<Engine>::list) cells.emplace_back(row.carried_by(engine.value) ? "yes" : "no");
+    text += fmt::format("| {} | {} |\n", row.name, joined(cells, " | "));
   }
   return text;
 }

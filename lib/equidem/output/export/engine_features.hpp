@@ -153,7 +153,7 @@ struct EnumNames<EngineFeature> {
 /// The features of a model with an instance of each, such as "contact 3".
 using FoundFeatures = std::map<EngineFeature, std::string>;
 
-/// \throws Error (bad_input) on the first feature that the engine does not carry: its name and instance, why, what to do
+/// \throws Error (bad_input) on the first feature that the engine does not carry: its name, an instance, why, what to do
 void require_carried(const FoundFeatures& found, Engine engine);
 
 /// The table in Markdown: a row for each feature, a column for each engine.

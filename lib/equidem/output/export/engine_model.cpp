@@ -231,7 +231,7 @@ std::optional<double> common_mass(const EngineModel& model) {
 }
 
 std::string exact(double value) {
-  return fmt::format("{:.17g}", value);
+  return fmt::format("{}", value);
 }
 
 double tangential_mass_share(Body body) {

@@ -84,7 +84,7 @@ std::optional<double> common_mass(const EngineModel& model);
 /// The mass at a contact across its normal, 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), over the reduced mass.
 double tangential_mass_share(Body body);
 
-/// A number with the 17 digits that read back to the same bits.
+/// A number in the shortest form that reads back to the same bits.
 std::string exact(double value);
 
 }  // namespace equidem

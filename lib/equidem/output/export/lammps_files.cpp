@@ -62,7 +62,7 @@ class LammpsWriter {
     text += "variable interval equal ceil(v_steps/20)\nthermo ${interval}\n";
     if (model_.to_rest) text += stop_at_rest();
     text += "run ${steps}\n";
-    line(text, "write_dump all custom end.dump id x y vx vy omegaz fx fy tqz{} modify format float %.17g sort id",
+    line(text, "write_dump all custom end.dump id xu yu vx vy omegaz fx fy tqz{} modify format float %.17g sort id",
          model_.bonded ? " c_turn[1] c_turn[2]" : "");
     return text;
   }
@@ -138,7 +138,7 @@ class LammpsWriter {
     line(text, "# Written by equidem. SI units, {}.",
          model_.body == Body::disc ? "masses and forces per metre of depth" : "spheres");
     text += "# Densities of the data file are those by which a sphere has the mass of the body.\n";
-    line(text, "units si\ndimension 2\nboundary {} p\natom_style {}", model_.period ? "p p" : "s s", style());
+    line(text, "units si\ndimension 2\nboundary {} p\natom_style {}", model_.period ? "p p" : "m m", style());
     line(text, "newton {}", model_.bonded ? "on off" : "off");
     text += "comm_modify vel yes\n";
     if (model_.bonded) line(text, "comm_modify cutoff {}", exact(2 * longest_bond()));
@@ -179,8 +179,8 @@ class LammpsWriter {
     const double kN = pair.stiffness, kT = stiffness_along(pair);
     const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(kN / mass);
     const double along = 2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * kT / mass);
-    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(normal), exact(pair.friction > 0 ? along : 0),
-                       exact(pair.friction));
+    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(std::max(normal, smallest_dashpot)),
+                       exact(pair.friction > 0 ? along : 0), exact(pair.friction));
   }
 
   /// A contact without friction has a tangential spring that carries nothing: LAMMPS divides by its stiffness.
@@ -234,7 +234,7 @@ class LammpsWriter {
         line(text, "group kind_{} type {}", type, type);
         text += fmt::format("fix wall_{}_{} kind_{} wall/gran/region ", k, type, type);
         if (model_.bonded) {
-          text += fmt::format("hooke/history {} {} 0 0 0 0", exact(wall.kN), exact(wall.kN));
+          text += fmt::format("hooke/history {} {} {} 0 0 1", exact(wall.kN), exact(wall.kN), exact(smallest_dashpot));
         } else {
           const PairProperties& pair = model_.between(kind, wall.kind);
           text += by_mass() ? fmt::format("hooke/history {}{}",
@@ -315,9 +315,12 @@ class LammpsWriter {
   [[nodiscard]] std::string stop_at_rest() const {
     std::string text = "variable unbalanced atom sqrt(fx*fx+fy*fy)\ncompute largest all reduce max v_unbalanced\n";
     text += "variable largest equal c_largest\nthermo_style custom step time ke v_largest\n";
-    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-11 * force_scale(model_)));
+    line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-10 * force_scale(model_)));
     return text;
   }
+
+  /// In place of 0, 1/s: walls of LAMMPS since 2022 divide the tangential dashpot by the normal one.
+  static constexpr double smallest_dashpot = 1e-200;
 
   const EngineModel& model_;
   std::map<std::pair<double, double>, int> bond_types_;

@@ -20,7 +20,7 @@ O.materials.append(CohFrictMat(young=1, poisson=1, density=1, frictionAngle=0, i
 )";
 
 constexpr std::string_view make_bodies = R"(
-PRESCRIBED = []
+PRESCRIBED, VELOCITIES = [], []
 for number, row in enumerate(BODIES.strip().split("\n")):
     words = row.split()
     x, y, radius, mass, moment, vx, vy, spin, fx, fy, torque = map(float, words[:11])
@@ -28,8 +28,9 @@ for number, row in enumerate(BODIES.strip().split("\n")):
     body.state.mass, body.state.inertia = mass, (moment, moment, moment)
     held = words[12:]
     body.state.blockedDOFs = "zXY" + "".join(letter for letter, value in zip("xyZ", held) if value != "-")
-    body.state.vel, body.state.angVel = (vx, vy, 0), (0, 0, spin)
     O.bodies.append(body)
+    if vx or vy or spin:
+        VELOCITIES.append((number, Vector3(vx, vy, 0), spin))
     if fx or fy:
         O.forces.setPermF(number, (fx, fy, 0))
     if torque:
@@ -88,15 +89,17 @@ def unbalanced():
     return largest
 
 
-RAMP = 1000  # steps over which prescribed displacements grow: tangential forces follow velocities
-for number, (ux, uy, turn) in PRESCRIBED:
-    state = O.bodies[number].state
-    state.vel, state.angVel = (ux / (RAMP * O.dt), uy / (RAMP * O.dt), 0), (0, 0, turn / (RAMP * O.dt))
-if PRESCRIBED:
-    O.run(RAMP, True)
-for number, given in PRESCRIBED:
-    state = O.bodies[number].state
-    state.vel, state.angVel = (0, 0, 0), (0, 0, 0)
+O.step()  # tangential forces follow velocities, and none count in the first step
+RAMP = 1000  # steps over which prescribed displacements grow
+for start in (True, False):
+    for number, (ux, uy, turn) in PRESCRIBED:
+        state, share = O.bodies[number].state, 1 / (RAMP * O.dt) if start else 0
+        blocked, velocity = state.blockedDOFs, state.vel
+        state.vel = (share * ux if "x" in blocked else velocity[0], share * uy if "y" in blocked else velocity[1], 0)
+        if "Z" in blocked:
+            state.angVel = (0, 0, share * turn)
+    if start and PRESCRIBED:
+        O.run(RAMP, True)
 while O.iter < STEPS:
     O.run(500, True)
     if unbalanced() < TOLERANCE:
@@ -104,7 +107,14 @@ while O.iter < STEPS:
 )";
 
 constexpr std::string_view run_steps = R"(
-O.run(STEPS, True)
+O.step()  # tangential forces follow velocities, and none count in the first step
+for number, velocity, spin in VELOCITIES:
+    state = O.bodies[number].state
+    state.pos += O.dt * velocity
+    state.ori = Quaternion((0, 0, 1), O.dt * spin) * state.ori
+    state.vel, state.angVel = state.vel + velocity, state.angVel + Vector3(0, 0, spin)
+if STEPS > 1:
+    O.run(STEPS - 1, True)
 )";
 
 constexpr std::string_view write_end = R"(
@@ -114,13 +124,15 @@ with open("end.txt", "w") as file:
         if not isinstance(body.shape, Sphere):
             continue
         state = body.state
-        numbers = (*state.pos[:2], state.rot()[2], *state.displ()[:2], *state.vel[:2], state.angVel[2])
+        place, moved, velocity = state.pos, state.displ(), state.vel
+        numbers = (place[0], place[1], state.rot()[2], moved[0], moved[1], velocity[0], velocity[1], state.angVel[2])
         file.write(" ".join("%.17g" % number for number in numbers) + "\n")
 with open("end_contacts.txt", "w") as file:
     file.write("# i j overlap, m; forces on j: normal x y, tangential x y, N/m\n")
     for contact in O.interactions:
         if contact.isReal:
-            numbers = (contact.geom.penetrationDepth, *contact.phys.normalForce[:2], *contact.phys.shearForce[:2])
+            along, across = contact.phys.normalForce, contact.phys.shearForce
+            numbers = (contact.geom.penetrationDepth, along[0], along[1], across[0], across[1])
             file.write("%d %d " % (contact.id1, contact.id2) + " ".join("%.17g" % number for number in numbers) + "\n")
 print("step", O.iter, "of", STEPS)
 )";
@@ -138,7 +150,7 @@ class YadeWriter {
                         exact(model_.local_damping));
     text += fmt::format("GRAVITY = ({}, {}, 0.0)\n", exact(model_.gravity.x), exact(model_.gravity.y));
     if (model_.to_rest)
-      text += fmt::format("TOLERANCE = {}  # N/m, of the unbalanced force\n", exact(1e-11 * force_scale(model_)));
+      text += fmt::format("TOLERANCE = {}  # N/m, of the unbalanced force\n", exact(1e-10 * force_scale(model_)));
     text += bodies();
     if (model_.bonded) text += bonds();
     text += model_.bonded ? bodies_of_bonds : materials();

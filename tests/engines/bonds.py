@@ -1,0 +1,419 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bonded discs: the exported model in its engine against equidem."""
+import json
+import math
+import re
+
+import numpy as np
+
+import engines
+from engines import Model
+
+KN, KT, DENSITY = 1e9, 0.3e9, 2500
+NETWORK = f'''
+[assembly]
+kind = "delaunay"
+discs = 60
+radius = 0.005
+seed = 3
+density = {DENSITY}
+[springs]
+kN = {KN}
+kT = {KT}
+'''
+FREE = NETWORK + "[run]\nduration = 1e-4\n"
+WEIGHTED = NETWORK + 'weighting = "voronoi"\n'
+TENSION = WEIGHTED + '[test]\nkind = "uniaxial_tension"\nstress = {stress}\n'
+SHEAR = WEIGHTED + '''
+[[support]]
+group = "bottom"
+ux = 0.0
+uy = 0.0
+rotation = 0.0
+[[support]]
+group = "top"
+ux = {ux}
+rotation = {turn}
+[[load]]
+group = "right"
+force = [0.0, {force}]
+kind = "total"
+'''
+RESTRAINED = '[effects]\nrotation = "restrained"\n'
+
+
+class Displaced:
+    """The network with every disc moved at random by about `size` of the spacing, and the forces of the linear law."""
+
+    def __init__(self, program, folder, size):
+        self.model = Model(program, folder, FREE)
+        solved = Model(program, folder, TENSION.format(stress=1.0).replace('weighting = "voronoi"\n', ""), "solved")
+        out = solved.equidem("solve", "solved")
+        self.places = engines.columns(out / "discs.csv", "x_m", "y_m")
+        ends = engines.columns(out / "contacts.csv", "i", "j").astype(int)
+        geometry = engines.columns(out / "contacts.csv", "branch_x_m", "branch_y_m", "lever_i_m", "lever_j_m")
+        random = np.random.default_rng(1)
+        self.moved = size * 0.01 * random.standard_normal((len(self.places), 2))
+        self.turned = size * random.standard_normal(len(self.places))
+        self.forces = np.zeros((len(self.places), 3))
+        for (i, j), (x, y, lever_i, lever_j) in zip(ends, geometry):
+            along = np.array([x, y]) / math.hypot(x, y)
+            across = np.array([-along[1], along[0]])
+            apart = self.moved[j] - self.moved[i]
+            slip = apart @ across - lever_i * self.turned[i] - lever_j * self.turned[j]
+            force = KN * (apart @ along) * along + KT * slip * across
+            self.forces[i] += [*force, lever_i * KT * slip]
+            self.forces[j] += [*-force, lever_j * KT * slip]
+
+
+def worst(forces, expected):
+    """Of forces and of moments, each relative to the largest."""
+    return max(engines.relative(forces[:, :2], expected[:, :2]), engines.relative(forces[:, 2], expected[:, 2]))
+
+
+def lammps_forces(program, folder):
+    """The part of the forces that is odd in the motion: the law is linear, the effect of finite motion is not."""
+    lammps = engines.lammps_with_bonds()
+    state = Displaced(program, folder, 2e-4)
+    out = state.model.export("lammps")
+    script = engines.head_of(out / "in.equidem")
+    for name, sign in (("plus", 1), ("minus", -1)):
+        for disc, (place, moved, turned) in enumerate(zip(state.places, state.moved, state.turned)):
+            x, y = place + sign * moved
+            script += f"set atom {disc + 1} x {x!r} y {y!r} quat 0 0 1 {math.degrees(sign * turned)!r}\n"
+        script += f"run 0\nwrite_dump all custom {name}.dump id fx fy tqz modify format float %.17g sort id\n"
+    (out / "forces.in").write_text(script)
+    engines.run_lammps(lammps, out, "forces.in")
+    plus, minus = (np.stack([engines.dump(out / f"{name}.dump")[key] for key in ("fx", "fy", "tqz")], 1)
+                   for name in ("plus", "minus"))
+    return worst((plus - minus) / 2, state.forces)
+
+
+def yade_forces(program, folder):
+    yade = engines.yade()
+    state = Displaced(program, folder, 1e-4)
+    out = state.model.export("yade")
+    np.savetxt(out / "moved.txt", np.column_stack([state.moved, state.turned]), fmt="%.17g")
+    head = engines.head_of(out / "run_equidem.py")
+    script = "".join(head + f'''
+for body, line in zip(O.bodies, open("moved.txt")):
+    x, y, turned = ({sign} * float(word) for word in line.split())
+    body.state.blockedDOFs = "xyzXYZ"
+    body.state.pos += Vector3(x, y, 0)
+    body.state.ori = Quaternion((0, 0, 1), turned)
+    body.state.vel, body.state.angVel = (x / O.dt, y / O.dt, 0), (0, 0, turned / O.dt)
+O.step()
+with open("{name}", "w") as file:
+    for body in O.bodies:
+        force = O.forces.f(body.id)
+        file.write("%.17g %.17g %.17g\\n" % (force[0], force[1], O.forces.t(body.id)[2]))
+O.reset()
+''' for sign, name in ((1, "plus.txt"), (-1, "minus.txt")))
+    (out / "forces.py").write_text(script)
+    engines.run_yade(yade, out, "forces.py")
+    return worst((np.loadtxt(out / "plus.txt") - np.loadtxt(out / "minus.txt")) / 2, state.forces)
+
+
+def solved(model, name):
+    """Displacements and rotations of `equidem solve`."""
+    return engines.columns(model.equidem("solve", name) / "discs.csv", "ux_m", "uy_m", "rotation_rad")
+
+
+def lammps_rest(program, folder, case):
+    """Displacements and rotations at rest in LAMMPS beside those of equidem."""
+    model = Model(program, folder, case)
+    expected = solved(model, "solved")
+    out = model.export("lammps")
+    places = engines.columns(model.folder / "solved" / "discs.csv", "x_m", "y_m")
+    engines.run_lammps(engines.lammps_with_bonds(), out)
+    end = engines.dump(out / "end.dump")
+    moved = np.stack([end["xu"], end["yu"]], 1) - places
+    turned = 2 * np.arctan2(end["c_turn[2]"], end["c_turn[1]"])
+    return (moved, turned), (expected[:, :2], expected[:, 2])
+
+
+def odd_part(rest, program, folder, case_of):
+    """Half the difference of the motions under loads of both signs, relative to that of equidem: the part of first
+    order in the motion, which is all of it in equidem."""
+    parts = []
+    for sign in (1, -1):
+        (folder / str(sign)).mkdir()
+        parts.append(rest(program, folder / str(sign), case_of(sign)))
+    return max(engines.relative((parts[0][0][k] - parts[1][0][k]) / 2, parts[0][1][k]) for k in range(len(parts[0][1]))
+               if np.any(parts[0][1][k]))
+
+
+def tension(sign):
+    return TENSION.format(stress=sign * 1e5)
+
+
+def shear(sign):
+    return SHEAR.format(ux=sign * 2e-6, turn=sign * 3e-4, force=sign * 2e3)
+
+
+def shear_with_moments(sign):
+    return shear(sign) + f"moment = {sign * 30.0}\n"
+
+
+def restrained(sign):
+    return RESTRAINED + tension(sign)
+
+
+def lammps_tension(program, folder):
+    return odd_part(lammps_rest, program, folder, tension)
+
+
+def lammps_shrinking(program, folder):
+    """The error at a strain of about 1e-5 as it is; at a tenth of it LAMMPS's own rounding is as large."""
+    moved, expected = lammps_rest(program, folder, TENSION.format(stress=1e4))
+    return engines.relative(moved[0], expected[0])
+
+
+def lammps_shear(program, folder):
+    return odd_part(lammps_rest, program, folder, shear)
+
+
+def lammps_restrained(program, folder):
+    return odd_part(lammps_rest, program, folder, restrained)
+
+
+def yade_rest(program, folder, case):
+    """Displacements and rotations at rest in YADE beside those of equidem."""
+    model = Model(program, folder, case)
+    expected = solved(model, "solved")
+    out = model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    end = np.loadtxt(out / "end.txt")
+    return (end[:, 3:5], end[:, 2]), (expected[:, :2], expected[:, 2])
+
+
+def yade_tension(program, folder):
+    return odd_part(yade_rest, program, folder, tension)
+
+
+def yade_shear(program, folder):
+    return odd_part(yade_rest, program, folder, shear_with_moments)
+
+
+def yade_restrained(program, folder):
+    return odd_part(yade_rest, program, folder, restrained)
+
+
+def yade_unequal(program, folder):
+    """Discs of two radii that touch: the contact points are off the middle."""
+    (folder / "rows.json").write_text(rows_of_two_radii(10, 4))
+    return odd_part(yade_rest, program, folder, lambda sign: f'''
+[assembly]
+kind = "file"
+path = "../rows.json"
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[support]]
+group = "foot"
+ux = 0.0
+uy = 0.0
+[[load]]
+group = "head"
+force = [{sign * 60}, {sign * 20}]
+''')
+
+
+def rows_of_two_radii(columns, lines):
+    """A square arrangement of alternating discs of 2 and 1 mm, braced along one diagonal, with levers that are the
+    radii along the rows and columns."""
+    large, small = 0.002, 0.001
+    discs, contacts, levers = [], [], []
+    for line in range(lines):
+        for column in range(columns):
+            radius = large if (line + column) % 2 == 0 else small
+            discs.append((column * (large + small), line * (large + small), radius))
+
+    def join(i, j):
+        length = math.dist(discs[i][:2], discs[j][:2])
+        contacts.append([i, j, 0, 0])
+        first = (length + discs[i][2] - discs[j][2]) / 2
+        levers.append([first, length - first])
+
+    for line in range(lines):
+        for column in range(columns):
+            k = line * columns + column
+            if column + 1 < columns:
+                join(k, k + 1)
+            if line + 1 < lines:
+                join(k, k + columns)
+            if column + 1 < columns and line + 1 < lines:
+                join(k, k + columns + 1)
+    return json.dumps({"schema": "equidem-assembly/1", "discs": discs, "contacts": contacts, "levers": levers,
+                       "groups": {"foot": [line * columns for line in range(lines)],
+                                  "head": [line * columns + columns - 1 for line in range(lines)]}})
+
+
+VIBRATION = NETWORK + '''
+[[support]]
+group = "bottom"
+ux = 0.0
+uy = 0.0
+rotation = 0.0
+'''
+PERIODS = 4
+
+
+class Mode:
+    """The lowest mode of the network, held at its bottom, by the masses and bonds of the exported script of YADE; its
+    frequency is that of `equidem stability`."""
+
+    def __init__(self, program, folder):
+        held = Model(program, folder, VIBRATION, "frequency")
+        frequency = held.equidem("stability", "stability", "--frequencies", "1")
+        self.omega = 2 * math.pi * engines.result_of(frequency)["natural_frequencies"][0]
+        self.model = Model(program, folder, VIBRATION + f"[run]\nduration = {PERIODS * 2.2 * math.pi / self.omega}\n")
+        script = (self.model.export("yade") / "run_equidem.py").read_text()
+        bodies = re.search(r'BODIES = """\n(.*?)"""', script, re.S).group(1).splitlines()
+        bonds = re.search(r'BONDS = """\n(.*?)"""', script, re.S).group(1).splitlines()
+        self.step = float(re.search(r"O.dt = (\S+)", script).group(1))
+        place = np.array([[float(word) for word in line.split()[:2]] for line in bodies])
+        mass = np.array([[float(line.split()[k]) for k in (3, 3, 4)] for line in bodies]).ravel()
+        free = np.array([word == "-" for line in bodies for word in line.split()[12:15]])
+        stiffness = np.zeros((len(mass), len(mass)))
+        for line in bonds:
+            i, j, kn, ks = (float(word) for word in line.split())
+            i, j = int(i), int(j)
+            branch = place[j] - place[i]
+            length = math.hypot(*branch)
+            n, lever = branch / length, length / 2
+            for k, row in ((kn, [-n[0], -n[1], 0, n[0], n[1], 0]), (ks, [n[1], -n[0], -lever, -n[1], n[0], -lever])):
+                at = [*range(3 * i, 3 * i + 3), *range(3 * j, 3 * j + 3)]
+                stiffness[np.ix_(at, at)] += k * np.outer(row, row)
+        root = np.sqrt(mass[free])
+        squares, shapes = np.linalg.eigh(stiffness[np.ix_(free, free)] / np.outer(root, root))
+        self.weights = np.zeros(len(mass))  # the projection of a motion on the mode
+        self.weights[free] = shapes[:, 0] * root
+        self.shape = np.zeros(len(mass))
+        self.shape[free] = shapes[:, 0] / root
+        self.shape /= np.max(np.abs(self.shape))
+        self.frequency_error = abs(math.sqrt(squares[0]) / self.omega - 1)
+
+    def period_error(self, times, motions):
+        """Of the mean period between the rising zeros of the mode's share in the motions (n, 3 discs); the step of
+        leapfrog shortens a period by (omega h)²/24, which is taken out."""
+        share = motions @ self.weights
+        at = np.nonzero((share[:-1] < 0) & (share[1:] >= 0))[0]  # rising
+        zeros = times[at] - share[at] * (times[at + 1] - times[at]) / (share[at + 1] - share[at])
+        period = (zeros[-1] - zeros[0]) / (len(zeros) - 1)
+        return max(abs(period * self.omega / (2 * math.pi) * (1 + (self.omega * self.step)**2 / 24) - 1),
+                   self.frequency_error)
+
+
+def yade_period(program, folder):
+    yade = engines.yade()
+    mode = Mode(program, folder)
+    out = mode.model.folder / "case_yade"
+    np.savetxt(out / "speeds.txt", 1e-4 * mode.omega * mode.shape.reshape(-1, 3), fmt="%.17g")
+    script = engines.head_of(out / "run_equidem.py") + '''
+O.step()
+for body, line in zip(O.bodies, open("speeds.txt")):
+    x, y, turning = map(float, line.split())
+    state = body.state
+    state.pos += O.dt * Vector3(x, y, 0)
+    state.ori = Quaternion((0, 0, 1), O.dt * turning)
+    state.vel, state.angVel = (x, y, 0), (0, 0, turning)
+with open("motions.txt", "w") as file:
+    while O.iter < STEPS:
+        O.run(10, True)
+        numbers = [number for body in O.bodies for number in (body.state.displ()[0], body.state.displ()[1],
+                                                              body.state.rot()[2])]
+        file.write(" ".join("%.12g" % number for number in [O.iter * O.dt, *numbers]) + "\\n")
+'''
+    (out / "period.py").write_text(script)
+    engines.run_yade(yade, out, "period.py")
+    table = np.loadtxt(out / "motions.txt")
+    return mode.period_error(table[:, 0], table[:, 1:])
+
+
+def lammps_period(program, folder):
+    lammps = engines.lammps_with_bonds()
+    mode = Mode(program, folder)
+    out = mode.model.export("lammps")
+    script = engines.head_of(out / "in.equidem")
+    for disc, (x, y, turning) in enumerate(1e-4 * mode.omega * mode.shape.reshape(-1, 3)):
+        script += f"set atom {disc + 1} vx {x!r} vy {y!r} omega 0 0 {turning!r}\n"
+    script += "dump motions all custom 10 motions.dump id x y c_turn[1] c_turn[2]\n"
+    script += "dump_modify motions format float %.17g sort id\n"
+    script += f"run {math.ceil(PERIODS * 2.2 * math.pi / mode.omega / mode.step)}\n"
+    (out / "period.in").write_text(script)
+    engines.run_lammps(lammps, out, "period.in")
+    states = (out / "motions.dump").read_text().split("ITEM: TIMESTEP\n")[1:]
+    times = np.array([int(state.split("\n", 1)[0]) for state in states]) * mode.step
+    tables = np.array([[[float(word) for word in line.split()[1:]]
+                        for line in state.split("ITEM: ATOMS")[1].splitlines()[1:]] for state in states])
+    moved = tables[:, :, :2] - tables[0, :, :2]
+    turned = 2 * np.arctan2(tables[:, :, 3], tables[:, :, 2])
+    return mode.period_error(times, np.concatenate([moved, turned[:, :, None]], 2).reshape(len(states), -1))
+
+
+def run_difference(program, folder, case):
+    """Displacements after a run of LAMMPS and of equidem, relative to the largest."""
+    lammps = engines.lammps_with_bonds()
+    model = Model(program, folder, case)
+    table = model.equidem("run", "run") / "discs.csv"
+    expected = engines.columns(table, "ux_m", "uy_m")
+    out = model.export("lammps")
+    engines.run_lammps(lammps, out)
+    end = engines.dump(out / "end.dump")
+    moved = np.stack([end["xu"], end["yu"]], 1) - engines.columns(table, "x_m", "y_m")
+    return engines.relative(moved, expected)
+
+
+def lammps_wall(program, folder):
+    """A block falls on a wall and rebounds; its gravity and speed keep strains near 1e-4."""
+    return run_difference(program, folder, '''
+[assembly]
+kind = "hexagonal"
+columns = 6
+rows = 6
+radius = 0.005
+density = 2500.0
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[wall]]
+name = "floor"
+point = [0.0, -6.7e-4]
+normal = [0.0, 1.0]
+kN = 1e9
+[[velocity]]
+group = "all"
+velocity = [0.0, -0.05]
+[[group]]
+name = "all"
+box = [-1.0, -1.0, 1.0, 1.0]
+[run]
+duration = 5e-4
+gravity = [0.0, -9.81]
+damping = { local = 0.05 }
+''')
+
+
+def lammps_periodic(program, folder):
+    """A pulse in a periodic cell, across whose sides discs are bonded."""
+    return run_difference(program, folder, '''
+[assembly]
+kind = "hexagonal"
+columns = 8
+rows = 8
+radius = 0.005
+density = 2500.0
+periodic = true
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[group]]
+name = "some"
+discs = [3, 4, 10, 17]
+[[velocity]]
+group = "some"
+velocity = [0.02, 0.01]
+[run]
+duration = 2e-4
+''')

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Colliding discs: the exported box in its engine against equidem."""
+import numpy as np
+
+import engines
+from engines import Model
+
+STIFFNESS = 1e6  # N/m²
+WALLS = '''
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[[wall]]
+name = "left"
+point = [0.0, 0.0]
+normal = [1.0, 0.0]
+[[wall]]
+name = "right"
+point = [0.0602, 0.0]
+normal = [-1.0, 0.0]
+'''
+BOX = '''
+[grains]
+path = "discs.csv"
+density = 2500.0
+[collisions]
+law = "linear_dashpot"
+stiffness = 1e6
+restitution = {restitution}
+friction = {friction}
+tangential_ratio = 0.5
+{further}
+[run]
+duration = {duration}
+time_step = 5e-5
+integrator = "velocity_verlet"
+gravity = [0.0, -9.81]
+''' + WALLS
+
+
+def discs(path, radii):
+    """Rows of four discs, each row shifted against the one below, above one another without contact."""
+    with open(path, "w") as file:
+        file.write("x,y,radius,vx,vy,spin\n")
+        for k, radius in enumerate(radii):
+            row, column = divmod(k, 4)
+            x = 0.0075 + 0.015 * column + (0.00005 if row % 2 else 0.0)
+            file.write(f"{x},{0.0076 + 0.0152 * row},{radius},{0.01 * (-1)**k},0,0\n")
+
+
+class Box:
+    """Twenty discs that fall in a box, stepped by equidem."""
+
+    def __init__(self, program, folder, radii, **settings):
+        discs(folder / "discs.csv", radii)
+        case = BOX.format(**{"friction": 0.3, "restitution": 0.4, "further": "", **settings})
+        self.model = Model(program, folder, case)
+        self.out = self.model.equidem("run", "run")
+        self.end = engines.columns(self.out / "grains.csv", "x_m", "y_m", "angle_rad", "vx_m_per_s", "vy_m_per_s",
+                                   "spin_rad_per_s")
+
+
+EQUAL = [0.0075] * 20
+GRADED = [0.0060 + 0.0015 * ((7 * k) % 20) / 19 for k in range(20)]
+
+
+def lammps_box(lammps, program, folder, radii, **settings):
+    """Positions and velocities at the end of the run."""
+    box = Box(program, folder, radii, **settings)
+    out = box.model.export("lammps")
+    engines.run_lammps(lammps, out)
+    end = engines.dump(out / "end.dump")
+    return box, np.stack([end["xu"], end["yu"]], 1), np.stack([end["vx"], end["vy"]], 1)
+
+
+def motion_difference(lammps, program, folder, radii, duration=0.1, **settings):
+    """After a tenth of a second with impacts: places relative to the way fallen."""
+    box, places, _ = lammps_box(lammps, program, folder, radii, duration=duration, friction=0.0, **settings)
+    return float(np.max(np.abs(places - box.end[:, :2])) / (0.5 * 9.81 * 0.1**2))
+
+
+def lammps_motion(program, folder):
+    return motion_difference(engines.lammps(), program, folder, EQUAL)
+
+
+def lammps_motion_graded(program, folder):
+    """Unequal discs: the style granular, of a newer LAMMPS."""
+    return motion_difference(engines.lammps_with_bonds(), program, folder, GRADED)
+
+
+def lammps_elastic(program, folder):
+    """Walls and pairs without dashpots in a newer LAMMPS, before impacts magnify rounding."""
+    return motion_difference(engines.lammps_with_bonds(), program, folder, EQUAL, duration=0.05, restitution=1.0)
+
+
+def lammps_friction(program, folder):
+    """Both settle with friction: LAMMPS turns discs by forces at their radii, equidem by forces at the contact point,
+    so that moments differ by the overlap over the diameter, here 1e-3; which contacts slide decides the rest."""
+    box, places, _ = lammps_box(engines.lammps(), program, folder, EQUAL, duration=1.5)
+    return settled_difference(places, box.end[:, :2], EQUAL)
+
+
+def lammps_sliding(program, folder):
+    """A disc is set on the floor with a speed along it and slides until it rolls: speed and spin, relative to the first
+    speed. LAMMPS takes the slip at the end of a step, equidem in its middle: the difference is of first order."""
+    step = "1e-6"
+    (folder / "discs.csv").write_text("x,y,radius,vx,vy,spin\n0.01,0.00749,0.0075,0.2,0,0\n")
+    model = Model(program, folder, BOX.format(restitution=0.4, friction=0.3, further="", duration=0.03)
+                  .replace("5e-5", step))
+    end = engines.columns(model.equidem("run", "run") / "grains.csv", "vx_m_per_s", "spin_rad_per_s")[0]
+    out = model.export("lammps")
+    engines.run_lammps(engines.lammps(), out)
+    dump = engines.dump(out / "end.dump")
+    return max(abs(dump["vx"][0] - end[0]), 0.0075 * abs(dump["omegaz"][0] - end[1])) / 0.2
+
+
+def overlaps(places, radii):
+    """Overlap of each pair of discs that touch and of discs with the floor, m."""
+    found = {}
+    for i, (place, radius) in enumerate(zip(places, radii)):
+        for wall, distance in (("floor", place[1]), ("left", place[0]), ("right", 0.0602 - place[0])):
+            if radius > distance:
+                found[i, wall] = radius - distance
+        for j in range(i + 1, len(places)):
+            overlap = radius + radii[j] - np.hypot(*(places[j] - place))
+            if overlap > 0:
+                found[i, j] = overlap
+    return found
+
+
+def settled_difference(places, expected_places, radii):
+    """Largest difference of an overlap, and so of a normal force, relative to the largest; 1 where other discs touch.
+    Contacts of less than a millionth of it do not count."""
+    found, expected = overlaps(places, radii), overlaps(expected_places, radii)
+    largest = max(expected.values())
+    return max(abs(found.get(pair, 0.0) - expected.get(pair, 0.0)) for pair in {*found, *expected}) / largest
+
+
+def lammps_settled(program, folder):
+    """Both settle from the same start."""
+    box, places, _ = lammps_box(engines.lammps(), program, folder, EQUAL, duration=1.5, friction=0.0)
+    return settled_difference(places, box.end[:, :2], EQUAL)
+
+
+def yade_settled(program, folder):
+    """A box that equidem has settled: forces of all contacts in the first step."""
+    Box(program, folder, GRADED, duration=1.5, friction=0.0)
+    again = Model(program, folder, BOX.format(restitution=1.0, friction=0.0, further="", duration=5e-5)
+                  .replace("discs.csv", "run/grains.csv"), "settled")
+    out = again.export("yade")
+    engines.run_yade(engines.yade(), out)
+    walls = {20 + k: name for k, name in enumerate(("floor", "left", "right"))}
+    found = {}
+    for row in np.loadtxt(out / "end_contacts.txt"):
+        i, j = sorted((int(row[0]), int(row[1])))
+        found[i, walls.get(j, j)] = float(np.hypot(row[3], row[4]))
+    places = engines.columns(again.folder / "run" / "grains.csv", "x_m", "y_m")
+    expected = {pair: STIFFNESS * overlap for pair, overlap in overlaps(places, GRADED).items()}
+    largest = max(expected.values())
+    return max(abs(found.get(pair, 0.0) - expected.get(pair, 0.0)) for pair in {*found, *expected}) / largest

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exported models in the engines that they are for.
+
+    run_checks.py PROGRAM GROUP               the checks of a group; exit code 77 where the engine is not installed
+    run_checks.py PROGRAM --page FILE         all checks, as the tables of a page
+
+Variables: EQUIDEM_LAMMPS, EQUIDEM_LAMMPS_BPM, EQUIDEM_YADE name the programs, else lmp and yade.
+"""
+import pathlib
+import sys
+import tempfile
+
+import bonds
+import engines
+import grains
+
+#: group, engine, what is compared, limit, function of the program and a folder that returns the relative difference
+CHECKS = [
+    ("lammps_bonds", "LAMMPS", "forces and moments of discs displaced at random, 2e-4 of the spacing", 1e-6,
+     bonds.lammps_forces),
+    ("lammps_bonds", "LAMMPS", "displacements and rotations at rest under tension, strains of 1e-4", 1e-4,
+     bonds.lammps_tension),
+    ("lammps_bonds", "LAMMPS", "displacements under tension, strains of 1e-5, finite motion not taken out", 1e-4,
+     bonds.lammps_shrinking),
+    ("lammps_bonds", "LAMMPS", "at rest, with prescribed displacements and rotations", 1e-4, bonds.lammps_shear),
+    ("lammps_bonds", "LAMMPS", "at rest, with restrained rotations", 1e-4, bonds.lammps_restrained),
+    ("lammps_bonds", "LAMMPS", "period of the lowest mode", 1e-4, bonds.lammps_period),
+    ("lammps_bonds", "LAMMPS", "a block that falls on a wall of springs, with gravity and local damping", 1e-3,
+     bonds.lammps_wall),
+    ("lammps_bonds", "LAMMPS", "a pulse in a periodic cell", 1e-3, bonds.lammps_periodic),
+    ("yade_bonds", "YADE", "forces and moments of discs displaced at random, 1e-4 of the spacing", 1e-6,
+     bonds.yade_forces),
+    ("yade_bonds", "YADE", "displacements and rotations at rest under tension, strains of 1e-4", 1e-6,
+     bonds.yade_tension),
+    ("yade_bonds", "YADE", "at rest, with prescribed displacements and rotations, and moments", 1e-6, bonds.yade_shear),
+    ("yade_bonds", "YADE", "at rest, with restrained rotations", 1e-6, bonds.yade_restrained),
+    ("yade_bonds", "YADE", "at rest, discs of two radii, contact points off the middle", 1e-6, bonds.yade_unequal),
+    ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, bonds.yade_period),
+    ("lammps_grains", "LAMMPS", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.lammps_motion),
+    ("lammps_grains", "LAMMPS", "overlaps and normal forces when they have settled", 1e-6, grains.lammps_settled),
+    ("lammps_grains", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls", 1e-4,
+     grains.lammps_sliding),
+    ("lammps_grains", "LAMMPS", "overlaps when they have settled with friction (other levers, see below)", 2e-2,
+     grains.lammps_friction),
+    ("lammps_bonds", "LAMMPS", "places of 20 unequal discs that fall in a box, after 0.1 s (style granular)", 1e-6,
+     grains.lammps_motion_graded),
+    ("lammps_bonds", "LAMMPS", "places of 20 equal discs without damping in a box, after 0.05 s", 1e-6,
+     grains.lammps_elastic),
+    ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,
+     grains.yade_settled),
+]
+
+
+def measure(program, group=None):
+    """(check, difference) of each; the differences are printed as they come."""
+    for check in CHECKS:
+        if group is not None and check[0] != group:
+            continue
+        with tempfile.TemporaryDirectory(prefix="equidem_engines_") as folder:
+            value = check[4](program, pathlib.Path(folder))
+        print(f"{check[1]}: {check[2]}: {value:.2e}, at most {check[3]:.0e}", flush=True)
+        yield check, value
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    if sys.argv[2] == "--page":
+        import page
+        pathlib.Path(sys.argv[3]).write_text(page.text_of(list(measure(program))))
+        return 0
+    try:
+        bad = [check[2] for check, value in measure(program, sys.argv[2]) if not value <= check[3]]
+    except engines.Missing as missing:
+        print(f"skipped: {missing} is not installed")
+        return 77
+    for name in bad:
+        print(f"FAILED: {name}")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

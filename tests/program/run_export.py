@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem export, as a user runs it: run_export.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import json
+import math
+import re
+import unittest
+
+from program import CASES, SOURCE, TENSION, ProgramTest, equidem, parse_json
+
+FILES = {"lammps": {"in.equidem", "assembly.data", "load_x.txt"}, "yade": {"run_equidem.py"}, "pfc": {"equidem.dat"}}
+ENGINES = tuple(FILES)
+GRAINS = '''schema = "equidem/1"
+[grains]
+density = 2500.0
+[[grain]]
+position = [0.0, 0.01]
+radius = 0.01
+[[grain]]
+position = [0.021, 0.01]
+radius = {radius}
+[collisions]
+law = "linear_dashpot"
+stiffness = 1e6
+restitution = {restitution}
+{collisions}
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = {normal}
+[run]
+duration = 1e-3
+{run}
+'''
+BONDS = '''schema = "equidem/1"
+[assembly]
+kind = "hexagonal"
+columns = 4
+rows = 4
+radius = 0.005
+density = 2500.0
+{assembly}
+[springs]
+kN = 1e9
+kT = {kT}
+[[support]]
+group = "bottom"
+ux = true
+uy = true
+[[load]]
+group = "top"
+force = [1.0, 0.0]
+{load}
+'''
+
+
+class ExportTest(ProgramTest):
+    def bonds(self, further="", **parts):
+        case = self.folder / "bonds.toml"
+        case.write_text(BONDS.format(**{"assembly": "", "kT": 0.5e9, "load": "", **parts}) + further)
+        return case
+
+    def weighted(self):
+        """A random network with springs of its own at each contact."""
+        text = self.bonds(kT='0.5e9\nweighting = "voronoi"').read_text()
+        case = self.folder / "weighted.toml"
+        case.write_text(text.replace('kind = "hexagonal"\ncolumns = 4\nrows = 4', 'kind = "delaunay"\ndiscs = 40'))
+        return case
+
+    def grains(self, further="", **parts):
+        case = self.folder / "grains.toml"
+        case.write_text(GRAINS.format(**{"radius": 0.01, "restitution": 1.0, "collisions": "", "normal": "[0.0, 1.0]",
+                                         "run": "", **parts}) + further)
+        return case
+
+    def export(self, case, engine, *options, out="out"):
+        return equidem("export", case, "--to", engine, "--out", self.folder / out, *options)
+
+    def exported(self, case, engine, *options, out="out"):
+        self.check_done(self.export(case, engine, *options, out=out))
+        return self.folder / out
+
+    def check_refused(self, case, engines, *words):
+        for engine in ENGINES:
+            with self.subTest(engine=engine):
+                out = f"refused_{engine}_{len(list(self.folder.iterdir()))}"
+                done = self.export(case, engine, out=out)
+                if engine in engines:
+                    name = {"lammps": "LAMMPS", "yade": "YADE", "pfc": "PFC"}[engine]
+                    self.check_error(done, 2, f"the export to {name} does not carry", *words)
+                    self.assertEqual(list((self.folder / out).glob("*")), [])
+                else:
+                    self.check_done(done)
+
+
+class Folders(ExportTest):
+    def test_a_folder_holds_the_model_a_readme_of_three_lines_and_the_case(self):
+        for engine, files in FILES.items():
+            out = self.exported(TENSION, engine, out=engine)
+            self.assertEqual({path.name for path in out.iterdir()}, files | {"README", "case.toml", "result.json"})
+            readme = (out / "README").read_text()
+            self.assertEqual(readme.count("\n"), 3, readme)
+            for word in ("431 discs and 1210 bonds", "one metre of depth", "Time step"):
+                self.assertIn(word, readme)
+            result = parse_json((out / "result.json").read_text())
+            self.assertEqual((result["discs"], result["bonds"], result["format"]), (431, 1210, engine))
+
+    def test_the_same_case_gives_the_same_bytes(self):
+        for engine, files in FILES.items():
+            first, second = (self.exported(TENSION, engine, out=f"{engine}_{k}") for k in (1, 2))
+            for name in files | {"README"}:
+                self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
+
+    def test_numbers_read_back_to_the_same_bits(self):
+        text = (self.exported(self.bonds(), "lammps") / "assembly.data").read_text()
+        atoms = text.split("Atoms # bpm/sphere\n\n")[1].split("\n\n")[0].splitlines()
+        self.check_done(equidem("solve", self.bonds(), "--out", self.folder / "solved"))
+        with open(self.folder / "solved" / "discs.csv") as file:
+            places = [(row["x_m"], row["y_m"]) for row in csv.DictReader(file)]
+        self.assertEqual([tuple(float(word) for word in line.split()[5:7]) for line in atoms],
+                         [tuple(map(float, place)) for place in places])
+
+    def test_files_of_the_user_stay(self):
+        out = self.exported(self.bonds(), "yade")
+        (out / "notes.txt").write_text("mine")
+        script = out / "run_equidem.py"
+        script.write_text("changed")
+        self.check_error(self.export(self.bonds(), "yade"), 2, "exists", "--overwrite")
+        self.assertEqual(script.read_text(), "changed")
+        self.exported(self.bonds(), "yade", "--overwrite")
+        self.assertIn("CohFrictMat", script.read_text())
+        self.assertEqual((out / "notes.txt").read_text(), "mine")
+
+    def test_one_file_that_exists_keeps_all_others_from_being_written(self):
+        out = self.folder / "out"
+        out.mkdir()
+        (out / "assembly.data").write_text("mine")
+        self.check_error(self.export(self.bonds(), "lammps"), 2, "assembly.data", "exists")
+        self.assertEqual([path.name for path in out.iterdir()], ["assembly.data"])
+
+    def test_a_dry_run_tells_the_size_and_writes_nothing(self):
+        done = self.check_done(equidem("export", TENSION, "--to", "lammps", "--dry-run", "--json", "-"))
+        self.assertEqual(parse_json(done.stdout)["bonds"], 1210)
+
+    def test_formats_and_options_that_are_missing_or_unknown(self):
+        self.check_error(equidem("export", TENSION, "--to", "lamps", "--out", self.folder / "x"), 2, "'lamps'", 'mean "lammps"')
+        self.check_error(equidem("export", TENSION, "--to", "yade"), 2, "--out")
+        self.check_error(equidem("export", TENSION, "--out", self.folder / "x"), 2, "--to")
+        self.check_error(self.export(CASES / "pack_jammed.toml", "yade"), 2, "assembly")
+        self.check_error(self.export(CASES / "hexagonal_cell.toml", "lammps"), 2, "nothing pulls or holds")
+
+
+class Models(ExportTest):
+    def test_masses_springs_and_the_step_are_those_of_equidem(self):
+        case = self.bonds("[run]\nduration = 1e-3\n", load='schedule = "x"\n').read_text().replace('schedule = "x"\n', "")
+        (self.folder / "bonds.toml").write_text(case)
+        run = parse_json(self.check_done(equidem("run", self.folder / "bonds.toml", "--dry-run", "--json", "-")).stdout)
+        mass = 2500 * math.pi * 0.005**2
+        script = (self.exported(self.folder / "bonds.toml", "yade", out="yade") / "run_equidem.py").read_text()
+        self.assertEqual(float(re.search(r"O.dt = (\S+)", script).group(1)), run["time_step"])
+        row = re.search(r'BODIES = """\n(.*?)\n', script).group(1).split()
+        self.assertAlmostEqual(float(row[3]), mass, delta=1e-14 * mass)
+        self.assertAlmostEqual(float(row[4]), mass * 0.005**2 / 2, delta=1e-18)
+        self.assertEqual(row[12:], ["0", "0", "-"])
+        data = (self.exported(self.folder / "bonds.toml", "lammps", out="lammps") / "assembly.data").read_text()
+        atom = data.split("Atoms # bpm/sphere\n\n")[1].split()
+        volume = 4 / 3 * math.pi * (float(atom[3]) / 2)**3
+        self.assertAlmostEqual(float(atom[4]) * volume, mass, delta=1e-14 * mass)
+        commands = (self.exported(self.folder / "bonds.toml", "pfc", out="pfc") / "equidem.dat").read_text()
+        self.assertIn("model linearcbond property kn 1000000000 ks 500000000 lin_mode 1", commands)
+        density = float(re.search(r"density (\S+)", commands).group(1))
+        self.assertAlmostEqual(density, 2500, delta=1e-10)
+        self.assertNotIn("fish", commands)
+
+    def test_lammps_has_a_bond_type_for_each_pair_of_springs(self):
+        out = self.exported(self.weighted(), "lammps")
+        script = (out / "in.equidem").read_text()
+        bonds = parse_json((out / "result.json").read_text())["bonds"]
+        types = int(re.search(r"(\d+) bond types", (out / "assembly.data").read_text()).group(1))
+        self.assertEqual(len(re.findall(r"^bond_coeff", script, re.M)), types)
+        self.assertGreater(types, bonds // 2)
+
+    def test_a_density_that_is_not_given_is_assumed_in_statics_and_said(self):
+        self.assertIn("density 2500 kg/m³ assumed", self.check_done(self.export(TENSION, "yade")).stdout)
+        self.assertNotIn("assumed", self.check_done(self.export(self.bonds(), "yade", out="given")).stdout)
+
+    def test_lammps_dashpots_are_those_of_the_reduced_mass(self):
+        out = self.exported(self.grains(restitution=0.5, collisions="contact_end = \"zero_overlap\"\nfriction = 0.0"), "lammps")
+        script = (out / "in.equidem").read_text()
+        coefficients = re.search(r"pair_style gran/hooke/history (.*)", script).group(1).split()
+        loss = -math.log(0.5)
+        zeta = loss / math.hypot(math.pi, loss)
+        reduced = 2500 * math.pi * 0.01**2 / 2
+        self.assertAlmostEqual(float(coefficients[2]), 2 * zeta * math.sqrt(1e6 / reduced), delta=1e-9)
+        self.assertNotIn("limit_damping", script)
+        graded = self.grains(restitution=0.5, radius=0.008, collisions="contact_end = \"zero_overlap\"")
+        script = (self.exported(graded, "lammps", "--overwrite") / "in.equidem").read_text()
+        self.assertIn("pair_style granular", script)
+        self.assertAlmostEqual(float(re.search(r"hooke \S+ (\S+) tangential", script).group(1)), 0.5, delta=1e-14)
+
+
+class Refusals(ExportTest):
+    """What an engine does not carry is named, with what to do."""
+
+    def test_negative_tangential_springs(self):
+        self.check_refused(self.bonds(kT=-1e8), ENGINES, "negative kT", "here contact 0", "equidem solve")
+
+    def test_contact_points_off_the_middle(self):
+        discs = [[0, 0, 2.0], [3, 0, 1.0], [1.5, 2.6, 1.0]]
+        lengths = [math.dist(discs[i][:2], discs[j][:2]) for i, j in ((0, 1), (0, 2), (1, 2))]
+        text = {"schema": "equidem-assembly/1", "discs": discs, "contacts": [[0, 1, 0, 0], [0, 2, 0, 0], [1, 2, 0, 0]],
+                "levers": [[2.0, 1.0], [(lengths[1] + 1) / 2, (lengths[1] - 1) / 2], [lengths[2] / 2] * 2],
+                "groups": {"foot": [0], "side": [1], "head": [2]}}
+        case = self.folder / "three.toml"
+        case.write_text('''schema = "equidem/1"
+[assembly]
+kind = "file"
+path = "three.json"
+[springs]
+kN = 1e9
+kT = 1e8
+[[support]]
+group = "foot"
+ux = true
+uy = true
+[[support]]
+group = "side"
+uy = true
+[[load]]
+group = "head"
+force = [0.0, -1.0]
+''')
+        (self.folder / "three.json").write_text(json.dumps(text))
+        self.check_refused(case, ["lammps"], "off the middle", "contact 0", "Export to yade or pfc")
+        text["levers"][2] = [0.3 * lengths[2], 0.7 * lengths[2]]
+        (self.folder / "three.json").write_text(json.dumps(text))
+        for engine in ENGINES:
+            self.check_error(self.export(case, engine, out=engine + "_levers"), 2, "does not carry")
+        text["levers"][2] = [0.1 * lengths[2], 0.1 * lengths[2]]
+        (self.folder / "three.json").write_text(json.dumps(text))
+        self.check_error(self.export(case, "yade", out="gaps"), 2, "levers")
+
+    def test_ellipses_and_clumps(self):
+        self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "ellipses and clumps", "here grain 1")
+
+    def test_laws_of_collision(self):
+        case = self.grains()
+        case.write_text(case.read_text().replace("linear_dashpot", "exact_flow"))
+        self.check_refused(case, ENGINES, "laws of collision other than linear_dashpot, here exact_flow")
+
+    def test_dashpots_and_friction(self):
+        self.check_refused(self.grains(restitution=0.5), ["yade"], "restitution below 1", "lammps")
+        self.check_refused(self.grains(collisions="friction = 0.3\ntangential_ratio = 0.0"), ENGINES, "friction without")
+        self.check_refused(self.grains(restitution=0.5, collisions="friction = 0.3\ntangential_damping = 0.2\n"
+                                       "friction_cap = \"spring_alone\""), ENGINES, "does not carry")
+
+    def test_walls(self):
+        self.check_refused(self.grains(normal="[0.1, 1.0]"), ["yade"], "not parallel to an axis", "wall 'floor'")
+
+    def test_schedules_and_moments(self):
+        schedule = '[[schedule]]\nname = "slow"\nkind = "ramp"\nend = 1e-3\n[run]\nduration = 1e-3\n'
+        self.check_refused(self.bonds(schedule, load='schedule = "slow"'), ENGINES, "schedules", "load on 'top'")
+        self.check_refused(self.bonds(load="moment = 1.0"), ["lammps"], "moments as loads", "yade")
+
+    def test_damping(self):
+        run = "[run]\nduration = 1e-3\ndamping = {{ {} }}\n"
+        self.check_refused(self.bonds(run.format("mass = 10.0")), ENGINES, "damping proportional to mass", "local")
+        self.check_refused(self.bonds(run.format("contact = 0.1")), ENGINES, "dashpots in bonds")
+        self.check_refused(self.bonds(run.format("local = 0.1")), [])
+
+    def test_periodic_cells(self):
+        cell = self.bonds(assembly="periodic = true").read_text()
+        cell = cell[:cell.index("[[support]]")].replace("rows = 4", "rows = 8").replace("columns = 4", "columns = 8")
+        (self.folder / "cell.toml").write_text(cell + "[run]\nduration = 1e-4\n")
+        self.check_refused(self.folder / "cell.toml", ["yade", "pfc"], "periodic cells", "lammps")
+        small = self.folder / "small.toml"
+        small.write_text((self.folder / "cell.toml").read_text().replace("columns = 8", "columns = 2"))
+        self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry")
+
+    def test_spheres_and_springs_that_differ(self):
+        self.check_refused(self.bonds(assembly='body = "sphere"'), ["pfc"], "spheres")
+        self.check_refused(self.weighted(), ["pfc"], "springs that differ", "yade")
+
+    def test_several_load_cases(self):
+        case = self.bonds('case = "a"\n[[load]]\ngroup = "top"\nforce = [0.0, 1.0]\ncase = "b"\n')
+        self.check_error(self.export(case, "yade"), 2, "2 load cases")
+
+
+class Pages(ExportTest):
+    def test_the_page_shows_the_table_of_the_program(self):
+        table = self.check_done(equidem("help", "engines")).stdout.strip()
+        self.assertIn(table, (SOURCE / "docs" / "how_to" / "engines.md").read_text())
+        self.assertGreater(table.count("\n"), 25)
+
+
+if __name__ == "__main__":
+    unittest.main()
