@@ -72,6 +72,17 @@ inline constexpr std::size_t pair_sums = 12;
 void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums);
 PairEnergies pair_energies(const double* sums);
 
+/// Displacement gradients of unit strains xx, yy, xy (engineering) and of the unit rotation.
+inline constexpr std::size_t strain_cases = 4;
+inline constexpr Tensor2 unit_gradients[strain_cases] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0.5, 0.5, 0}, {0, -1, 1, 0}};
+
+/// Hill & Mandel: mean stress times mean strain is the mean of the powers. The largest difference, relative.
+double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness);
+
+/// Sets the stresses of unit displacement gradients xx, yy, xy, yx, and their asymmetry, from the stresses of unit
+/// strains and, where there is a fourth one, of the unit rotation.
+void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStiffness& result);
+
 /// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the
 /// unsymmetric tensor, the fluctuations and the error bound (without rounding) of `result`.
 /// \throws Error as effective_stiffness

@@ -9,22 +9,10 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
-#include "equidem/homogenize/strain_system.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
-
-/// Hill & Mandel: mean stress times mean strain is the mean of the powers.
-double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
-  double largest = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Voigt s = voigt_stress(stresses[k]);
-    const double row[] = {s.xx, s.yy, s.xy};
-    for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
-  }
-  return largest / largest_entry(stiffness);
-}
 
 /// Sums over the contacts of the part that carries load.
 struct StrainSums {
@@ -37,7 +25,7 @@ struct StrainSums {
 
 StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
                   const std::vector<Solution>& solutions) {
-  constexpr std::size_t most_cases = std::size(unit_gradients), first_stress = pair_sums;
+  constexpr std::size_t most_cases = strain_cases, first_stress = pair_sums;
   const Assembly& assembly = solver.assembly();
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
   const double scale = solver.unknowns().rotation_scale;
@@ -77,7 +65,18 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
   return result;
 }
 
-/// Stresses of unit displacement gradients xx, yy, xy, yx from those of unit strains and of the unit rotation.
+}  // namespace
+
+double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& stiffness) {
+  double largest = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Voigt s = voigt_stress(stresses[k]);
+    const double row[] = {s.xx, s.yy, s.xy};
+    for (int a = 0; a < 3; ++a) largest = std::max(largest, std::abs(row[a] - stiffness[a][k]));
+  }
+  return largest / largest_entry(stiffness);
+}
+
 void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStiffness& result) {
   const Tensor2 turned = stresses.size() > 3 ? stresses[3] : Tensor2{};
   const Tensor2 columns[] = {stresses[0], stresses[1], stresses[2] + (-0.5) * turned, stresses[2] + 0.5 * turned};
@@ -90,8 +89,6 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   }
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
-
-}  // namespace
 
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                    EffectiveStiffness& result) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
 

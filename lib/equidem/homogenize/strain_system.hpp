@@ -6,13 +6,9 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/core/vector.hpp"
 #include "equidem/statics/equations/linear_system.hpp"
 
 namespace equidem {
-
-/// Displacement gradients of unit strains xx, yy, xy (engineering) and of the unit rotation.
-inline constexpr Tensor2 unit_gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0.5, 0.5, 0}, {0, -1, 1, 0}};
 
 /// The equations of the motions beside the unit mean strains xx, yy and xy (engineering), which effective_stiffness
 /// solves for Boundary::periodic; where rotation is restrained also those beside the unit mean rotation. Discs that

@@ -12,15 +12,14 @@
 #include "equidem/core/text.hpp"
 #include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/equations/load_vector.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/rigidity.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
-
 struct EquilibriumSolver::Implementation {
   const Assembly& assembly;
   const ContactSprings& springs;
@@ -177,11 +176,11 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 
 Equilibrium EquilibriumSolver::solve(const LoadCase& loads) const {
   const Implementation& self = *implementation_;
-  return self.solve(load_vector(self.assembly, self.solver.unknowns(), loads));
+  return self.solve(assemble_loads(self.assembly, self.solver.unknowns(), loads));
 }
 Equilibrium EquilibriumSolver::solve(std::span<const DiscForce> loads) const {
   assert(loads.size() == implementation_->assembly.size());
-  return implementation_->solve(load_vector(implementation_->solver.unknowns(), loads));
+  return implementation_->solve(assemble_loads(implementation_->solver.unknowns(), loads));
 }
 const Effects& EquilibriumSolver::effects() const {
   return implementation_->effects;

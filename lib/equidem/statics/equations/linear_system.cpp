@@ -4,8 +4,8 @@
 #include <cassert>
 #include <utility>
 
-#include "equidem/statics/equations/load_vector.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/rigidity.hpp"
 
 namespace equidem {
@@ -77,7 +77,7 @@ LinearSystem equilibrium_system(const Assembly& assembly, const ContactSprings& 
   check_rigidity(assembly, graph, springs, unknowns);
   std::vector<RightHandSide> cases;
   for (const LoadCase& acting : loads) {
-    RightHandSide given{.force = load_vector(assembly, unknowns, acting), .prescribed = unknowns.prescribed};
+    RightHandSide given{.force = assemble_loads(assembly, unknowns, acting), .prescribed = unknowns.prescribed};
     check_inert_loads(assembly, unknowns, given.force);
     cases.push_back(std::move(given));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/equations/load_vector.hpp"
+#include "equidem/statics/loads.hpp"
 
 #include <cmath>
 
@@ -20,38 +20,43 @@ void check_load(const Load& load) {
 
 }  // namespace
 
-std::vector<double> load_vector(const Assembly& assembly, const DegreesOfFreedom& unknowns, const LoadCase& loads) {
+void add_load(const Load& load, const DiscGroup& discs, std::int64_t count, const DegreesOfFreedom& unknowns,
+              std::span<double> f) {
+  check_load(load);
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  std::vector<double> f(assembly.size() * b, 0.0);
+  if (count == 0) {
+    bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group), "there is no disc to carry it",
+              "Choose a group with discs or mend its definition");
+  }
+  if (load.kind == LoadKind::traction && !discs.discs.empty() && discs.tributary_lengths.empty()) {
+    bad_input(fmt::format("a traction acts on the group '{}'", load.group),
+              "it is no side of the assembly and has no length",
+              "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
+  }
+  if (load.moment != 0 && b != 3) {
+    bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
+              "Remove the moment, or let rotation = \"free\" with tangential springs");
+  }
+  const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(count) : 1.0;
+  for (std::size_t k = 0; k < discs.discs.size(); ++k) {
+    const double weight = load.kind == LoadKind::traction ? discs.tributary_lengths[k] : share;
+    const std::size_t disc = discs.discs[k];
+    f[disc * b] += weight * load.force.x;
+    f[disc * b + 1] += weight * load.force.y;
+    if (b == 3) f[disc * b + 2] += share * load.moment / unknowns.rotation_scale;
+  }
+}
+
+std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, const LoadCase& loads) {
+  std::vector<double> f(assembly.size() * static_cast<std::size_t>(unknowns.per_disc), 0.0);
   for (const Load& load : loads) {
-    check_load(load);
     const DiscGroup& discs = group(assembly, load.group);
-    if (discs.discs.empty()) {
-      bad_input(fmt::format("a load acts on the group '{}', which is empty", load.group),
-                "there is no disc to carry it", "Choose a group with discs or mend its definition");
-    }
-    if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
-      bad_input(fmt::format("a traction acts on the group '{}'", load.group),
-                "it is no side of the assembly and has no length",
-                "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
-    }
-    if (load.moment != 0 && b != 3) {
-      bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
-                "Remove the moment, or let rotation = \"free\" with tangential springs");
-    }
-    const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
-    for (std::size_t k = 0; k < discs.discs.size(); ++k) {
-      const double weight = load.kind == LoadKind::traction ? discs.tributary_lengths[k] : share;
-      const std::size_t disc = discs.discs[k];
-      f[disc * b] += weight * load.force.x;
-      f[disc * b + 1] += weight * load.force.y;
-      if (b == 3) f[disc * b + 2] += share * load.moment / unknowns.rotation_scale;
-    }
+    add_load(load, discs, std::ssize(discs.discs), unknowns, f);
   }
   return f;
 }
 
-std::vector<double> load_vector(const DegreesOfFreedom& unknowns, std::span<const DiscForce> loads) {
+std::vector<double> assemble_loads(const DegreesOfFreedom& unknowns, std::span<const DiscForce> loads) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   std::vector<double> f(loads.size() * b, 0.0);
   for (std::size_t d = 0; d < loads.size(); ++d) {

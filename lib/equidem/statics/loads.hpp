@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Loads as forces on the components of discs.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+/// Force on every component: N/m; moments over a.
+/// \throws Error (bad_input) as EquilibriumSolver::solve
+std::vector<double> assemble_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, const LoadCase& loads);
+std::vector<double> assemble_loads(const DegreesOfFreedom& unknowns, std::span<const DiscForce> loads);
+
+/// Adds one load to these forces.
+/// \param discs its group, or that part of it which belongs to the discs of `f`
+/// \param count discs of the whole group
+/// \throws Error (bad_input)
+void add_load(const Load& load, const DiscGroup& discs, std::int64_t count, const DegreesOfFreedom& unknowns,
+              std::span<double> f);
+
+/// Refuses a moment on a disc that no contact keeps from turning, and no support either: it could not be balanced.
+/// \throws Error (bad_input)
+void check_inert_loads(const Assembly& assembly, const DegreesOfFreedom& unknowns, std::span<const double> f);
+
+}  // namespace equidem
