@@ -183,6 +183,7 @@ TEST_CASE("contacts_of_a_table_may_have_levers_and_normals") {
   CHECK(plain.contacts[0].lever_i == Approx(2e-3));
   const Assembly levers = read("id1 id2 lever_i lever_j\n10 20 1.25 1.75\n");
   CHECK(levers.contacts[0].lever_i == Approx(1.25e-3));
+  CHECK(read("i,j,lever_i_um,lever_j_um\n10,20,1250,1750\n").contacts[0].lever_j == Approx(1.75e-3));
   const Assembly arms = read("i,j,lever_i,lever_j,normal_x,normal_y,offset_i,offset_j\n10,20,0.8,1,0.6,0.8,-1.4,-1\n");
   CHECK(arms.contact_arms[0].offset_i == Approx(-1.4e-3));
   const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
@@ -199,6 +200,7 @@ TEST_CASE("contacts_of_a_table_may_have_levers_and_normals") {
   refused("i,j,lever_i\n10,20,1\n", {"line 1", "lever_i and lever_j", "Give both"});
   refused("i,j,lever_i,levr_j\n10,20,1,2\n", {"line 1", "Did you mean 'lever_j'?"});
   refused("i,j,normal_x,normal_y\n10,20,1,0\n", {"line 1", "normals, offsets and levers"});
+  refused("i,j,lever_i_m,lever_j_mm\n10,20,1,1\n", {"line 1", "different units"});
   refused("1 2 3\n", {"line 1", "3 columns", "i j"});
   refused("i,j\n10,2x\n", {"contacts.csv: line 2", "'2x' is no particle"});
 }

@@ -74,7 +74,7 @@ def worst(forces, expected):
 def lammps_forces(program, folder):
     """The part of the forces that is odd in the motion: the law is linear, the effect of finite motion is not."""
     lammps = engines.lammps_with_bonds()
-    state = Displaced(program, folder, 4e-4)
+    state = Displaced(program, folder, 2e-4)
     out = state.model.export("lammps")
     script = engines.head_of(out / "in.equidem")
     for name, sign in (("plus", 1), ("minus", -1)):
@@ -127,14 +127,14 @@ def lammps_rest(program, folder, case):
     places = engines.columns(model.folder / "solved" / "discs.csv", "x_m", "y_m")
     engines.run_lammps(engines.lammps_with_bonds(), out)
     end = engines.dump(out / "end.dump")
-    moved = np.stack([end["x"], end["y"]], 1) - places
+    moved = np.stack([end["xu"], end["yu"]], 1) - places
     turned = 2 * np.arctan2(end["c_turn[2]"], end["c_turn[1]"])
     return (moved, turned), (expected[:, :2], expected[:, 2])
 
 
 def odd_part(rest, program, folder, case_of):
-    """Half the difference of the motions under loads of both signs, relative to that of equidem: the part of first order
-    in the motion, which is all of it in equidem."""
+    """Half the difference of the motions under loads of both signs, relative to that of equidem: the part of first
+    order in the motion, which is all of it in equidem."""
     parts = []
     for sign in (1, -1):
         (folder / str(sign)).mkdir()
@@ -264,7 +264,8 @@ class Mode:
     frequency is that of `equidem stability`."""
 
     def __init__(self, program, folder):
-        frequency = Model(program, folder, VIBRATION, "frequency").equidem("stability", "stability", "--frequencies", "1")
+        held = Model(program, folder, VIBRATION, "frequency")
+        frequency = held.equidem("stability", "stability", "--frequencies", "1")
         self.omega = 2 * math.pi * engines.result_of(frequency)["natural_frequencies"][0]
         self.model = Model(program, folder, VIBRATION + f"[run]\nduration = {PERIODS * 2.2 * math.pi / self.omega}\n")
         script = (self.model.export("yade") / "run_equidem.py").read_text()
@@ -297,8 +298,8 @@ class Mode:
         """Of the mean period between the rising zeros of the mode's share in the motions (n, 3 discs); the step of
         leapfrog shortens a period by (omega h)²/24, which is taken out."""
         share = motions @ self.weights
-        rising = np.nonzero((share[:-1] < 0) & (share[1:] >= 0))[0]
-        zeros = times[rising] - share[rising] * (times[rising + 1] - times[rising]) / (share[rising + 1] - share[rising])
+        at = np.nonzero((share[:-1] < 0) & (share[1:] >= 0))[0]  # rising
+        zeros = times[at] - share[at] * (times[at + 1] - times[at]) / (share[at + 1] - share[at])
         period = (zeros[-1] - zeros[0]) / (len(zeros) - 1)
         return max(abs(period * self.omega / (2 * math.pi) * (1 + (self.omega * self.step)**2 / 24) - 1),
                    self.frequency_error)
@@ -344,8 +345,75 @@ def lammps_period(program, folder):
     engines.run_lammps(lammps, out, "period.in")
     states = (out / "motions.dump").read_text().split("ITEM: TIMESTEP\n")[1:]
     times = np.array([int(state.split("\n", 1)[0]) for state in states]) * mode.step
-    tables = np.array([[[float(word) for word in line.split()[1:]] for line in state.split("ITEM: ATOMS")[1].splitlines()[1:]]
-                       for state in states])
+    tables = np.array([[[float(word) for word in line.split()[1:]]
+                        for line in state.split("ITEM: ATOMS")[1].splitlines()[1:]] for state in states])
     moved = tables[:, :, :2] - tables[0, :, :2]
     turned = 2 * np.arctan2(tables[:, :, 3], tables[:, :, 2])
     return mode.period_error(times, np.concatenate([moved, turned[:, :, None]], 2).reshape(len(states), -1))
+
+
+def run_difference(program, folder, case):
+    """Displacements after a run of LAMMPS and of equidem, relative to the largest."""
+    lammps = engines.lammps_with_bonds()
+    model = Model(program, folder, case)
+    table = model.equidem("run", "run") / "discs.csv"
+    expected = engines.columns(table, "ux_m", "uy_m")
+    out = model.export("lammps")
+    engines.run_lammps(lammps, out)
+    end = engines.dump(out / "end.dump")
+    moved = np.stack([end["xu"], end["yu"]], 1) - engines.columns(table, "x_m", "y_m")
+    return engines.relative(moved, expected)
+
+
+def lammps_wall(program, folder):
+    """A block falls on a wall and rebounds; its gravity and speed keep strains near 1e-4."""
+    return run_difference(program, folder, '''
+[assembly]
+kind = "hexagonal"
+columns = 6
+rows = 6
+radius = 0.005
+density = 2500.0
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[wall]]
+name = "floor"
+point = [0.0, -6.7e-4]
+normal = [0.0, 1.0]
+kN = 1e9
+[[velocity]]
+group = "all"
+velocity = [0.0, -0.05]
+[[group]]
+name = "all"
+box = [-1.0, -1.0, 1.0, 1.0]
+[run]
+duration = 5e-4
+gravity = [0.0, -9.81]
+damping = { local = 0.05 }
+''')
+
+
+def lammps_periodic(program, folder):
+    """A pulse in a periodic cell, across whose sides discs are bonded."""
+    return run_difference(program, folder, '''
+[assembly]
+kind = "hexagonal"
+columns = 8
+rows = 8
+radius = 0.005
+density = 2500.0
+periodic = true
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[group]]
+name = "some"
+discs = [3, 4, 10, 17]
+[[velocity]]
+group = "some"
+velocity = [0.02, 0.01]
+[run]
+duration = 2e-4
+''')

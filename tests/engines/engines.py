@@ -52,7 +52,8 @@ def found(variable, name):
 
 
 def version_of_lammps(program):
-    return re.search(r"- (\d+ \w+ \d+)", subprocess.run([program, "-h"], capture_output=True, text=True).stdout).group(1)
+    help_text = subprocess.run([program, "-h"], capture_output=True, text=True).stdout
+    return re.search(r"- (\d+ \w+ \d+)", help_text).group(1)
 
 
 def version_of_yade(program):

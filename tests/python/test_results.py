@@ -145,3 +145,15 @@ def test_every_public_name_is_documented():
     for name in eq.__all__:
         thing = getattr(eq, name)
         assert thing.__doc__ and len(thing.__doc__) > 20, name
+
+
+def test_a_case_is_exported_as_the_program_does(tmp_path):
+    case = eq.Case(assembly={"kind": "hexagonal", "columns": 5, "rows": 5, "radius": 5e-3}, springs=(1e9, 0.5e9),
+                   test={"kind": "uniaxial_tension", "stress": 1e6})
+    result = case.export("yade", out=tmp_path / "yade")
+    assert result.bonds > 40 and result.time_step > 0
+    assert "CohFrictMat" in (tmp_path / "yade" / "run_equidem.py").read_text()
+    with pytest.raises(eq.BadInput, match="--overwrite"):
+        case.export("yade", out=tmp_path / "yade")
+    with pytest.raises(eq.BadInput, match="does not carry negative kT"):
+        case.set("springs.kT", -1e8).export("lammps", out=tmp_path / "lammps")

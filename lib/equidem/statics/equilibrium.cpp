@@ -20,7 +20,6 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
-
 struct EquilibriumSolver::Implementation {
   const Assembly& assembly;
   const ContactSprings& springs;

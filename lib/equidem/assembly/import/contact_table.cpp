@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "equidem/assembly/import/length_unit.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/assembly/import/text_table.hpp"
 #include "equidem/core/error.hpp"
@@ -63,6 +64,19 @@ ContactColumns contact_columns(const TextTable& table, bool local_dump) {
   return c;
 }
 
+/// The unit that the names of levers and offsets carry; none where none does.
+std::optional<double> unit_of_contact_lengths(const TextTable& table, const ContactColumns& columns) {
+  const auto& [shifts, levers, normals, offsets] = columns.optional;
+  if (!levers[0] || table.names().empty()) return {};
+  const std::string& unit = table.names()[*levers[0]].unit;
+  for (const OptionalColumn place : {levers[1], offsets[0], offsets[1]}) {
+    if (place && table.names()[*place].unit != unit)
+      bad_input_at(fmt::format("line {}", table.line_of_names()), "levers and offsets are in different units",
+                   "they have one unit", "Convert one of them");
+  }
+  return unit.empty() ? std::nullopt : length_unit(unit);
+}
+
 /// The rows of the last frame of a local dump, with the names of their columns before them.
 std::string table_of_local_dump(std::string_view text) {
   constexpr std::string_view heading = "ITEM: ENTRIES";
@@ -83,13 +97,14 @@ std::vector<ContactRow> read_contact_rows(std::string_view text) {
   TextTable table(local_dump ? std::string_view(kept) : text);
   const ContactColumns columns = contact_columns(table, local_dump);
   const auto& [shifts, levers, normals, offsets] = columns.optional;
+  const std::optional<double> unit = unit_of_contact_lengths(table, columns);
   std::vector<ContactRow> rows;
   do {
     const int line = table.line();
     const auto number = [&](OptionalColumn column, const char* name) {
       return finite_number(table.cells()[*column], name, line);
     };
-    ContactRow row{.line = line};
+    ContactRow row{.line = line, .unit = unit};
     row.i = whole_number(table.cells()[columns.i], "particle", line);
     row.j = whole_number(table.cells()[columns.j], "particle", line);
     if (shifts[0]) {

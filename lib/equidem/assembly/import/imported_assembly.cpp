@@ -173,15 +173,16 @@ void add_contacts(const std::vector<ContactRow>& given, const ParticleRows& rows
   for (const ContactRow& row : given) {
     Contact contact = contact_of(row, rows.particles, assembly);
     check_within_box(row, contact, rows, unit, assembly);
+    const double length = row.unit.value_or(unit);
     if (row.lever_i) {
-      contact.lever_i = unit * *row.lever_i;
-      contact.lever_j = unit * *row.lever_j;
+      contact.lever_i = length * *row.lever_i;
+      contact.lever_j = length * *row.lever_j;
     } else if (point == ContactPoint::by_radii) {
       divide_by_radii(assembly, contact);
     } else {
       contact.lever_i = contact.lever_j = 0.5 * norm(assembly.branch(contact));
     }
-    if (row.normal) assembly.contact_arms.push_back({*row.normal, unit * row.offset_i, unit * row.offset_j});
+    if (row.normal) assembly.contact_arms.push_back({*row.normal, length * row.offset_i, length * row.offset_j});
     assembly.contacts.push_back(contact);
   }
 }

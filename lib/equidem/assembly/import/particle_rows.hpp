@@ -28,6 +28,7 @@ struct ContactRow {
   std::optional<double> lever_i = {}, lever_j = {};        ///< in the unit of the file, see Contact
   std::optional<Vec2> normal = {};                         ///< with offsets, see ContactArms
   double offset_i = 0, offset_j = 0;
+  std::optional<double> unit = {};  ///< m, of levers and offsets where their columns name it
 };
 
 /// Lengths are in the unit of the file.

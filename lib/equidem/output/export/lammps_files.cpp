@@ -62,7 +62,7 @@ class LammpsWriter {
     text += "variable interval equal ceil(v_steps/20)\nthermo ${interval}\n";
     if (model_.to_rest) text += stop_at_rest();
     text += "run ${steps}\n";
-    line(text, "write_dump all custom end.dump id x y vx vy omegaz fx fy tqz{} modify format float %.17g sort id",
+    line(text, "write_dump all custom end.dump id xu yu vx vy omegaz fx fy tqz{} modify format float %.17g sort id",
          model_.bonded ? " c_turn[1] c_turn[2]" : "");
     return text;
   }
@@ -179,8 +179,8 @@ class LammpsWriter {
     const double kN = pair.stiffness, kT = stiffness_along(pair);
     const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(kN / mass);
     const double along = 2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * kT / mass);
-    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(normal), exact(pair.friction > 0 ? along : 0),
-                       exact(pair.friction));
+    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(std::max(normal, smallest_dashpot)),
+                       exact(pair.friction > 0 ? along : 0), exact(pair.friction));
   }
 
   /// A contact without friction has a tangential spring that carries nothing: LAMMPS divides by its stiffness.
@@ -234,7 +234,7 @@ class LammpsWriter {
         line(text, "group kind_{} type {}", type, type);
         text += fmt::format("fix wall_{}_{} kind_{} wall/gran/region ", k, type, type);
         if (model_.bonded) {
-          text += fmt::format("hooke/history {} {} 0 0 0 0", exact(wall.kN), exact(wall.kN));
+          text += fmt::format("hooke/history {} {} {} 0 0 1", exact(wall.kN), exact(wall.kN), exact(smallest_dashpot));
         } else {
           const PairProperties& pair = model_.between(kind, wall.kind);
           text += by_mass() ? fmt::format("hooke/history {}{}",
@@ -318,6 +318,9 @@ class LammpsWriter {
     line(text, "fix rest all halt 100 v_largest < {} error continue message no", exact(1e-10 * force_scale(model_)));
     return text;
   }
+
+  /// In place of 0, 1/s: walls of LAMMPS since 2022 divide the tangential dashpot by the normal one.
+  static constexpr double smallest_dashpot = 1e-200;
 
   const EngineModel& model_;
   std::map<std::pair<double, double>, int> bond_types_;
