@@ -50,6 +50,7 @@ CHECKS = [
      grains.lammps_elastic),
     ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,
      grains.yade_settled),
+    ("yade_grains", "YADE", "speed and spin of a disc that slides on a floor until it rolls", 1e-3, grains.yade_sliding),
 ]
 
 
