@@ -300,7 +300,7 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   Tensor2 second_moment;
   Tensor2 covariance;
   if (total > 0) {
-    const Vec2 centre = Vec2{first[1], first[2]} / total, mean = Vec2{first[3], first[4]} / total;
+    const Vec2 centre = (1 / total) * Vec2{first[1], first[2]}, mean = (1 / total) * Vec2{first[3], first[4]};
     for (const std::size_t disc : chosen) {
       const Vec2 dx = assembly.centres[disc] - centre;
       second_moment += weight(disc) * outer(dx, dx);
