@@ -173,6 +173,21 @@ void check_bodies(const Assembly& assembly) {
   }
 }
 
+void check_strengths(const Assembly& assembly) {
+  const std::size_t m = assembly.contacts.size();
+  if (assembly.contact_tension.empty() && assembly.contact_shear.empty()) return;
+  check_count("tensile strengths", assembly.contact_tension.size(), "contacts", m);
+  check_count("shear strengths", assembly.contact_shear.size(), "contacts", m);
+  check_each(m, [&](std::size_t c) {
+    const double tension = assembly.contact_tension[c], shear = assembly.contact_shear[c];
+    if (!(tension >= 0 && shear >= 0 && std::isfinite(tension + shear))) {
+      bad_input(fmt::format("{}, has the strengths {} and {} N/m", described(assembly.contacts[c], c), tension, shear),
+                "a strength must be finite and not negative",
+                "Correct them; a contact that never breaks has large ones");
+    }
+  });
+}
+
 void check_contacts(const Assembly& assembly) {
   const std::size_t m = assembly.contacts.size();
   if (!assembly.contact_arms.empty()) check_count("arms", assembly.contact_arms.size(), "contacts", m);
@@ -190,6 +205,7 @@ void check_contacts(const Assembly& assembly) {
       }
     });
   }
+  check_strengths(assembly);
   if (assembly.contact_kN.empty() && assembly.contact_kT.empty()) return;
   check_count("normal springs", assembly.contact_kN.size(), "contacts", m);
   check_count("tangential springs", assembly.contact_kT.size(), "contacts", m);

@@ -73,6 +73,8 @@ struct Assembly {
   std::vector<BodySection> sections;        ///< per body; empty: discs of these radii
   std::vector<double> contact_kN;           ///< Pa, per contact: overrides the springs of the case; empty: none given
   std::vector<double> contact_kT;           ///< Pa, likewise
+  std::vector<double> contact_tension;      ///< N/m, per contact: its strength in tension; empty: none given
+  std::vector<double> contact_shear;        ///< N/m, likewise in shear
   std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
 
   [[nodiscard]] std::size_t size() const { return centres.size(); }

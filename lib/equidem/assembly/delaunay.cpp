@@ -110,6 +110,8 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.contact_arms.clear();
   assembly.contact_kN.clear();
   assembly.contact_kT.clear();
+  assembly.contact_tension.clear();
+  assembly.contact_shear.clear();
   set_midpoints(assembly);
   take_sides(assembly, cells);
 }

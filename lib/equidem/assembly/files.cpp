@@ -29,8 +29,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> known_keys = {"schema",   "title",  "cell",    "box",     "discs",   "sections",
-                                             "contacts", "levers", "normals", "offsets", "springs", "groups"};
+const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",     "discs",
+                                             "sections", "contacts",  "levers", "normals", "offsets",
+                                             "springs",  "strengths", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -208,6 +209,10 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
   read_pairs(file, "springs", "kN, kT", "contact", contacts, [&](std::size_t, double kN, double kT) {
     assembly.contact_kN.push_back(kN);
     assembly.contact_kT.push_back(kT);
+  });
+  read_pairs(file, "strengths", "f_t, f_s", "contact", contacts, [&](std::size_t, double tension, double shear) {
+    assembly.contact_tension.push_back(tension);
+    assembly.contact_shear.push_back(shear);
   });
   refuse_repeated_contacts(assembly);
 }

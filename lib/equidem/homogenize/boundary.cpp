@@ -108,6 +108,8 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   opened.facet_lengths.clear();
   opened.contact_kN.clear();
   opened.contact_kT.clear();
+  opened.contact_tension.clear();
+  opened.contact_shear.clear();
   std::vector<Vec2> a, steps;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];

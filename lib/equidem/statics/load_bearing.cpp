@@ -348,6 +348,8 @@ class Pruning {
     take(whole.sections, result.discs, rest.sections);
     take(whole.contact_kN, result.contacts, rest.contact_kN);
     take(whole.contact_kT, result.contacts, rest.contact_kT);
+    take(whole.contact_tension, result.contacts, rest.contact_tension);
+    take(whole.contact_shear, result.contacts, rest.contact_shear);
     for (const auto& [name, group] : whole.groups) {
       DiscGroup& kept = rest.groups[name];
       for (std::size_t k = 0; k < group.discs.size(); ++k) {

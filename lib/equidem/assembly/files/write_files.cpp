@@ -65,6 +65,10 @@ std::string json_of(const Assembly& assembly) {
     append_list(text, "springs", contacts.size(),
                 [&](std::size_t k) { return pair_of(assembly.contact_kN[k], assembly.contact_kT[k]); });
   }
+  if (!assembly.contact_tension.empty()) {
+    append_list(text, "strengths", contacts.size(),
+                [&](std::size_t k) { return pair_of(assembly.contact_tension[k], assembly.contact_shear[k]); });
+  }
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {

@@ -120,6 +120,10 @@ class Writing {
     }
     if (!a.contact_kN.empty())
       add<double>(springs, count, [&a](std::size_t k, double* to) { set(to, a.contact_kN[k], a.contact_kT[k]); });
+    if (!a.contact_tension.empty()) {
+      add<double>(strengths, count,
+                  [&a](std::size_t k, double* to) { set(to, a.contact_tension[k], a.contact_shear[k]); });
+    }
     if (!a.facet_lengths.empty() || (count == 0 && !a.cell_areas.empty()))
       add<double>(facet_lengths, count, [&a](std::size_t k, double* to) { *to = a.facet_lengths[k]; });
   }

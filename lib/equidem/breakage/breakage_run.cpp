@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/breakage_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double round_off = 1e-11;  // of the largest force of the network before anything broke
+
+double sign_of(double x) {
+  return x < 0 ? -1 : 1;
+}
+
+}  // namespace
+
+BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
+                                   const SolverOptions& solver) {
+  BreakableNetwork network{scene.assembly, scene.springs, effects, std::move(supports), {scene.path.pattern}, solver};
+  if (scene.path.dead) network.cases.push_back(*scene.path.dead);
+  return network;
+}
+
+BreakageRun::BreakageRun(BreakageScene scene, BreakableSystem& system) : scene_(scene), system_(system) {
+  for (std::size_t d = 0; d < system_.left().size(); ++d) {
+    if (system_.left()[d] != 0) idle_.push_back(static_cast<std::int32_t>(d));
+  }
+  const bool dead = scene_.path.dead.has_value();
+  if (!system_.carries(0) || (dead && !system_.carries(1))) {
+    bad_input("the assembly cannot carry its loads before anything breaks", system_.why_not(),
+              "Hold that part by a support, or take the load off it");
+  }
+  response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  no_pattern_ = round_off * response_.largest_pattern;
+  no_dead_ = round_off * response_.largest_dead;
+  no_rate_ = round_off * std::abs(scene_.path.control == LoadControl::load ? response_.load[1] : response_.motion[1]);
+  work_ = 0.5 * response_.loads_by_motions[0];  // of the dead loads, applied in proportion
+  held_ = held_quantity(0);
+}
+
+double BreakageRun::direction(std::int64_t leg) const {
+  const std::vector<double>& legs = scene_.path.legs;
+  const auto k = static_cast<std::size_t>(leg);
+  if (k >= legs.size()) return 1;
+  if (scene_.path.control == LoadControl::path) return sign_of(legs[k]);
+  return sign_of(legs[k] - (k == 0 ? 0 : legs[k - 1]));
+}
+
+double BreakageRun::held_quantity(double lambda) const {
+  return NetworkResponse::at(scene_.path.control == LoadControl::load ? response_.load : response_.motion, lambda);
+}
+
+LegPoint BreakageRun::point_at(double lambda, std::int64_t leg) const {
+  const auto next = std::ranges::find_if(events_, [&](const BreakEvent& event) { return event.leg > leg; });
+  const std::int64_t before = next - events_.begin();
+  if (next == events_.end())
+    return {before, lambda, NetworkResponse::at(response_.load, lambda), NetworkResponse::at(response_.motion, lambda)};
+  const double on = lambda - next->lambda;
+  return {before, lambda, next->load + on * next->load_rate, next->motion + on * next->motion_rate};
+}
+
+std::vector<LegPoint> BreakageRun::leg_points() const {
+  std::vector<LegPoint> points{point_at(0, -1)};
+  for (std::int64_t leg = 0; leg < leg_; ++leg)
+    points.push_back(point_at(scene_.path.legs[static_cast<std::size_t>(leg)], leg));
+  return points;
+}
+
+/// The value of lambda at which the control holds the network as it is; infinite where no lambda reaches what is held.
+double BreakageRun::controlled_from() const {
+  const LoadPath& path = scene_.path;
+  if (path.control == LoadControl::path) return 0;
+  if (path.controls_lambda()) return lambda_;
+  const auto& [rest, slope] = path.control == LoadControl::load ? response_.load : response_.motion;
+  if (!(slope > no_rate_)) return direction(leg_) * std::numeric_limits<double>::infinity();
+  return (held_ - rest) / slope;
+}
+
+bool BreakageRun::leg_ends_before(double lambda) const {
+  const std::vector<double>& legs = scene_.path.legs;
+  const auto k = static_cast<std::size_t>(leg_);
+  if (k >= legs.size()) return false;
+  return scene_.path.control == LoadControl::path ? std::abs(lambda) > std::abs(legs[k])
+                                                  : direction(leg_) * (lambda - legs[k]) > 0;
+}
+
+void BreakageRun::move_to(double lambda) {
+  work_ += response_.work(lambda_, lambda);
+  lambda_ = lambda;
+}
+
+void BreakageRun::end(PathEnd why, std::string sentence) {
+  end_ = why;
+  why_ = std::move(sentence);
+}
+
+bool BreakageRun::advance() {
+  const LoadPath& path = scene_.path;
+  const bool dead = path.dead.has_value();
+  while (end_ == PathEnd::none) {
+    if (path.max_events > 0 && std::ssize(events_) >= path.max_events) {
+      end(PathEnd::most_events, fmt::format("{} are done, as many as asked for", counted(path.max_events, "event")));
+      break;
+    }
+    if (!system_.carries(0) || (dead && !system_.carries(1))) {
+      end(PathEnd::load_moves_part, system_.why_not());
+      break;
+    }
+    const double from = controlled_from();
+    if (!std::isfinite(from)) {
+      end(PathEnd::carries_nothing, "what is left cannot take the load that is held");
+      break;
+    }
+    const std::optional<NextBreak> next =
+        next_break({.strengths = scene_.strengths,
+                    .pattern = system_.forces(0),
+                    .dead = dead ? system_.forces(1) : std::span<const ContactForce>{},
+                    .no_pattern = no_pattern_,
+                    .no_dead = no_dead_,
+                    .from = from,
+                    .direction = direction(leg_),
+                    .by_least_load = path.control != LoadControl::path});
+    if (next && !leg_ends_before(next->lambda)) {
+      break_contact(*next);
+      return true;
+    }
+    if (!finish_leg(from)) break;
+  }
+  return false;
+}
+
+/// \return whether another leg follows
+bool BreakageRun::finish_leg(double from) {
+  const std::vector<double>& legs = scene_.path.legs;
+  if (response_.largest_pattern <= no_pattern_) {
+    end(PathEnd::carries_nothing, "no contact carries a force that grows with lambda");
+    return false;
+  }
+  if (legs.empty()) {
+    end(PathEnd::never_breaks, "no contact breaks at any lambda");
+    return false;
+  }
+  // Where a load is held, contacts that broke may have driven lambda beyond the end of the leg.
+  const double to = legs[static_cast<std::size_t>(leg_)], way = direction(leg_);
+  move_to(scene_.path.control == LoadControl::path ? to : way * std::max(way * to, way * from));
+  held_ = held_quantity(lambda_);
+  if (++leg_ < std::ssize(legs)) return true;
+  end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", lambda_));
+  return false;
+}
+
+void BreakageRun::break_contact(const NextBreak& next) {
+  move_to(next.lambda);
+  BreakEvent event{.leg = leg_,
+                   .lambda = lambda_,
+                   .contact = static_cast<std::int64_t>(next.contact),
+                   .mode = next.mode,
+                   .ties = next.ties,
+                   .gap = next.gap,
+                   .load = NetworkResponse::at(response_.load, lambda_),
+                   .motion = NetworkResponse::at(response_.motion, lambda_),
+                   .stress = response_.stress_at(lambda_),
+                   .energy_before = response_.energy_at(lambda_),
+                   .load_rate = response_.load[1],
+                   .motion_rate = response_.motion[1],
+                   .unstable_modes = system_.unstable_modes(),
+                   .relative_residual = system_.relative_residual()};
+  const double moved_before = NetworkResponse::at(response_.loads_by_motions, lambda_);
+  if (scene_.path.control != LoadControl::path) {
+    const double now = held_quantity(lambda_), way = direction(leg_);
+    held_ = way * std::max(way * held_, way * now);
+  }
+  event.loosened = system_.remove({&next.contact, 1});
+  response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  event.energy_after = response_.energy_at(lambda_);
+  const double moved = NetworkResponse::at(response_.loads_by_motions, lambda_);
+  // Of loads that are not carried any more, on parts that move away, the work has no end: none is counted.
+  const bool carried = system_.carries(0) && (!scene_.path.dead || system_.carries(1));
+  const double work = carried ? moved - moved_before : 0;
+  work_ += work;
+  event.energy_released = event.energy_before - event.energy_after + work;
+  event.work = work_;
+  events_.push_back(std::move(event));
+}
+
+void BreakageRun::resume(std::vector<BreakEvent> events) {
+  if (events.empty()) return;
+  std::vector<std::uint8_t> gone(scene_.assembly.contacts.size(), 0);
+  std::vector<std::size_t> contacts;
+  for (const BreakEvent& event : events) {
+    const auto c = static_cast<std::size_t>(event.contact);
+    if (event.contact < 0 || c >= gone.size() || gone[c] != 0) {
+      bad_input(fmt::format("the events to go on from break contact {}", event.contact),
+                "there is no such contact, or it is broken already", "Begin anew, without --resume");
+    }
+    gone[c] = 1;
+    contacts.push_back(c);
+  }
+  system_.remove(contacts);
+  response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  events_ = std::move(events);
+  const BreakEvent& last = events_.back();
+  leg_ = last.leg;
+  lambda_ = last.lambda;
+  work_ = last.work;
+  const bool load = scene_.path.control == LoadControl::load;
+  const LegPoint start = leg_points().back();
+  held_ = load ? start.load : start.motion;
+  for (const BreakEvent& event : events_) {
+    if (event.leg != leg_) continue;
+    const double way = direction(leg_);
+    held_ = way * std::max(way * held_, way * (load ? event.load : event.motion));
+  }
+}
+
+double BreakageRun::released() const {
+  double sum = 0;
+  for (const BreakEvent& event : events_) sum += event.energy_released;
+  return sum;
+}
+
+double BreakageRun::energy_error() const {
+  const double elastic = response_.energy_at(lambda_), crack = released();
+  const double largest = std::max({std::abs(work_), std::abs(elastic), std::abs(crack)});
+  return largest > 0 ? std::abs(work_ - elastic - crack) / largest : 0;
+}
+
+}  // namespace equidem

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/load_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/load_vector.hpp"
+
+namespace equidem {
+namespace {
+
+bool any_nonzero(const std::vector<double>& numbers) {
+  return std::any_of(numbers.begin(), numbers.end(), [](double x) { return x != 0; });
+}
+
+/// The sum of |f_d| over discs, moments over the mean radius.
+double sum_of_loads(const std::vector<double>& force, std::size_t per_disc) {
+  double sum = 0;
+  for (std::size_t first = 0; first < force.size(); first += per_disc) {
+    double square = 0;
+    for (std::size_t k = 0; k < per_disc; ++k) square += squared(force[first + k]);
+    sum += std::sqrt(square);
+  }
+  return sum;
+}
+
+void check_strain(const Assembly& assembly, const Voigt& strain) {
+  if (!std::isfinite(strain.xx) || !std::isfinite(strain.yy) || !std::isfinite(strain.xy))
+    bad_input("the mean strain is not finite", "no motion could follow it", "Give numbers");
+  if (assembly.periodic()) return;
+  bad_input("a mean strain is given, and the assembly is not periodic",
+            "it moves the images of a cell; a free assembly has none",
+            "Take a periodic assembly, or move the sides by [[support]]");
+}
+
+void check_legs(const std::vector<double>& legs) {
+  double from = 0;
+  for (const double to : legs) {
+    if (!std::isfinite(to))
+      bad_input(fmt::format("a leg ends at lambda = {}", to), "it must be finite", "Give a number");
+    if (to == from) {
+      bad_input(fmt::format("a leg leads from lambda = {:g} to the same value", to), "nothing happens on it",
+                "Remove it");
+    }
+    from = to;
+  }
+}
+
+[[noreturn]] void refuse_nothing() {
+  bad_input("nothing grows with lambda", "the loads, the imposed motions and the mean strain are all zero or absent",
+            "Add [[load]], a motion in [[support]], or [strain]");
+}
+
+}  // namespace
+
+LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                        const LoadPathOptions& options) {
+  check_legs(options.legs);
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, options.supports);
+  LoadPath path;
+  path.legs = options.legs;
+  path.max_events = options.max_events;
+  path.control = options.control;
+  path.pattern.force = assemble_loads(assembly, unknowns, options.loads);
+  check_inert_loads(assembly, unknowns, path.pattern.force);
+  path.pattern.prescribed = unknowns.prescribed;
+  std::vector<std::string> driving;
+  if (any_nonzero(path.pattern.force)) {
+    driving.emplace_back("loads");
+    path.driven_by = DrivenBy::loads;
+    path.size = sum_of_loads(path.pattern.force, static_cast<std::size_t>(unknowns.per_disc));
+  }
+  if (any_nonzero(path.pattern.prescribed)) {
+    driving.emplace_back("motions of supports");
+    path.driven_by = DrivenBy::motions;
+    path.size = 0;
+    for (const double u : path.pattern.prescribed) path.size = std::max(path.size, std::abs(u));
+  }
+  if (options.strain) {
+    const Voigt& e = *options.strain;
+    check_strain(assembly, e);
+    path.pattern.gradient = Tensor2{e.xx, 0.5 * e.xy, 0.5 * e.xy, e.yy};
+    const double size = std::max({std::abs(e.xx), std::abs(e.yy), std::abs(e.xy)});
+    if (size > 0) {
+      driving.emplace_back("a mean strain");
+      path.driven_by = DrivenBy::strain;
+      path.size = size;
+    }
+  }
+  if (driving.empty()) refuse_nothing();
+  if (driving.size() > 1) {
+    bad_input(fmt::format("{} grow with lambda together", listed(driving)),
+              "the load and the motion through which it works are then not one pair of numbers",
+              "Keep one; loads that stay are [[dead_load]]");
+  }
+  if (!options.dead_loads.empty()) {
+    RightHandSide dead;
+    dead.force = assemble_loads(assembly, unknowns, options.dead_loads);
+    check_inert_loads(assembly, unknowns, dead.force);
+    if (any_nonzero(dead.force)) path.dead = std::move(dead);
+  }
+  return path;
+}
+
+}  // namespace equidem

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A path of loading: loads, imposed motions or a mean strain that grow in proportion to lambda, dead loads beside
+/// them, and the legs along which lambda goes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/effects.hpp"
+#include "equidem/core/names.hpp"
+#include "equidem/core/vector.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+#include "equidem/statics/supports.hpp"
+
+namespace equidem {
+
+/// What is kept from falling while contacts break.
+enum class LoadControl {
+  path,    ///< nothing: lambda may fall from one event to the next (snap-back)
+  load,    ///< the load
+  motion,  ///< the motion through which the load works
+};
+
+template <>
+struct EnumNames<LoadControl> {
+  using enum LoadControl;
+  static constexpr const char* what = "control of a path";
+  static constexpr NamedValue<LoadControl> list[] = {{path, "path"}, {load, "load"}, {motion, "motion"}};
+};
+
+/// The quantity that lambda multiplies.
+enum class DrivenBy { loads, motions, strain };
+
+struct LoadPathOptions {
+  std::vector<Support> supports;  ///< their motions are multiplied by lambda
+  LoadCase loads;                 ///< multiplied by lambda
+  LoadCase dead_loads;
+  std::optional<Voigt> strain;  ///< of a periodic cell, xy engineering; multiplied by lambda
+  LoadControl control = LoadControl::path;
+  std::vector<double> legs;     ///< lambda at the end of each; empty: one leg without an end
+  std::int64_t max_events = 0;  ///< after which the path ends; 0: no limit
+};
+
+/// Forces are N0 + lambda N1. The pair (load, motion) works together: per metre of depth the work done by what lambda
+/// drives is d(work) = load d(motion), times the area where a mean strain drives.
+///   loads    load = lambda S with S = sum of the magnitudes |f_d| of the loads on discs, motion = sum f_d . u_d / S
+///   motions  motion = lambda S with S the largest motion, load = sum of reactions . motions / S
+///   strain   motion = lambda S with S the largest component, load = stress : strain / S, Pa
+struct LoadPath {
+  DrivenBy driven_by = DrivenBy::loads;
+  RightHandSide pattern;              ///< at lambda = 1
+  std::optional<RightHandSide> dead;  ///< none: there are no dead loads
+  double size = 1;                    ///< S: N/m, m, or a strain
+  LoadControl control = LoadControl::path;
+  std::vector<double> legs;
+  std::int64_t max_events = 0;
+
+  /// Whether the control keeps lambda itself from falling.
+  [[nodiscard]] bool controls_lambda() const {
+    return control == (driven_by == DrivenBy::loads ? LoadControl::load : LoadControl::motion);
+  }
+};
+
+/// \throws Error (bad_input) where nothing, or more than one of loads, motions and strain, grows with lambda, where a
+///         strain is asked of a free assembly, a number is not finite, a leg leads nowhere, or as number_unknowns and
+///         assemble_loads
+LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                        const LoadPathOptions& options);
+
+}  // namespace equidem

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/network_response.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/homogenize/contact_sums.hpp"
+
+namespace equidem {
+namespace {
+
+/// Sums over the contacts.
+enum : std::size_t {
+  energy_0,
+  energy_1,
+  energy_2,
+  imposed_0,
+  imposed_1,
+  stress_0,
+  stress_1 = stress_0 + 4,
+  sums = stress_1 + 4
+};
+
+double product(std::span<const double> a, std::span<const double> b) {
+  if (a.empty() || b.empty()) return 0;
+  return contact_sums<1>(a.size(), [&](std::size_t k, std::array<double, 1>& sum) { sum[0] += a[k] * b[k]; })[0];
+}
+
+double largest(std::span<const ContactForce> forces) {
+  double most = 0;
+  for (const ContactForce& f : forces) most = std::max({most, std::abs(f.normal), std::abs(f.tangential)});
+  return most;
+}
+
+void add_tensor(const Tensor2& t, double* sum) {
+  const double entries[] = {t.xx, t.xy, t.yx, t.yy};
+  for (std::size_t e = 0; e < 4; ++e) sum[e] += entries[e];
+}
+
+Tensor2 tensor_of(const double* sum, double area) {
+  return (1 / area) * Tensor2{sum[0], sum[1], sum[2], sum[3]};
+}
+
+}  // namespace
+
+NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,
+                            const LoadPath& path) {
+  const bool dead = path.dead.has_value();
+  const std::span<const ContactForce> f1 = system.forces(0), f0 = dead ? system.forces(1) : f1.first(0);
+  const auto total = contact_sums<sums>(assembly.contacts.size(), [&](std::size_t c, std::array<double, sums>& sum) {
+    const ContactForce a = dead ? f0[c] : ContactForce{}, b = f1[c];
+    if (a.normal == 0 && a.tangential == 0 && b.normal == 0 && b.tangential == 0) return;
+    const SpringConstants k = springs[c];
+    const ContactFrame frame = frame_of(assembly, c);
+    sum[energy_0] += linear_spring_energy_of(k, a);
+    sum[energy_1] += a.normal * b.normal / k.kN + (k.kT != 0 ? a.tangential * b.tangential / k.kT : 0.0);
+    sum[energy_2] += linear_spring_energy_of(k, b);
+    const Vec2 branch = assembly.branch(assembly.contacts[c]);
+    add_tensor(outer(force_on_i(frame, a), branch), &sum[stress_0]);
+    add_tensor(outer(force_on_i(frame, b), branch), &sum[stress_1]);
+    if (!path.pattern.gradient) return;
+    const ContactDeformation d = affine_deformation(frame, branch, *path.pattern.gradient);
+    sum[imposed_0] += a.normal * d.normal + a.tangential * d.tangential;
+    sum[imposed_1] += b.normal * d.normal + b.tangential * d.tangential;
+  });
+  NetworkResponse r;
+  r.energy = {total[energy_0], total[energy_1], total[energy_2]};
+  r.imposed = {total[imposed_0], total[imposed_1]};
+  const double area = assembly.area();
+  if (area > 0) r.stress = {tensor_of(&total[stress_0], area), tensor_of(&total[stress_1], area)};
+  r.largest_pattern = largest(f1);
+  r.largest_dead = largest(f0);
+
+  const std::span<const double> u1 = system.motion(0), u0 = dead ? system.motion(1) : u1.first(0);
+  const std::vector<double>& p1 = path.pattern.force;
+  const double pattern_by_dead = product(p1, u0);
+  r.pattern_by_pattern = product(p1, u1);
+  r.dead_by_pattern = dead ? product(path.dead->force, u1) : 0;
+  r.loads_by_motions = {dead ? product(path.dead->force, u0) : 0, r.dead_by_pattern + pattern_by_dead,
+                        r.pattern_by_pattern};
+  r.imposed[0] += dead ? product(path.pattern.prescribed, system.reactions(1)) : 0;
+  r.imposed[1] += product(path.pattern.prescribed, system.reactions(0));
+
+  if (path.driven_by == DrivenBy::loads) {
+    r.load = {0, path.size};
+    r.motion = {pattern_by_dead / path.size, r.pattern_by_pattern / path.size};
+  } else {
+    const double by = path.driven_by == DrivenBy::strain ? path.size * area : path.size;
+    r.load = {r.imposed[0] / by, r.imposed[1] / by};
+    r.motion = {0, path.size};
+  }
+  return r;
+}
+
+}  // namespace equidem

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// How a network answers lambda: load, motion, stress, elastic energy and work.
+#pragma once
+
+#include <array>
+
+#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/load_path.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// Forces and motions are f0 + lambda f1 and u0 + lambda u1, so that load, motion and stress are linear in lambda and
+/// energies quadratic. Arrays hold the coefficients of 1, lambda, lambda².
+struct NetworkResponse {
+  std::array<double, 2> load{};              ///< LoadPath, N/m or Pa
+  std::array<double, 2> motion{};            ///< LoadPath, m or a strain
+  std::array<Tensor2, 2> stress{};           ///< Pa, (1/A) sum F_i l_j over contacts; 0 where the assembly has no area
+  std::array<double, 3> energy{};            ///< N, elastic
+  std::array<double, 3> loads_by_motions{};  ///< N, sum f . u of all loads
+  double dead_by_pattern = 0;                ///< N, f0 . u1
+  double pattern_by_pattern = 0;             ///< N, f1 . u1
+  std::array<double, 2> imposed{};           ///< N, the work of imposed motions or a mean strain is imposed d(lambda)
+  double largest_pattern = 0, largest_dead = 0;  ///< N/m, of the forces of contacts
+
+  static double at(const std::array<double, 2>& c, double lambda) { return c[0] + lambda * c[1]; }
+  static double at(const std::array<double, 3>& c, double lambda) { return c[0] + lambda * (c[1] + lambda * c[2]); }
+  [[nodiscard]] Tensor2 stress_at(double lambda) const { return stress[0] + lambda * stress[1]; }
+  [[nodiscard]] double energy_at(double lambda) const { return at(energy, lambda); }
+  /// Work of everything from outside while lambda goes from one value to another, N.
+  [[nodiscard]] double work(double from, double to) const {
+    return (to - from) * (dead_by_pattern + imposed[0]) +
+           0.5 * (to * to - from * from) * (pattern_by_pattern + imposed[1]);
+  }
+};
+
+/// \param system with the right-hand sides of the path, the pattern first
+NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,
+                            const LoadPath& path);
+
+}  // namespace equidem

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
+
+/// What is left of a network, with its numbers in the whole.
+struct Rest {
+  Assembly assembly;
+  ContactSprings springs{SpringConstants{}};
+  std::vector<std::int32_t> discs, contacts;
+};
+
+class RefactorizedSystem final : public BreakableSystem {
+ public:
+  explicit RefactorizedSystem(BreakableNetwork network)
+      : network_(std::move(network)),
+        per_disc_(static_cast<std::size_t>(network_.effects.unknowns_per_disc())),
+        scale_(network_.assembly.mean_radius()),
+        broken_(network_.assembly.contacts.size(), 0),
+        left_(network_.assembly.size(), 0),
+        held_(held_or_loaded()) {
+    if (network_.solver.method == SolverMethod::automatic) network_.solver.method = SolverMethod::multifrontal;
+    if (network_.solver.precision == FactorPrecision::automatic)
+      network_.solver.precision = FactorPrecision::double_precision;
+    states_.resize(network_.cases.size());
+    solve();
+  }
+
+  std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
+    for (const std::size_t c : contacts) broken_[c] = 1;
+    const std::vector<std::uint8_t> before = left_;
+    solve();
+    std::vector<std::int32_t> gone;
+    for (std::size_t d = 0; d < left_.size(); ++d) {
+      if (left_[d] != 0 && before[d] == 0) gone.push_back(static_cast<std::int32_t>(d));
+    }
+    return gone;
+  }
+
+  [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override { return states_[k].forces; }
+  [[nodiscard]] std::span<const double> motion(std::size_t k) const override { return states_[k].motion; }
+  [[nodiscard]] std::span<const double> reactions(std::size_t k) const override { return states_[k].reactions; }
+  [[nodiscard]] bool carries(std::size_t k) const override { return states_[k].carried; }
+  [[nodiscard]] std::string why_not() const override { return why_not_; }
+  [[nodiscard]] std::span<const std::uint8_t> left() const override { return left_; }
+  [[nodiscard]] double relative_residual() const override { return residual_; }
+  [[nodiscard]] std::int64_t unstable_modes() const override { return unstable_modes_; }
+  [[nodiscard]] BreakableCounters counters() const override { return counters_; }
+  [[nodiscard]] std::string solver_name() const override { return solver_name_; }
+
+ private:
+  struct State {
+    std::vector<ContactForce> forces;
+    std::vector<double> motion, reactions;
+    bool carried = true;
+  };
+
+  /// Discs that are never left out: those held, and those on which a force acts.
+  std::vector<std::uint8_t> held_or_loaded() const {
+    const Assembly& whole = network_.assembly;
+    std::vector<std::uint8_t> held(whole.size(), 0);
+    for (const Support& support : network_.supports) {
+      for (const std::int32_t disc : group(whole, support.group).discs) held[static_cast<std::size_t>(disc)] = 1;
+    }
+    for (const RightHandSide& given : network_.cases) {
+      for (std::size_t k = 0; k < given.force.size(); ++k) {
+        if (given.force[k] != 0) held[k / per_disc_] = 1;
+      }
+    }
+    return held;
+  }
+
+  Rest unbroken() const;
+  Rest load_bearing();
+  void solve();
+  void solve_cases(const Rest& rest, DegreesOfFreedom unknowns);
+  RightHandSide on(const Rest& rest, const RightHandSide& whole) const;
+  bool drives_mechanism(const RightHandSide& given, const Rest& rest, const StiffnessSolver& solver);
+  void take(const Rest& rest, const StiffnessSolver& solver, const HeldMotions& held, const RightHandSide& given,
+            const Solution& solution, State& state);
+
+  BreakableNetwork network_;
+  std::size_t per_disc_;
+  double scale_;
+  std::vector<std::uint8_t> broken_, left_, held_;
+  std::vector<State> states_;
+  std::string why_not_, solver_name_;
+  double residual_ = 0;
+  std::int64_t unstable_modes_ = 0;
+  BreakableCounters counters_;
+};
+
+Rest RefactorizedSystem::unbroken() const {
+  const Assembly& whole = network_.assembly;
+  Rest rest;
+  Assembly& a = rest.assembly;
+  a.kind = whole.kind;
+  a.centres = whole.centres;
+  a.radii = whole.radii;
+  a.period = whole.period;
+  a.groups = whole.groups;
+  a.sections = whole.sections;
+  std::vector<SpringConstants> springs;
+  for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
+    if (broken_[c] != 0) continue;
+    rest.contacts.push_back(static_cast<std::int32_t>(c));
+    a.contacts.push_back(whole.contacts[c]);
+    if (!whole.contact_arms.empty()) a.contact_arms.push_back(whole.contact_arms[c]);
+    if (!network_.springs.uniform()) springs.push_back(network_.springs[c]);
+  }
+  rest.springs = springs.empty() ? network_.springs : ContactSprings(std::move(springs));
+  rest.discs.resize(whole.size());
+  for (std::size_t d = 0; d < whole.size(); ++d) rest.discs[d] = static_cast<std::int32_t>(d);
+  return rest;
+}
+
+Rest RefactorizedSystem::load_bearing() {
+  Rest rest = unbroken();
+  LoadBearingNetwork found = load_bearing_network(rest.assembly, rest.springs, network_.effects, held_);
+  std::fill(left_.begin(), left_.end(), 1);
+  if (found.part) {
+    for (std::int32_t& contact : found.part->contacts) contact = rest.contacts[static_cast<std::size_t>(contact)];
+    rest = {std::move(found.part->assembly), std::move(found.part->springs), std::move(found.part->discs),
+            std::move(found.part->contacts)};
+  }
+  for (const std::int32_t disc : rest.discs) left_[static_cast<std::size_t>(disc)] = 0;
+  return rest;
+}
+
+RightHandSide RefactorizedSystem::on(const Rest& rest, const RightHandSide& whole) const {
+  RightHandSide part;
+  part.gradient = whole.gradient;
+  const auto taken = [&](const std::vector<double>& from) {
+    std::vector<double> to;
+    if (from.empty()) return to;
+    to.reserve(rest.discs.size() * per_disc_);
+    for (const std::int32_t disc : rest.discs) {
+      for (std::size_t k = 0; k < per_disc_; ++k) to.push_back(from[static_cast<std::size_t>(disc) * per_disc_ + k]);
+    }
+    return to;
+  };
+  part.force = taken(whole.force);
+  part.prescribed = taken(whole.prescribed);
+  return part;
+}
+
+void RefactorizedSystem::solve() {
+  why_not_.clear();
+  const Rest rest = load_bearing();
+  for (State& state : states_) {
+    state.forces.assign(network_.assembly.contacts.size(), {});
+    state.motion.assign(network_.assembly.size() * per_disc_, 0.0);
+    state.reactions.assign(state.motion.size(), 0.0);
+    state.carried = true;
+  }
+  residual_ = 0;
+  unstable_modes_ = 0;
+  if (rest.discs.empty()) return;
+  DegreesOfFreedom unknowns = number_unknowns(rest.assembly, rest.springs, network_.effects, network_.supports);
+  unknowns.rotation_scale = scale_;
+  solve_cases(rest, std::move(unknowns));
+}
+
+void RefactorizedSystem::solve_cases(const Rest& rest, DegreesOfFreedom unknowns) {
+  StageTimes times;
+  ContactGraph graph(rest.assembly);
+  const HeldMotions held = hold_free_motions(rest.assembly, graph, rest.springs, unknowns);
+  const StiffnessSolver solver(rest.assembly, rest.springs, std::move(graph), std::move(unknowns), network_.solver,
+                               Mechanisms::hold, times);
+  ++counters_.factorizations;
+  solver_name_ = solver.solver_name();
+  unstable_modes_ = solver.unstable_modes();
+  std::vector<RightHandSide> cases;
+  std::vector<std::size_t> of;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    RightHandSide given = on(rest, network_.cases[k]);
+    states_[k].carried = !drives_mechanism(given, rest, solver);
+    if (!states_[k].carried) continue;
+    cases.push_back(std::move(given));
+    of.push_back(k);
+  }
+  if (cases.empty()) return;
+  const std::vector<Solution> solutions = solver.solve(cases, times);
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    take(rest, solver, held, cases[k], solutions[k], states_[of[k]]);
+    residual_ = std::max(residual_, solutions[k].relative_residual());
+  }
+  counters_.largest_residual = std::max(counters_.largest_residual, residual_);
+}
+
+/// Where no spring is negative a mechanism deforms no contact, so that only loads can drive it.
+bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const Rest& rest, const StiffnessSolver& solver) {
+  if (given.force.empty()) return false;
+  for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
+    const std::vector<double> motion = solver.factor().null_motion(m);
+    double work = 0, size = 0;
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      work += motion[k] * given.force[k];
+      size += std::abs(motion[k] * given.force[k]);
+    }
+    if (std::abs(work) <= negligible * size) continue;
+    why_not_ = "a load drives " + describe_motion(rest.assembly, disc_motions(solver.unknowns(), motion));
+    return true;
+  }
+  return false;
+}
+
+void RefactorizedSystem::take(const Rest& rest, const StiffnessSolver& solver, const HeldMotions& held,
+                              const RightHandSide& given, const Solution& solution, State& state) {
+  std::vector<ContactForce> forces(rest.contacts.size());
+  for (std::size_t c = 0; c < forces.size(); ++c)
+    forces[c] = linear_spring_force(rest.springs[c], solver.deformation(given, solution.motion, c));
+  std::vector<double> reactions(solution.motion.high.size());
+  internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    if (solver.unknowns().held[k] == DegreesOfFreedom::free) {
+      reactions[k] = 0;
+    } else if (!given.force.empty()) {
+      reactions[k] -= given.force[k];
+    }
+  }
+  for (const std::size_t component : held.components) {
+    if (std::abs(reactions[component]) <= negligible * solution.scale) {
+      reactions[component] = 0;
+      continue;
+    }
+    const auto disc = static_cast<std::size_t>(rest.discs[component / per_disc_]);
+    why_not_ =
+        fmt::format("a load moves the part around {}, which nothing holds", describe_disc(network_.assembly, disc));
+    state.carried = false;
+    return;
+  }
+  for (std::size_t c = 0; c < forces.size(); ++c) state.forces[static_cast<std::size_t>(rest.contacts[c])] = forces[c];
+  for (std::size_t d = 0; d < rest.discs.size(); ++d) {
+    for (std::size_t k = 0; k < per_disc_; ++k) {
+      const std::size_t to = static_cast<std::size_t>(rest.discs[d]) * per_disc_ + k;
+      state.motion[to] = solution.motion.high[d * per_disc_ + k];
+      state.reactions[to] = reactions[d * per_disc_ + k];
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<BreakableSystem> make_refactorized_system(BreakableNetwork network) {
+  return std::make_unique<RefactorizedSystem>(std::move(network));
+}
+
+}  // namespace equidem

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The strengths of contacts that break in a brittle way.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/core/names.hpp"
+
+namespace equidem {
+
+/// The length by which strengths that are given as stresses are multiplied.
+enum class BondLength {
+  none,              ///< strengths are forces, N/m
+  facet,             ///< the edge that the cells of both discs share
+  smaller_diameter,  ///< the diameter of the smaller disc
+};
+
+template <>
+struct EnumNames<BondLength> {
+  using enum BondLength;
+  static constexpr const char* what = "length of a bond";
+  static constexpr NamedValue<BondLength> list[] = {
+      {none, "none"}, {facet, "facet"}, {smaller_diameter, "smaller_diameter"}};
+};
+
+struct StrengthOptions {
+  std::optional<double> tension;  ///< f_t >= 0, N/m; with a bond length Pa
+  std::optional<double> shear;    ///< f_s >= 0, likewise
+  double friction = 0;            ///< mu >= 0
+  BondLength bond_length = BondLength::none;
+  /// m > 0 of the distribution of Weibull, by which both strengths of a contact are multiplied: a share exp(-x^m) of
+  /// the contacts is more than x times as strong as given. None: all are equal.
+  std::optional<double> weibull_modulus;
+  std::uint64_t seed = 1;
+};
+
+/// A contact with the forces N (tension positive) and T breaks in tension where N >= tension, in shear where |T| >=
+/// shear - friction N.
+struct ContactStrengths {
+  std::vector<double> tension;  ///< N/m, per contact
+  std::vector<double> shear;    ///< N/m, per contact
+  double friction = 0;
+};
+
+/// Strengths of the assembly itself, where it has some, are taken as they are.
+/// \throws Error (bad_input) where neither the options nor the assembly give strengths, where both do, where a number
+///         is out of range, or where facets are asked for and not known
+ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptions& options);
+
+}  // namespace equidem

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/core/text.hpp"
+
+#include "breakage/dense_network.hpp"
+#include "breakage/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+struct Drawn {
+  std::string name;
+  Assembly assembly;
+  ContactSprings springs{SpringConstants{1, 0.3}};
+  ContactStrengths strengths;
+  LoadPathOptions path;
+  Rotation rotation = Rotation::from_scene;
+};
+
+/// Assemblies of some ten discs with springs, levers and strengths at random, in every combination of what drives them,
+/// tangential springs, friction and rotation.
+Drawn draw(std::uint64_t seed) {
+  Random random(seed);
+  Drawn d;
+  const bool periodic = seed % 2 == 0;
+  d.assembly = delaunay_assembly({.discs = periodic ? 8 : 10,
+                                  .points = PointProcess::perturbed_hexagonal,
+                                  .disorder = 0.25,
+                                  .seed = seed,
+                                  .radii = {.smallest = 0.5, .largest = 0.5},
+                                  .periodic = periodic});
+  const double tangential[] = {0.3, 0, 1, 0.05, 0.5};
+  const double kT = tangential[seed / 2 % 5];
+  std::vector<SpringConstants> springs;
+  for (Contact& contact : d.assembly.contacts) {
+    springs.push_back({random.uniform(0.5, 2), kT * random.uniform(0.5, 2)});
+    d.strengths.tension.push_back(random.uniform(0.2, 1.5));
+    d.strengths.shear.push_back(random.uniform(0.2, 1.5));
+    if (seed % 3 == 0) contact.lever_i *= random.uniform(0.7, 1.3), contact.lever_j *= random.uniform(0.7, 1.3);
+  }
+  d.springs = ContactSprings(std::move(springs));
+  const double friction[] = {0, 0.5, 10};
+  d.strengths.friction = friction[seed / 3 % 3];
+  if (seed % 7 == 0) d.rotation = Rotation::restrained;
+  d.name = fmt::format("seed {}, kT {}, friction {}", seed, kT, d.strengths.friction);
+  const auto part = [&] { return random.uniform(-1, 1); };
+  if (periodic) {
+    d.path.strain = Voigt{part(), part(), part()};
+    d.name += ", strain";
+    return d;
+  }
+  d.path.supports = {{"bottom", 0, 0, {}}};
+  if (seed % 4 == 1) {
+    d.path.supports.push_back({"top", part(), part(), {}});
+    d.name += ", motion";
+  } else {
+    d.path.loads = {{"top", LoadKind::per_disc, {part(), part()}, 0}};
+    d.name += ", loads";
+  }
+  if (seed % 8 >= 5) {
+    d.assembly.groups["middle"] = {{static_cast<std::int32_t>(d.assembly.size() / 2)}, {}};
+    if (seed % 4 != 1) d.path.dead_loads = {{"top", LoadKind::per_disc, {0.2 * part(), 0.2 * part()}, 0}};
+    d.path.dead_loads.push_back({"middle", LoadKind::per_disc, {0.2 * part(), 0.2 * part()}, 0});
+    d.name += ", dead loads";
+  }
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
+  std::int64_t events = 0, by_shear = 0, snap_backs = 0, loosened = 0, released = 0, at_zero = 0, too_soft = 0;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const Drawn d = draw(seed);
+    CAPTURE(d.name);
+    Broken broken(d.assembly, d.springs, d.strengths, d.path, d.rotation);
+    const DegreesOfFreedom unknowns =
+        number_unknowns(broken.assembly(), broken.springs(), broken.effects(), d.path.supports);
+    DenseNetwork dense(broken.assembly(), broken.springs(), broken.strengths(), broken.path(), unknowns);
+    double work = 0;
+    while (true) {
+      CAPTURE(broken.events().size());
+      const DenseNetwork::Event expected = dense.carried() ? dense.next() : DenseNetwork::Event{};
+      if (dense.softest() < 1e-6) {  // its eigenvectors leave no digits for the forces that are left
+        ++too_soft;
+        break;
+      }
+      const bool more = broken.run().advance();
+      CAPTURE(broken.run().why(), expected.lambda);
+      REQUIRE(more == (expected.contact >= 0));
+      if (!more) break;
+      const BreakEvent& event = broken.events().back();
+      CAPTURE(event.lambda, expected.lambda, event.gap, expected.gap, dense.null_motions());
+      REQUIRE(event.contact == expected.contact);
+      REQUIRE((event.mode == BreakMode::shear) == expected.shear);
+      REQUIRE(std::abs(event.lambda - expected.lambda) <= 1e-9 * expected.lambda);
+      REQUIRE(event.relative_residual < 1e-12);
+      const double lambda = expected.lambda, before = dense.energy(lambda);
+      REQUIRE(event.energy_before == Approx(before).epsilon(1e-9));
+      REQUIRE(event.unstable_modes == dense.negative());
+      const auto c = static_cast<std::size_t>(event.contact);
+      const double n = dense.dead().normal[c] + lambda * dense.pattern().normal[c];
+      const double t = dense.dead().tangential[c] + lambda * dense.pattern().tangential[c];
+      const int null_motions = dense.null_motions();
+      dense.remove(c);
+      if (dense.carried()) REQUIRE(event.energy_after == Approx(dense.energy(lambda)).epsilon(1e-9).margin(1e-12));
+      // Where nothing comes loose the contact lets go along its opening d: the crack takes f.d/2 of its force f.
+      if (dense.carried() && dense.null_motions() == null_motions) {
+        const ContactDeformation d_after = dense.opening(c, lambda);
+        REQUIRE(event.energy_released ==
+                Approx(0.5 * (n * d_after.normal + t * d_after.tangential)).epsilon(1e-6).margin(1e-11 * before));
+        ++released;
+      }
+      work += event.energy_released;
+      ++events;
+      by_shear += event.mode == BreakMode::shear ? 1 : 0;
+      at_zero += event.lambda == 0 ? 1 : 0;
+      loosened += event.loosened.empty() ? 0 : 1;
+      if (broken.events().size() > 1) snap_backs += event.lambda < broken.event(broken.events().size() - 2).lambda;
+    }
+    CHECK(broken.run().released() == Approx(work).epsilon(1e-12));
+    CHECK(broken.run().energy_error() < 1e-10);
+  }
+  CAPTURE(events, by_shear, snap_backs, loosened, released, at_zero, too_soft);
+  CHECK(events > 800);
+  CHECK(by_shear > 100);
+  CHECK(events - by_shear > 100);
+  CHECK(snap_backs > 100);
+  CHECK(loosened > 30);
+  CHECK(released > 500);
+  CHECK(too_soft < 10);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Paths of breakage with all that they refer to.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "equidem/breakage/breakage_run.hpp"
+#include "equidem/contact/effects.hpp"
+
+namespace equidem::test {
+
+/// A run that owns its scene.
+class Broken {
+ public:
+  Broken(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
+         Rotation rotation = Rotation::from_scene)
+      : assembly_(std::move(assembly)),
+        springs_(std::move(springs)),
+        strengths_(std::move(strengths)),
+        effects_(derive_effects(assembly_, springs_, rotation)),
+        path_(make_load_path(assembly_, springs_, effects_, options)),
+        supports_(options.supports) {
+    begin();
+  }
+
+  /// Anew, unbroken.
+  void begin() {
+    const BreakageScene scene{assembly_, springs_, strengths_, path_};
+    run_.reset();
+    system_ = make_refactorized_system(breakable_network(scene, effects_, supports_));
+    run_ = std::make_unique<BreakageRun>(scene, *system_);
+  }
+
+  BreakageRun& run() { return *run_; }
+  BreakableSystem& system() { return *system_; }
+  const std::vector<BreakEvent>& events() const { return run_->events(); }
+  const BreakEvent& event(std::size_t k) const { return run_->events().at(k); }
+  const Assembly& assembly() const { return assembly_; }
+  const ContactSprings& springs() const { return springs_; }
+  const ContactStrengths& strengths() const { return strengths_; }
+  const Effects& effects() const { return effects_; }
+  const LoadPath& path() const { return path_; }
+
+  Broken& all() {
+    while (run_->advance()) {
+    }
+    return *this;
+  }
+
+ private:
+  Assembly assembly_;
+  ContactSprings springs_;
+  ContactStrengths strengths_;
+  Effects effects_;
+  LoadPath path_;
+  std::vector<Support> supports_;
+  std::unique_ptr<BreakableSystem> system_;
+  std::unique_ptr<BreakageRun> run_;
+};
+
+/// The same strengths for all contacts.
+inline ContactStrengths equal_strengths(const Assembly& assembly, double tension, double shear, double friction = 0) {
+  ContactStrengths strengths;
+  strengths.tension.assign(assembly.contacts.size(), tension);
+  strengths.shear.assign(assembly.contacts.size(), shear);
+  strengths.friction = friction;
+  return strengths;
+}
+
+}  // namespace equidem::test
