@@ -23,14 +23,14 @@ struct Wide {
   static EQUIDEM_INLINE void store(double* to, const Vector& v) { std::memcpy(to, &v, sizeof v); }
 };
 
-/// A vector w of sign +-1 and a column l of L: l := shrink l + lift w, then w := grow w - share l.
+/// A vector w of sign +-1 and a column l of L: l := shrink l + lift w, then w := grow w - part l.
 struct Turn {
-  double shrink = 1, lift = 0, grow = 1, share = 0;
+  double shrink = 1, lift = 0, grow = 1, part = 0;
 };
 
 /// The turn at a pivot, which becomes the new one.
 EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffness, double least, bool& vanished,
-                            double& smallest_share) {
+                            double& share) {
   const double square = sign > 0 ? pivot * pivot + w * w : (pivot - w) * (pivot + w);
   if (sign < 0 && !(square > least * stiffness)) {
     vanished = true;
@@ -39,7 +39,7 @@ EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffne
   }
   const double root = std::sqrt(square);
   const Turn turn{pivot / root, sign * w / root, root / pivot, w / pivot};
-  smallest_share = std::min(smallest_share, turn.grow * turn.grow);
+  share *= turn.grow * turn.grow;
   pivot = root;
   return turn;
 }
@@ -59,7 +59,7 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
     for (std::size_t k = 0; k < K; ++k) {
       bool vanished = false;
       turns[j][k] = turn_at(pivot, w[k * ld + p + j], change.signs[k], change.stiffness[p + j], change.least, vanished,
-                            result.smallest_share);
+                            result.share);
       if (vanished) result.vanished.push_back(p + j);
     }
     for (std::size_t c = 0; c < C; ++c) y[j][c] = b[c * ld + p + j] /= pivot;
@@ -69,7 +69,7 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
         const Turn& turn = turns[j][k];
         double& v = w[k * ld + i];
         l = turn.shrink * l + turn.lift * v;
-        v = turn.grow * v - turn.share * l;
+        v = turn.grow * v - turn.part * l;
       }
       a[j * ld + i] = l;
       for (std::size_t c = 0; c < C; ++c) b[c * ld + i] -= l * y[j][c];
@@ -86,7 +86,7 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
       for (std::size_t k = 0; k < K; ++k) {
         const Turn& turn = turns[j][k];
         l = turn.shrink * l + turn.lift * v[k];
-        v[k] = turn.grow * v[k] - turn.share * l;
+        v[k] = turn.grow * v[k] - turn.part * l;
       }
       Lanes::store(a + j * ld + r, l);
       for (std::size_t c = 0; c < C; ++c) right[c] -= l * y[j][c];
@@ -101,7 +101,7 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
         const Turn& turn = turns[j][k];
         double& v = w[k * ld + r];
         l = turn.shrink * l + turn.lift * v;
-        v = turn.grow * v - turn.share * l;
+        v = turn.grow * v - turn.part * l;
       }
       a[j * ld + r] = l;
       for (std::size_t c = 0; c < C; ++c) b[c * ld + r] -= l * y[j][c];

@@ -30,10 +30,10 @@ struct PanelChange {
 
 struct PanelChangeResult {
   std::vector<std::size_t> vanished;  ///< pivots to which their stiffness was added
-  double smallest_share = 1;          ///< least of new over old square of any other pivot
+  double share = 1;                   ///< product of new over old squares of the other pivots
 };
 
-/// Results are added to those in `result`.
+/// What is found is added to `result`.
 void change_panel(const PanelChange& change, PanelChangeResult& result);
 
 }  // namespace equidem

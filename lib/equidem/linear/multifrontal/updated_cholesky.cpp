@@ -116,7 +116,7 @@ FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::
     }
     std::swap(work, next);
   }
-  path.smallest_share = result.smallest_share;
+  path.share = result.share;
   return path;
 }
 

@@ -22,7 +22,7 @@ struct FactorPath {
   /// Components (disc * block + k) in which nothing was left of a pivot but round-off: the new K is singular there, and
   /// their stiffness was added to it.
   std::vector<std::int64_t> held;
-  double smallest_share = 1;  ///< least of new over old pivot, the held ones left out
+  double share = 1;  ///< determinant of the new K over that of the old one, without the pivots that are held
 };
 
 /// K = L L^T with vectors and factors in double precision. A rank-one change K + c v v^T of one contact alters the

@@ -21,11 +21,13 @@ struct UpdatedEquilibrium::Implementation {
   bool carried = true;
   /// Relative residual found over that estimated from the size of motions since the last refinement.
   double rounding_share = 1, rounding = 0;
+  double measured = 0;  // relative residual after the last refinement
   LargeVector<double> left{};
 
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
+  /// \param least_steps done however small the residual is
   /// \param found gets the mechanisms that a new factorization came across
-  double refine(std::vector<HeldMechanism>* found = nullptr);
+  double refine(int least_steps, std::vector<HeldMechanism>* found = nullptr);
 };
 
 namespace {
@@ -78,7 +80,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
               "Weaken springs, or begin with the stiff ones");
   }
   const bool grows = springs.kN > before.kN || springs.kT > before.kT;
-  if (grows) refine();
+  if (grows) refine(0);
   const std::vector<std::int32_t> path_blocks = state.blocks_above(number);
   for (auto block = path_blocks.rbegin(); block != path_blocks.rend(); ++block) {
     state.bring_up_to_date(*block, nullptr, 0);  // by the factor as it is
@@ -119,7 +121,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   std::vector<HeldMechanism> mechanisms;
   std::vector<double> anchors;
   for (const std::int64_t component : path.held) {
-    mechanisms.push_back({component, state.hold(component), std::vector<double>(cases)});
+    mechanisms.push_back({component, state.hold(component), std::vector<double>(cases), {}});
     for (std::size_t p = 0; p < cases; ++p) anchors.push_back(state.moved_by(component, p));
   }
   rounding = state.follow(path, path_blocks);
@@ -127,17 +129,19 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
     for (std::size_t p = 0; p < cases; ++p) {
       double& reaction = mechanisms[m].reaction[p];
       reaction = mechanisms[m].stiffness * (anchors[m * cases + p] - state.moved_by(mechanisms[m].component, p));
-      if (std::abs(reaction) > negligible * state.scales[p]) carried = false;
+      mechanisms[m].driven.push_back(std::abs(reaction) > negligible * state.scales[p] ? 1 : 0);
+      if (mechanisms[m].driven[p] != 0) carried = false;
     }
   }
   ++unwatched;
-  constexpr double delicate = 1e-4;  // share of a pivot: digits that are lost
+  constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
   const bool rounded = rounding_share * rounding > 0.7 * state.options.watched_residual;
-  if (carried && (path.smallest_share < delicate || rounded || unwatched >= interval)) refine(&mechanisms);
+  if (carried && (path.share < delicate || path.share > 1 / delicate || rounded || unwatched >= interval))
+    refine(0, &mechanisms);
   return mechanisms;
 }
 
-double UpdatedEquilibrium::Implementation::refine(std::vector<HeldMechanism>* found) {
+double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<HeldMechanism>* found) {
   const auto& options = state.options;
   state.bring_all_up_to_date();
   state.fold_motions();
@@ -145,8 +149,8 @@ double UpdatedEquilibrium::Implementation::refine(std::vector<HeldMechanism>* fo
   const auto improved = [&](double residual) {
     constexpr int most_steps = 5;
     double last = 0;
-    for (int step = 0; step < most_steps && residual > options.residual; ++step) {
-      if (step > 0 && residual > 0.5 * last) break;
+    for (int step = 0; step < most_steps && (step < least_steps || residual > options.residual); ++step) {
+      if (step > 0 && !(residual < 0.5 * last)) break;
       last = residual;
       state.correct_motions(left);
       residual = state.residual(left);
@@ -166,16 +170,18 @@ double UpdatedEquilibrium::Implementation::refine(std::vector<HeldMechanism>* fo
     }
     after = improved(after);
     for (const auto& [component, stiffness] : state.holds().subspan(held)) {
-      HeldMechanism mechanism{component, stiffness, {}};
+      HeldMechanism mechanism{component, stiffness, {}, {}};
       for (std::size_t p = 0; p < state.cases.size(); ++p) {
         mechanism.reaction.push_back(left[p * state.components() + static_cast<std::size_t>(component)]);
-        if (std::abs(mechanism.reaction[p]) > negligible * state.scales[p]) carried = false;
+        mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > negligible * state.scales[p] ? 1 : 0);
+        if (mechanism.driven[p] != 0) carried = false;
       }
       if (found != nullptr) found->push_back(std::move(mechanism));
     }
   }
   if (rounding > 0) rounding_share = std::clamp(2 * before / rounding, 0.01, 1.0);
   rounding = 0;
+  measured = after;
   unwatched = 0;
   if (before > options.watched_residual) {
     interval = std::max(interval / 4, 1);
@@ -198,7 +204,7 @@ UpdatedEquilibrium::UpdatedEquilibrium(const Assembly& assembly, const ContactSp
     computation_failed("the stiffness matrix is not positive definite", "the network has a mechanism",
                        "Hold what moves without energy, or take it out");
   }
-  implementation_->refine();
+  implementation_->refine(2);
   state.counters.largest_residual = 0;  // of the motion 0
   implementation_->interval = 4;
 }
@@ -234,7 +240,7 @@ PreciseMotion UpdatedEquilibrium::motion(std::size_t of_case) {
 }
 
 double UpdatedEquilibrium::refine() {
-  return implementation_->refine();
+  return implementation_->refine(1);
 }
 
 double UpdatedEquilibrium::relative_residual() {
@@ -248,6 +254,10 @@ double UpdatedEquilibrium::relative_residual() {
     if (state.scales[p] > 0) largest = std::max(largest, std::sqrt(sum) / state.scales[p]);
   }
   return largest;
+}
+
+double UpdatedEquilibrium::estimated_residual() const {
+  return implementation_->measured + implementation_->rounding_share * implementation_->rounding;
 }
 
 const ContactSprings& UpdatedEquilibrium::springs() const {

@@ -54,6 +54,7 @@ struct HeldMechanism {
   /// Per right-hand side, N/m: force of the support. Not zero beyond round-off where the load works on the mechanism:
   /// the network does not carry it.
   std::vector<double> reaction;
+  std::vector<std::uint8_t> driven;  ///< per right-hand side, 1: the reaction is more than round-off
 };
 
 /// At most two right-hand sides, the first in proportion to lambda, the second, where there is one, dead. Every motion
@@ -82,11 +83,14 @@ class UpdatedEquilibrium {
   [[nodiscard]] std::vector<ContactForce> forces(std::size_t of_case);
   /// Per component.
   [[nodiscard]] PreciseMotion motion(std::size_t of_case);
-  /// Evaluate the residuals of the contact law, refine the motions, and factorize anew where that does not serve.
+  /// Evaluate the residuals of the contact law, refine the motions by one step at least, and factorize anew where that
+  /// does not serve.
   /// \return the largest relative residual before
   double refine();
   /// Of the motions as they are, the largest of all right-hand sides.
   [[nodiscard]] double relative_residual();
+  /// Measured when motions were last refined, estimated since from how far they have moved; the largest.
+  [[nodiscard]] double estimated_residual() const;
   [[nodiscard]] const ContactSprings& springs() const;
   [[nodiscard]] const UpdateCounters& counters() const;
   [[nodiscard]] double factor_bytes() const;
