@@ -48,7 +48,7 @@ class Quasistatic(ProgramTest):
         self.assertEqual(result["status"], "done")
         self.assertEqual((result["event_count"], len(result["events"]), result["end"]), (12, 12, "most_events"))
         self.assertEqual(len(result["curve"]["load"]), 13)
-        self.assertLess(result["energy"]["error"], 1e-10)
+        self.assertLess(result["energies"]["error"], 1e-10)
         self.assertLess(result["relative_residual"], 1e-12)
         self.assertEqual(result["cut_contacts"], 15)
         self.assertEqual(result["units"]["events.load"], "N/m")

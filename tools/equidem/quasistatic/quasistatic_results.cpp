@@ -78,9 +78,9 @@ void add_loads(Results& out, const BreakageScene& scene, const BreakageRun& run)
 
 void add_energies(Results& out, const BreakageRun& run) {
   out.line("energy")
-      .add("energy/released", "released", run.released(), "N")
-      .add("energy/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
-      .add("energy/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
+      .add("energies/released", "released", run.released(), "N")
+      .add("energies/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
+      .add("energies/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
 }
 
 void add_loosened(Results& out, const BreakageScene& scene, const BreakageRun& run) {
