@@ -15,6 +15,7 @@ Run declare_calibrate(CLI::App& command);
 Run declare_stability(CLI::App& command);
 Run declare_pack(CLI::App& command);
 Run declare_run(CLI::App& command);
+Run declare_quasistatic(CLI::App& command);
 Run declare_sweep(CLI::App& command);
 Run declare_study(CLI::App& command);
 
@@ -25,6 +26,7 @@ inline constexpr std::array verbs{
     Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability},
     Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack},
     Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run},
+    Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic},
     Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
 };

@@ -67,7 +67,7 @@ NetworkResponse response_of(const BreakableSystem& system, const Assembly& assem
   NetworkResponse r;
   r.energy = {total[energy_0], total[energy_1], total[energy_2]};
   r.imposed = {total[imposed_0], total[imposed_1]};
-  const double area = assembly.area();
+  const double area = assembly.periodic() || !assembly.cell_areas.empty() ? assembly.area() : 0;
   if (area > 0) r.stress = {tensor_of(&total[stress_0], area), tensor_of(&total[stress_1], area)};
   r.largest_pattern = largest(f1);
   r.largest_dead = largest(f0);

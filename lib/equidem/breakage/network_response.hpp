@@ -16,7 +16,7 @@ namespace equidem {
 struct NetworkResponse {
   std::array<double, 2> load{};              ///< LoadPath, N/m or Pa
   std::array<double, 2> motion{};            ///< LoadPath, m or a strain
-  std::array<Tensor2, 2> stress{};           ///< Pa, (1/A) sum F_i l_j over contacts; 0 where the assembly has no area
+  std::array<Tensor2, 2> stress{};           ///< Pa, (1/A) sum F_i l_j over contacts; 0 where its area is not known
   std::array<double, 3> energy{};            ///< N, elastic
   std::array<double, 3> loads_by_motions{};  ///< N, sum f . u of all loads
   double dead_by_pattern = 0;                ///< N, f0 . u1

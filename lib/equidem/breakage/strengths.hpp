@@ -28,13 +28,13 @@ struct EnumNames<BondLength> {
 };
 
 struct StrengthOptions {
-  std::optional<double> tension;  ///< f_t >= 0, N/m; with a bond length Pa
-  std::optional<double> shear;    ///< f_s >= 0, likewise
-  double friction = 0;            ///< mu >= 0
+  std::optional<double> tension = {};  ///< f_t >= 0, N/m; with a bond length Pa
+  std::optional<double> shear = {};    ///< f_s >= 0, likewise
+  double friction = 0;                 ///< mu >= 0
   BondLength bond_length = BondLength::none;
   /// m > 0 of the distribution of Weibull, by which both strengths of a contact are multiplied: a share exp(-x^m) of
   /// the contacts is more than x times as strong as given. None: all are equal.
-  std::optional<double> weibull_modulus;
+  std::optional<double> weibull_modulus = {};
   std::uint64_t seed = 1;
 };
 

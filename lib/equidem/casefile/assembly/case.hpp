@@ -14,6 +14,9 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/breakage/load_path.hpp"
+#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
@@ -69,6 +72,14 @@ struct GroupCase {
 struct NamedLoads {
   std::string name;  ///< empty if the file has no load cases
   LoadCase loads;
+};
+
+/// [quasistatic]: the path along which contacts break.
+struct QuasistaticCase {
+  LoadControl control = LoadControl::path;
+  std::vector<double> legs;      ///< lambda at the end of each; empty: one without an end
+  std::int64_t max_events = 0;   ///< 0: no limit
+  std::int64_t frame_every = 0;  ///< events from one frame to the next; 0: no frames
 };
 
 /// [output]: files written with --out, in addition to result.json and case.toml.
@@ -130,6 +141,11 @@ struct Case : CaseDocument {
   std::optional<EnsembleCase> ensemble;
   std::vector<NamedSchedule> schedules;  ///< for a run; statics takes the factor 1
   std::optional<RunCase> run;
+  std::optional<StrengthOptions> strength;
+  std::optional<Voigt> strain;  ///< mean strain of a periodic cell, xy engineering
+  LoadCase dead_loads;
+  std::vector<Notch> notches;
+  QuasistaticCase quasistatic;
   SolverOptions solver;
   OutputCase output;
 };

@@ -184,6 +184,44 @@ void bind_run(File<CaseTables>& file) {
              key("spin", &InitialVelocity::spin, unit("rad/s"), "of each disc, counter-clockwise")});
 }
 
+void bind_breakage(File<CaseTables>& file) {
+  using S = StrengthOptions;
+  file.table("strength", &CaseTables::strength, "strengths of the contacts, for the verb quasistatic")
+      .keys({key("tension", &S::tension, unit("N/m (with bond_length: Pa)"), not_negative,
+                 "a contact breaks where its normal force reaches it; left out: the assembly gives strengths"),
+             key("shear", &S::shear, unit("N/m (with bond_length: Pa)"), not_negative,
+                 "a contact breaks where |T| reaches shear - friction N, N positive in tension"),
+             key("friction", &S::friction, not_negative, "by how much compression adds to the strength in shear"),
+             key("bond_length", &S::bond_length,
+                 "the length by which strengths in Pa are multiplied: the edge that the cells of both discs share, or "
+                 "the diameter of the smaller disc; none: strengths are forces"),
+             key("weibull_modulus", &S::weibull_modulus, positive,
+                 "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
+                 "equal"),
+             key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths")});
+  file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
+      .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
+             key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
+  file.table("dead_load", &CaseTables::dead_loads, "forces that stay while lambda grows, for the verb quasistatic")
+      .keys({key("group", &Load::group, required, "as in [[support]]"), key("kind", &Load::kind, "as in [[load]]"),
+             key("force", &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
+             key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")});
+  file.table("notch", &CaseTables::notches, "a straight cut through contacts from the start, for the verb quasistatic")
+      .keys({key("from", &Notch::from, required, unit("m"), "[x, y] of one end"),
+             key("to", &Notch::to, required, unit("m"), "[x, y] of the other end")});
+  using Q = QuasistaticCase;
+  file.table("quasistatic", &CaseTables::quasistatic, completed,
+             "the path of the verb quasistatic: loads and motions of the case, or its [strain], times lambda")
+      .keys(
+          {key("control", &Q::control,
+               "what does not fall while contacts break: path: nothing, lambda may fall from event to event "
+               "(snap-back); load; motion: that through which the load works"),
+           key("legs", &Q::legs, "lambda at the end of each leg, such as [1.0, 0.0, 2.0]; empty: until nothing breaks"),
+           key("max_events", &Q::max_events, not_negative, "after so many events the path ends; 0: no limit"),
+           key("frame_every", &Q::frame_every, not_negative,
+               "events from one frame for ParaView to the next, with --out; 0: none")});
+}
+
 void bind_tasks(File<CaseTables>& file) {
   file.table("homogenize", &CaseTables::homogenize, completed, "how the effective stiffness is found")
       .keys(
@@ -243,6 +281,7 @@ const File<CaseTables>& case_file() {
     bind_material(made);
     bind_supports_and_loads(made);
     bind_run(made);
+    bind_breakage(made);
     bind_tasks(made);
     return made;
   }();

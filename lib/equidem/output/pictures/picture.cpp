@@ -22,6 +22,7 @@ std::string draw(const PictureScene& scene, PageFormat page) {
   Canvas canvas(page, scene.options.width, pixel_height(scene), scene.frame.pixels);
   draw_discs(canvas, scene);
   draw_force_chains(canvas, scene);
+  draw_cracks(canvas, scene);
   draw_supports_and_loads(canvas, scene);
   draw_gauges(canvas, scene);
   draw_legends(canvas, scene);

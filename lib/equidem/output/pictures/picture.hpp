@@ -50,6 +50,14 @@ struct DrawnGauge {
   std::string second_label = {};
 };
 
+enum class CrackKind { tension, shear, cut };
+/// A broken contact: a line across it, where its two bodies touched.
+struct DrawnCrack {
+  std::int64_t contact = 0;
+  CrackKind kind = CrackKind::tension;
+  double order = 1;  ///< from 0, the first to break, to 1
+};
+
 /// The force on each disc of a load case.
 /// \throws Error (bad_input) where a load names no group
 std::vector<DrawnLoad> drawn_loads(const Assembly& assembly, const LoadCase& loads);
@@ -71,6 +79,7 @@ struct PictureOptions {
   std::vector<DrawnLoad> loads = {};
   std::vector<DrawnSupport> supports = {};
   std::vector<DrawnGauge> gauges = {};
+  std::vector<DrawnCrack> cracks = {};
 };
 
 /// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the SVG

@@ -123,6 +123,9 @@ std::string caption_of(const PictureScene& scene) {
   if (!scene.force_chains && scene.options.force_chains && !scene.state.contact_forces.empty()) {
     text += ", force chains too fine to draw";
   }
+  if (!scene.options.cracks.empty())
+    text += fmt::format("; {} broken or cut: red in tension, blue in shear, the later the darker, black at the start",
+                        scene.options.cracks.size());
   return text;
 }
 

@@ -79,6 +79,7 @@ inline bool pulls(const PictureScene& scene, const DrawnLoad& load) {
 
 void draw_discs(Canvas& canvas, const PictureScene& scene);
 void draw_force_chains(Canvas& canvas, const PictureScene& scene);
+void draw_cracks(Canvas& canvas, const PictureScene& scene);
 void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene);
 void draw_gauges(Canvas& canvas, const PictureScene& scene);
 

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// equidem quasistatic: contacts that break one after another under a growing load.
+#include <memory>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/choice/solve_time.hpp"
+
+#include "command.hpp"
+#include "problem.hpp"
+#include "quasistatic/event_table.hpp"
+#include "quasistatic/quasistatic_files.hpp"
+#include "quasistatic/quasistatic_results.hpp"
+#include "verbs.hpp"
+
+namespace equidem {
+namespace {
+
+struct QuasistaticOptions {
+  CommonOptions common;
+  bool resume = false;
+};
+
+/// Loads and supports as in solve, but bodies that hang loose stay: contacts keep their numbers.
+Problem build(Case resolved) {
+  Problem problem = problem_of(std::move(resolved));
+  problem.supports = problem.resolved.supports;
+  problem.load_cases = problem.resolved.load_cases;
+  if (problem.resolved.test) {
+    try {
+      problem.tension = tension_setup(problem.assembly, *problem.resolved.test);
+    } catch (const Error& error) {
+      throw error.at(problem.resolved.where("test"));
+    }
+    problem.supports = problem.tension->supports;
+    problem.load_cases = {{"", problem.tension->loads}};
+  }
+  if (problem.load_cases.size() > 1) {
+    bad_input_at(problem.resolved.where("load"), "there are several load cases", "a path has one",
+                 "Keep one; loads that stay are [[dead_load]]");
+  }
+  return problem;
+}
+
+/// Everything that a path refers to.
+struct Sequence {
+  Problem problem;
+  Effects effects;
+  ContactStrengths strengths;
+  LoadPath path;
+  std::vector<std::size_t> cut{};  ///< contacts across notches
+  std::unique_ptr<BreakableSystem> system{};
+  std::unique_ptr<BreakageRun> run{};
+
+  explicit Sequence(Problem given) : problem(std::move(given)) {
+    const Case& resolved = problem.resolved;
+    const Assembly& assembly = problem.assembly;
+    effects = derive_effects(assembly, problem.springs.springs, resolved.rotation);
+    strengths = contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{}));
+    cut = contacts_across(assembly, resolved.notches);
+    const QuasistaticCase& wanted = resolved.quasistatic;
+    path = make_load_path(assembly, problem.springs.springs, effects,
+                          {.supports = problem.supports,
+                           .loads = problem.load_cases.front().loads,
+                           .dead_loads = resolved.dead_loads,
+                           .strain = resolved.strain,
+                           .control = wanted.control,
+                           .legs = wanted.legs,
+                           .max_events = wanted.max_events});
+  }
+
+  [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
+  void begin() {
+    const Stopwatch watch;
+    system = make_refactorized_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
+    if (!cut.empty()) system->remove(cut);
+    run = std::make_unique<BreakageRun>(scene(), *system);
+    problem.times.add("first state", watch.seconds());
+  }
+};
+
+/// The events of an earlier computation of the same case.
+void resume(const CommonOptions& options, Sequence& sequence) {
+  const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
+  if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return;
+  if (read_file(text) != to_toml(sequence.problem.resolved, *options.out)) {
+    bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
+                 "Choose another --out, or leave out --resume and pass --overwrite");
+  }
+  sequence.run->resume(read_events(table, *sequence.run, sequence.scene()));
+}
+
+/// \return whether the path has come to its end; false: the user asked to stop
+bool go(const CommonOptions& options, Sequence& sequence) {
+  constexpr double save_after = 10;  // s
+  BreakageRun& run = *sequence.run;
+  const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
+  const auto save = [&] {
+    if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
+  };
+  std::optional<EventFrames> frames;
+  if (options.out && wanted.frame_every > 0)
+    frames.emplace(options, sequence.scene(), sequence.effects, sequence.cut, wanted.frame_every);
+  const Stopwatch watch;
+  double saved = 0;
+  const auto contacts = static_cast<double>(sequence.problem.assembly.contacts.size());
+  const double most = wanted.max_events > 0 ? static_cast<double>(wanted.max_events) : contacts;
+  bool done = true;
+  try {
+    Progress progress("breaking");
+    while (run.advance()) {
+      if (frames) frames->add(run, *sequence.system);
+      if (watch.seconds() - saved > save_after) {
+        save();
+        saved = watch.seconds();
+      }
+      progress.update(static_cast<double>(run.events().size()) / most);
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) {
+      save();
+      throw;
+    }
+    done = false;
+  }
+  save();
+  if (frames) frames->finish();
+  sequence.problem.times.add("events", watch.seconds());
+  return done;
+}
+
+int quasistatic(const QuasistaticOptions& given) {
+  CommonOptions options = given.common;
+  if (given.resume && !options.out)
+    bad_input("--resume has nothing to go on from", "the events lie in the folder of --out", "Add --out DIR");
+  const Case resolved = read_case(options);
+  if (given.resume) options.overwrite = true;
+  const OutputPlan plan(options);
+  plan.expect_results();
+  expect_quasistatic(plan, resolved.output);
+  const auto lock = lock_out(options);
+  Sequence sequence(build(resolved));
+  if (options.dry_run) {
+    Results further = path_results(sequence.scene(), sequence.cut.size());
+    further.line("", "sizes and time below are those of one event; there are at most as many events as contacts");
+    deliver(options, "dry_run", dry_run_results(sequence.problem, 1, further), sequence.problem.times);
+    return 0;
+  }
+  sequence.begin();
+  // Frames are not kept in the table of events: with them every event is computed again.
+  if (given.resume && resolved.quasistatic.frame_every == 0) resume(options, sequence);
+  write_case(options, sequence.problem.resolved);
+  const bool done = go(options, sequence);
+  Results results = quasistatic_results(sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
+                                        *sequence.run, *sequence.system);
+  results.set("complete", done);
+  deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
+    if (options.out)
+      write_figures(options, sequence.problem.resolved.output, sequence.scene(), *sequence.run, sequence.cut,
+                    sequence.problem.resolved.title);
+  });
+  if (!done) {
+    throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run->events()), "event")),
+                  "Run the same command with --resume to go on");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Run declare_quasistatic(CLI::App& command) {
+  const auto options = std::make_shared<QuasistaticOptions>();
+  add_common_options(command, options->common);
+  command.add_flag("--resume", options->resume, "go on behind the events that lie in --out");
+  command.footer(
+      "Examples:\n"
+      "  equidem quasistatic data/cases/notched_plate.toml --out notch    curve, cracks, events.csv\n"
+      "  equidem quasistatic data/cases/notched_plate.toml --set quasistatic.max_events=10 --json -\n"
+      "Contacts break where their forces reach the [strength]; loads, motions of supports or the [strain] grow with\n"
+      "lambda. Ctrl-C keeps what is done; --resume goes on.");
+  return [options] { return quasistatic(*options); };
+}
+
+}  // namespace equidem

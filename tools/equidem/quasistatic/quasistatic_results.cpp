@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "quasistatic/quasistatic_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/breakage/avalanches.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
+
+#include "quasistatic/event_table.hpp"
+
+namespace equidem {
+namespace {
+
+std::string driving(const LoadPath& path) {
+  switch (path.driven_by) {
+    case DrivenBy::loads:
+      return "the loads";
+    case DrivenBy::motions:
+      return "the motions of supports";
+    case DrivenBy::strain:
+      return "the mean strain";
+  }
+  return {};
+}
+
+/// "disc 4 at (0.1, 0.2)", "disc 4 at (0.1, 0.2) and 3 others".
+std::string named(const Assembly& assembly, const std::vector<std::int32_t>& discs) {
+  const std::string first = describe_disc(assembly, static_cast<std::size_t>(discs.front()));
+  return discs.size() == 1 ? first : fmt::format("{} and {}", first, counted(std::ssize(discs) - 1, "other"));
+}
+
+void add_events(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+  const std::vector<BreakEvent>& events = run.events();
+  const auto sheared = std::ranges::count(events, BreakMode::shear, &BreakEvent::mode);
+  out.line("events").add("event_count", "", std::ssize(events), "contact", {Shown::count});
+  out.note(fmt::format(" of {} broken, {} in tension, {} in shear", scene.assembly.contacts.size(),
+                       std::ssize(events) - sheared, sheared));
+  out.set("broken_in_tension", std::ssize(events) - sheared).set("broken_in_shear", sheared);
+  out.line("", "ended: " + run.why());
+  out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
+  if (events.empty()) return;
+  const auto ties = std::ranges::count_if(events, [](const BreakEvent& event) { return event.ties > 0; });
+  out.set("tied_events", ties);
+  if (ties > 0) {
+    out.line("", fmt::format("{} would have broken at the same lambda as others: the lowest number went first",
+                             counted(ties, "contact")));
+  }
+  const auto& first = events.front();
+  out.line("first")
+      .add("first_break/lambda", "lambda", first.lambda, "", {.digits = 9})
+      .add("first_break/contact", "contact", first.contact)
+      .note(fmt::format(" in {}", to_string(first.mode)));
+}
+
+void add_loads(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+  const std::vector<BreakEvent>& events = run.events();
+  if (events.empty()) return;
+  const std::string load = unit_of_load(scene.path.driven_by), motion = unit_of_motion(scene.path.driven_by);
+  const auto larger = [](const BreakEvent& a, const BreakEvent& b) { return std::abs(a.load) < std::abs(b.load); };
+  const auto peak = std::ranges::max_element(events, larger);
+  out.line("largest load")
+      .add("peak/load", "", peak->load, load, {.digits = 9})
+      .add("peak/motion", "at the motion", peak->motion, motion)
+      .add("peak/lambda", "lambda", peak->lambda)
+      .add("peak/event", "event", peak - events.begin());
+  out.set("peak/stress", peak->stress);
+  const auto avalanches = [&](const std::string& key, const std::string& name, double BreakEvent::*quantity) {
+    const Avalanches found = avalanches_by(run, quantity);
+    out.line(name)
+        .add(key + "/count", "", found.count(), "avalanche", {Shown::count})
+        .add(key + "/largest", "the largest of", found.largest, "event", {Shown::count});
+  };
+  avalanches("avalanches_of_load", "load control", &BreakEvent::load);
+  avalanches("avalanches_of_motion", "motion control", &BreakEvent::motion);
+}
+
+void add_energies(Results& out, const BreakageRun& run) {
+  out.line("energy")
+      .add("energies/released", "released", run.released(), "N")
+      .add("energies/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
+      .add("energies/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
+}
+
+void add_loosened(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+  constexpr int most = 5;
+  if (!run.idle().empty()) {
+    out.line("idle", fmt::format("{} from the start, which can carry no load", named(scene.assembly, run.idle())));
+  }
+  std::int64_t loosened = 0, events = 0;
+  for (std::size_t k = 0; k < run.events().size(); ++k) {
+    const std::vector<std::int32_t>& discs = run.events()[k].loosened;
+    if (discs.empty()) continue;
+    loosened += std::ssize(discs);
+    if (++events > most) continue;
+    out.line(events == 1 ? "came loose" : "", fmt::format("with event {}: {}", k, named(scene.assembly, discs)));
+  }
+  if (events > most) out.line("", fmt::format("with {}: others", counted(events - most, "further event")));
+  out.set("idle_discs", std::ssize(run.idle())).set("loosened_discs", loosened);
+}
+
+void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& system) {
+  std::int64_t unstable = 0, unknown = 0, most = 0;
+  for (const BreakEvent& event : run.events()) {
+    unstable += event.unstable_modes > 0 ? 1 : 0;
+    unknown += event.unstable_modes < 0 ? 1 : 0;
+    most = std::max(most, event.unstable_modes);
+  }
+  out.line("stability", unstable > 0  ? fmt::format("{} with unstable modes, up to {}: not reached in a test",
+                                                    counted(unstable, "state"), most)
+                        : unknown > 0 ? std::string(stability_not_known)
+                                      : "every state is stable while lambda is held");
+  out.set("unstable_states", unstable);
+  const BreakableCounters counters = system.counters();
+  out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
+  out.line("solver")
+      .add("solver", "", system.solver_name())
+      .add("factorizations", "", counters.factorizations, "factorization", {Shown::count})
+      .add("factor_updates", "", counters.updates, "update", {Shown::count})
+      .add("factorizations_for_accuracy", "of which", counters.mended, "for round-off", {});
+}
+
+Results of_event(const BreakEvent& event, DrivenBy driven_by) {
+  Results one;
+  one.set("lambda", event.lambda)
+      .set("contact", event.contact)
+      .set("mode", to_string(event.mode))
+      .set("stress", std::vector<double>{event.stress.xx, event.stress.yx, event.stress.xy, event.stress.yy}, "Pa",
+           "stress as the contact breaks: xx, yx, xy, yy")
+      .set("leg", event.leg)
+      .set("load", event.load, unit_of_load(driven_by))
+      .set("motion", event.motion, unit_of_motion(driven_by))
+      .set("energy_before", event.energy_before)
+      .set("energy_after", event.energy_after)
+      .set("energy_released", event.energy_released)
+      .set("unstable_modes", known(event.unstable_modes))
+      .set("relative_residual", event.relative_residual)
+      .set("ties", event.ties)
+      .set("gap", event.gap)
+      .set("loosened", std::vector<std::int64_t>(event.loosened.begin(), event.loosened.end()));
+  return one;
+}
+
+Results curve_results(const LoadCurve& curve) {
+  return Results().set("motion", curve.motion).set("load", curve.load);
+}
+
+}  // namespace
+
+Results path_results(const BreakageScene& scene, std::size_t cut) {
+  Results out;
+  const auto [low, high] = std::ranges::minmax(scene.strengths.tension);
+  const auto [low_shear, high_shear] = std::ranges::minmax(scene.strengths.shear);
+  out.line("strengths", fmt::format("tension {:.4g} to {:.4g} N/m, shear {:.4g} to {:.4g} N/m, friction {:g}", low,
+                                    high, low_shear, high_shear, scene.strengths.friction));
+  out.set("strength/tension", std::vector<double>{low, high})
+      .set("strength/shear", std::vector<double>{low_shear, high_shear});
+  out.set("strength/friction", scene.strengths.friction);
+  const LoadPath& path = scene.path;
+  std::string legs = path.legs.empty() ? ", until nothing breaks" : ", lambda from 0";
+  for (const double to : path.legs) legs += fmt::format(" to {:g}", to);
+  const std::string control = path.control == LoadControl::path
+                                  ? "; lambda may fall from event to event"
+                                  : fmt::format("; the {} does not fall while contacts break", to_string(path.control));
+  out.line("path", driving(path) + " times lambda" + (path.dead ? ", beside dead loads" : "") + legs + control);
+  if (cut > 0) out.line("notch").add("cut_contacts", "", cut, "contact", {Shown::count}).note(" cut from the start");
+  return out.set("control", to_string(path.control));
+}
+
+Results quasistatic_results(const Problem& problem, const Effects& effects, const BreakageScene& scene, std::size_t cut,
+                            const BreakageRun& run, const BreakableSystem& system) {
+  Results out = problem_results(problem, effects);
+  out.append(path_results(scene, cut));
+  add_events(out, scene, run);
+  add_loads(out, scene, run);
+  add_energies(out, run);
+  add_loosened(out, scene, run);
+  add_trust(out, run, system);
+  std::vector<Results> events;
+  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, scene.path.driven_by));
+  out.set("events", std::move(events));
+  out.append(curve_results(curve_of(run)).under("curve"));
+  out.append(curve_results(load_envelope(run)).under("load_envelope"));
+  return out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
+}
+
+}  // namespace equidem
