@@ -77,11 +77,12 @@ Drawn draw(std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
+  const MakeSystem make = GENERATE(&make_breakable_system, &make_refactorized_system);
   std::int64_t events = 0, by_shear = 0, snap_backs = 0, loosened = 0, released = 0, at_zero = 0, too_soft = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const Drawn d = draw(seed);
-    CAPTURE(d.name);
-    Broken broken(d.assembly, d.springs, d.strengths, d.path, d.rotation);
+    CAPTURE(d.name, make == &make_breakable_system);
+    Broken broken(d.assembly, d.springs, d.strengths, d.path, d.rotation, make);
     const DegreesOfFreedom unknowns =
         number_unknowns(broken.assembly(), broken.springs(), broken.effects(), d.path.supports);
     DenseNetwork dense(broken.assembly(), broken.springs(), broken.strengths(), broken.path(), unknowns);
@@ -106,14 +107,16 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
       REQUIRE(std::abs(event.lambda - expected.lambda) <= 1e-9 * expected.lambda);
       REQUIRE(event.relative_residual < 1e-12);
       const double lambda = expected.lambda, before = dense.energy(lambda);
-      REQUIRE(event.energy_before == Approx(before).epsilon(1e-9));
+      // What is left of the forces at large load factors has fewer digits in a dense matrix.
+      REQUIRE(event.energy_before == Approx(before).epsilon(lambda > 1e4 ? 1e-8 : 1e-9));
       REQUIRE(event.unstable_modes == dense.negative());
       const auto c = static_cast<std::size_t>(event.contact);
       const double n = dense.dead().normal[c] + lambda * dense.pattern().normal[c];
       const double t = dense.dead().tangential[c] + lambda * dense.pattern().tangential[c];
       const int null_motions = dense.null_motions();
       dense.remove(c);
-      if (dense.carried()) REQUIRE(event.energy_after == Approx(dense.energy(lambda)).epsilon(1e-9).margin(1e-12));
+      if (dense.carried())
+        REQUIRE(event.energy_after == Approx(dense.energy(lambda)).epsilon(lambda > 1e4 ? 1e-8 : 1e-9).margin(1e-12));
       // Where nothing comes loose the contact lets go along its opening d: the crack takes f.d/2 of its force f.
       if (dense.carried() && dense.null_motions() == null_motions) {
         const ContactDeformation d_after = dense.opening(c, lambda);

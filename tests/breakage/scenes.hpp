@@ -11,12 +11,15 @@
 
 namespace equidem::test {
 
+using MakeSystem = std::unique_ptr<BreakableSystem> (*)(BreakableNetwork network);
+
 /// A run that owns its scene.
 class Broken {
  public:
   Broken(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
-         Rotation rotation = Rotation::from_scene)
-      : assembly_(std::move(assembly)),
+         Rotation rotation = Rotation::from_scene, MakeSystem make = make_breakable_system)
+      : make_(make),
+        assembly_(std::move(assembly)),
         springs_(std::move(springs)),
         strengths_(std::move(strengths)),
         effects_(derive_effects(assembly_, springs_, rotation)),
@@ -29,7 +32,7 @@ class Broken {
   void begin() {
     const BreakageScene scene{assembly_, springs_, strengths_, path_};
     run_.reset();
-    system_ = make_refactorized_system(breakable_network(scene, effects_, supports_));
+    system_ = make_(breakable_network(scene, effects_, supports_));
     run_ = std::make_unique<BreakageRun>(scene, *system_);
   }
 
@@ -50,6 +53,7 @@ class Broken {
   }
 
  private:
+  MakeSystem make_;
   Assembly assembly_;
   ContactSprings springs_;
   ContactStrengths strengths_;

@@ -82,6 +82,9 @@ class Page(RunTest):
                                     f"run.duration={duration}", *(("--set", "shaking.start=0.01") if name == "shaken" else ())))
             self.check_columns(out / "grains.csv", "Grains (CSV)")
             self.check_columns(out / "contacts.csv", states)
+        self.check_done(equidem("quasistatic", CASES / "notched_plate.toml", "--out", out, "--overwrite", *NO_PICTURE, "--set",
+                                "quasistatic.max_events=2"))
+        self.check_columns(out / "events.csv", "Events (CSV)")
         for name in ("history.csv", "energy.csv", "measures.csv"):
             text = section("Histories (CSV)")
             for column in header_of(out / name):

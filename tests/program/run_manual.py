@@ -15,7 +15,7 @@ sys.path.insert(0, str(SOURCE / "cmake" / "debian"))
 
 import changelog  # noqa: E402
 
-VERBS = ("solve", "homogenize", "calibrate", "stability", "pack", "run", "export", "sweep", "study")
+VERBS = ("solve", "homogenize", "calibrate", "stability", "pack", "run", "quasistatic", "export", "sweep", "study")
 PAGES = ("", *VERBS, "case", "result", "engines")
 
 

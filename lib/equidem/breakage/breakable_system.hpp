@@ -76,6 +76,14 @@ class BreakableSystem {
   [[nodiscard]] virtual std::string solver_name() const = 0;
 };
 
+/// Discs that never leave the network, per disc: those held, and those on which a force acts.
+std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network);
+
+/// A factor that is updated where K is positive definite, every disc carries load at first, and no other method is
+/// asked for; else as below. The assembly and the springs must outlive the system.
+/// \throws Error as UpdatedEquilibrium and StiffnessSolver do
+std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network);
+
 /// Factorizes every network anew. The assembly and the springs must outlive the system.
 /// \throws Error as StiffnessSolver does
 std::unique_ptr<BreakableSystem> make_refactorized_system(BreakableNetwork network);

@@ -32,7 +32,7 @@ class RefactorizedSystem final : public BreakableSystem {
         scale_(network_.assembly.mean_radius()),
         broken_(network_.assembly.contacts.size(), 0),
         left_(network_.assembly.size(), 0),
-        held_(held_or_loaded()) {
+        held_(held_or_loaded(network_)) {
     if (network_.solver.method == SolverMethod::automatic) network_.solver.method = SolverMethod::multifrontal;
     if (network_.solver.precision == FactorPrecision::automatic)
       network_.solver.precision = FactorPrecision::double_precision;
@@ -68,21 +68,6 @@ class RefactorizedSystem final : public BreakableSystem {
     std::vector<double> motion, reactions;
     bool carried = true;
   };
-
-  /// Discs that are never left out: those held, and those on which a force acts.
-  std::vector<std::uint8_t> held_or_loaded() const {
-    const Assembly& whole = network_.assembly;
-    std::vector<std::uint8_t> held(whole.size(), 0);
-    for (const Support& support : network_.supports) {
-      for (const std::int32_t disc : group(whole, support.group).discs) held[static_cast<std::size_t>(disc)] = 1;
-    }
-    for (const RightHandSide& given : network_.cases) {
-      for (std::size_t k = 0; k < given.force.size(); ++k) {
-        if (given.force[k] != 0) held[k / per_disc_] = 1;
-      }
-    }
-    return held;
-  }
 
   Rest unbroken() const;
   Rest load_bearing();
@@ -255,6 +240,21 @@ void RefactorizedSystem::take(const Rest& rest, const StiffnessSolver& solver, c
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network) {
+  const Assembly& whole = network.assembly;
+  const auto per_disc = static_cast<std::size_t>(network.effects.unknowns_per_disc());
+  std::vector<std::uint8_t> held(whole.size(), 0);
+  for (const Support& support : network.supports) {
+    for (const std::int32_t disc : group(whole, support.group).discs) held[static_cast<std::size_t>(disc)] = 1;
+  }
+  for (const RightHandSide& given : network.cases) {
+    for (std::size_t k = 0; k < given.force.size(); ++k) {
+      if (given.force[k] != 0) held[k / per_disc] = 1;
+    }
+  }
+  return held;
+}
 
 std::unique_ptr<BreakableSystem> make_refactorized_system(BreakableNetwork network) {
   return std::make_unique<RefactorizedSystem>(std::move(network));

@@ -51,6 +51,11 @@ class ContactSprings {
     for (SpringConstants& k : result.per_contact_) k = change(k);
     return result;
   }
+  /// Springs of one contact. \param contacts of the assembly: the others keep what is the same for all of them now
+  void set(std::size_t contact, SpringConstants k, std::size_t contacts) {
+    if (per_contact_.empty()) per_contact_.assign(contacts, uniform_);
+    per_contact_[contact] = k;
+  }
   /// Whether some contact has a tangential spring.
   [[nodiscard]] bool any_tangential() const {
     return any([](const SpringConstants& k) { return k.kT != 0; });

@@ -21,7 +21,7 @@ struct RankOneChange {
 
 class BreakableFactor : public Factorization {
  public:
-  /// \return false where a pivot is lost in round-off: the factor is of no use any more, and K has to be factorized anew
+  /// \return false where a pivot is lost in round-off: the factor is of no use any more, K has to be factorized anew
   [[nodiscard]] virtual bool change(std::span<const RankOneChange> changes) = 0;
 };
 

@@ -337,19 +337,17 @@ class Pruning {
     }
     const auto take = [](const auto& from, const std::vector<std::int32_t>& which, auto& to) {
       if (from.empty()) return;
-      to.reserve(which.size());
       for (const std::int32_t k : which) to.push_back(from[k]);
     };
     take(whole.centres, result.discs, rest.centres);
     take(whole.radii, result.discs, rest.radii);
     take(whole.cell_areas, result.discs, rest.cell_areas);
-    take(whole.facet_lengths, result.contacts, rest.facet_lengths);
     take(whole.contact_arms, result.contacts, rest.contact_arms);
     take(whole.sections, result.discs, rest.sections);
-    take(whole.contact_kN, result.contacts, rest.contact_kN);
-    take(whole.contact_kT, result.contacts, rest.contact_kT);
-    take(whole.contact_tension, result.contacts, rest.contact_tension);
-    take(whole.contact_shear, result.contacts, rest.contact_shear);
+    for (const auto numbers : {&Assembly::facet_lengths, &Assembly::contact_kN, &Assembly::contact_kT,
+                               &Assembly::contact_tension, &Assembly::contact_shear}) {
+      take(whole.*numbers, result.contacts, rest.*numbers);
+    }
     for (const auto& [name, group] : whole.groups) {
       DiscGroup& kept = rest.groups[name];
       for (std::size_t k = 0; k < group.discs.size(); ++k) {

@@ -84,6 +84,22 @@ class Assembly:
     def __reduce__(self) -> tuple[Any, ...]:
         return Assembly._of, (self._native,)
 
+    def with_strengths(self, strengths: npt.ArrayLike) -> Assembly:
+        """The same assembly whose contacts have strengths of their own, for `Case.quasistatic`.
+
+        Parameters
+        ----------
+        strengths : array (m, 2)
+            N/m, of each contact in tension and in shear.
+
+        Raises
+        ------
+        BadInput
+            Another shape, or a strength that is negative or not finite.
+        """
+        rows = floats("strengths", strengths, (len(self.contacts), 2))
+        return Assembly._of(self._native.with_strengths(rows))
+
     @property
     def kind(self) -> str:
         """"hexagonal", "square", "delaunay", "arrays", "file", ..."""

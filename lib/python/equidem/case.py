@@ -39,8 +39,8 @@ class Case:
         ``{"group": "right", "force": (1e6, 0), "moment": 0, "kind": "traction"}``; kinds "per_disc" (N/m), "total"
         (N/m) and "traction" (Pa).
     tables
-        Further tables by their names in the case file: ``effects={"rotation": "restrained"}``. Groups of `velocity` and
-        `probe` may be arrays too.
+        Further tables by their names in the case file: ``effects={"rotation": "restrained"}``. Groups of `dead_load`,
+        `velocity` and `probe` may be arrays too.
 
     Examples
     --------
@@ -71,7 +71,7 @@ class Case:
             listed = [*self._tables.get(name, []), *entries]
             if listed:
                 self._tables[name] = listed
-        for name in ("support", "load", "velocity", "probe"):
+        for name in ("support", "load", "dead_load", "velocity", "probe"):
             if name in self._tables:
                 self._tables[name] = [self._with_group(name, entry) for entry in self._tables[name]]
         if self._groups:
@@ -226,6 +226,13 @@ class Case:
     def run(self, **options: Any) -> Result:
         """The dynamics of the table `run`, to its end; `simulation` steps it."""
         return self.run_verb("run", **options)
+
+    def quasistatic(self, **options: Any) -> Result:
+        """Contacts that break one after another (tables `strength`, `strain`, `dead_load`, `notch`, `quasistatic`).
+
+        `result.events` lists them: lambda, contact, mode, stress [xx, yx, xy, yy] in Pa, load, motion, energies in N.
+        """
+        return self.run_verb("quasistatic", **options)
 
     def export(self, to: str, out: str | os.PathLike[str], **options: Any) -> Result:
         """The model as input of another program, in the folder `out`.

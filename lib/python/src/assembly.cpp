@@ -91,6 +91,18 @@ Shared with_springs(const Assembly& assembly, const Floats& springs) {
   return shared(std::move(result));
 }
 
+Shared with_strengths(const Assembly& assembly, const Floats& strengths) {
+  Assembly result = assembly;
+  result.contact_tension.clear();
+  result.contact_shear.clear();
+  for (py::ssize_t c = 0; c < strengths.shape(0); ++c) {
+    result.contact_tension.push_back(strengths.at(c, 0));
+    result.contact_shear.push_back(strengths.at(c, 1));
+  }
+  check(result);
+  return shared(std::move(result));
+}
+
 py::array normals_of(const Assembly& assembly) {
   std::vector<Vec2> normals(assembly.contacts.size());
   for (std::size_t c = 0; c < normals.size(); ++c) normals[c] = frame_of(assembly, c).normal;
@@ -136,6 +148,7 @@ void bind_assembly(py::module_& module) {
       .def_property_readonly("coordination_number", &Assembly::coordination_number)
       .def_property_readonly("groups", groups_of)
       .def("with_springs", with_springs)
+      .def("with_strengths", with_strengths)
       .def(py::pickle([](const Assembly& a) { return py::make_tuple(json_of(a)); },
                       [](const py::tuple& state) { return from_text(state[0].cast<std::string>()); }));
 

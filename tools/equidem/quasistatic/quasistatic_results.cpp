@@ -78,9 +78,9 @@ void add_loads(Results& out, const BreakageScene& scene, const BreakageRun& run)
 
 void add_energies(Results& out, const BreakageRun& run) {
   out.line("energy")
-      .add("energy/released", "released", run.released(), "N")
-      .add("energy/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
-      .add("energy/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
+      .add("energies/released", "released", run.released(), "N")
+      .add("energies/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
+      .add("energies/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
 }
 
 void add_loosened(Results& out, const BreakageScene& scene, const BreakageRun& run) {
@@ -121,7 +121,7 @@ void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& syst
       .add("factorizations_for_accuracy", "of which", counters.mended, "for round-off", {});
 }
 
-Results of_event(const BreakEvent& event) {
+Results of_event(const BreakEvent& event, DrivenBy driven_by) {
   Results one;
   one.set("lambda", event.lambda)
       .set("contact", event.contact)
@@ -129,8 +129,8 @@ Results of_event(const BreakEvent& event) {
       .set("stress", std::vector<double>{event.stress.xx, event.stress.yx, event.stress.xy, event.stress.yy}, "Pa",
            "stress as the contact breaks: xx, yx, xy, yy")
       .set("leg", event.leg)
-      .set("load", event.load)
-      .set("motion", event.motion)
+      .set("load", event.load, unit_of_load(driven_by))
+      .set("motion", event.motion, unit_of_motion(driven_by))
       .set("energy_before", event.energy_before)
       .set("energy_after", event.energy_after)
       .set("energy_released", event.energy_released)
@@ -178,7 +178,7 @@ Results quasistatic_results(const Problem& problem, const Effects& effects, cons
   add_loosened(out, scene, run);
   add_trust(out, run, system);
   std::vector<Results> events;
-  for (const BreakEvent& event : run.events()) events.push_back(of_event(event));
+  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, scene.path.driven_by));
   out.set("events", std::move(events));
   out.append(curve_results(curve_of(run)).under("curve"));
   out.append(curve_results(load_envelope(run)).under("load_envelope"));

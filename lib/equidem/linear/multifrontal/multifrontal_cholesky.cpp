@@ -13,11 +13,12 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/kernels/panel_solve.hpp"
 #include "equidem/linear/large_buffer.hpp"
+#include "equidem/linear/multifrontal/cholesky_factor.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 namespace equidem {
-namespace {
+namespace cholesky_factor {
 
 /// The smallest pivot found, over the diagonal entry it started from.
 struct PivotWatch {
@@ -31,248 +32,234 @@ struct PivotWatch {
   }
 };
 
+}  // namespace cholesky_factor
+
+using cholesky_factor::PivotWatch;
+
+namespace {
+
 /// Zeros on and below the diagonal of the first columns of a matrix; nothing reads the others.
 template <typename Real>
 void clear_lower(std::size_t columns, std::size_t rows, Real* values) {
   for (std::size_t c = 0; c < columns; ++c) std::fill_n(values + c * rows + c, rows - c, Real{0});
 }
 
+/// The smallest pivot of front t. \param bad 1-based index of the first that is not positive, or 0
 template <typename Real>
-class Cholesky final : public Factorization {
- public:
-  explicit Cholesky(std::shared_ptr<const SymbolicFactor> symbolic)
-      : symbolic_(std::move(symbolic)), solve_sweep_(*symbolic_, [this](std::size_t t) {
-          return static_cast<double>(symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t)) + 100);
-        }) {
-    dense::use_one_thread_per_call();
-    offset_.resize(symbolic_->fronts());
-    std::size_t size = 0;
-    for (std::size_t t = 0; t < offset_.size(); ++t) {
-      offset_[t] = size;
-      size += symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t));
-    }
-    panels_ = LargeVector<Real>(size);
-    report_.name = single ? "multifrontal Cholesky in single precision" : "multifrontal Cholesky";
-    report_.single_precision = single;
-    report_.nonzeros = symbolic_->nonzeros;
-    report_.bytes = static_cast<double>(size) * sizeof(Real);
-    report_.negative_pivots = 0;
+PivotWatch watch_front(const CholeskyFactor<Real>& factor, const MatrixOnGraph& k, std::size_t t, int bad) {
+  const SymbolicFactor& symbolic = factor.symbolic();
+  const auto b = static_cast<std::size_t>(symbolic.block);
+  const Panel<Real> panel = factor.panel(t);
+  PivotWatch watch;
+  for (std::size_t p = 0; p < (bad != 0 ? static_cast<std::size_t>(bad) : panel.pivots); ++p) {
+    const std::int32_t disc = symbolic.tree.order[symbolic.tree.nodes[t].begin + p / b];
+    const double entry = std::is_same_v<Real, float> ? 1.0 : k.matrix.diagonal_block(disc)[(p % b) * (b + 1)];
+    const double l = panel.values[p * (panel.rows + 1)];
+    const double share = bad != 0 && p + 1 == static_cast<std::size_t>(bad) ? std::min(0.0, l / entry) : l * l / entry;
+    watch.merge({share, static_cast<std::int64_t>(disc * b + p % b)});
   }
+  return watch;
+}
 
-  /// Whether all pivots are positive.
-  bool factorize(const MatrixOnGraph& k) {
-    if constexpr (single) choose_scale(k.matrix);
-    bool positive = true;
-    std::vector<std::uint8_t> failed(symbolic_->fronts(), 0);  // here or below: what stands above is not tried
-    std::mutex watch_mutex;
-    PivotWatch watch;
-    Sweep sweep(*symbolic_, [&](std::size_t t) { return symbolic_->front_operations(t) + 1000; });
-    Progress progress("factorizing");
-    double done = 0;
-    sweep.up([&](std::size_t t) { return symbolic_->updates(t) * symbolic_->updates(t); },
-             [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
-               const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
-               Real* panel = panels_.data() + offset_[t];
-               clear_lower(pivots, ld, panel);
-               clear_lower(updates, updates, update);
-               add_matrix_columns<Real>(*symbolic_, k, t, scale_, panel, ld);
-               thread_local std::vector<RowRun> runs;
-               for (const auto& child : children) {
-                 match_rows(*symbolic_, child.node, runs);
-                 extend_add<Real>(runs, symbolic_->block, child.values, symbolic_->updates(child.node),
-                                  {panel, ld, update, pivots / symbolic_->block});
-               }
-               if (std::any_of(children.begin(), children.end(), [&](const auto& c) { return failed[c.node] != 0; })) {
-                 failed[t] = 1;
-                 return;
-               }
-               const int bad = factorize_front(pivots, updates, panel, update);
-               const PivotWatch found = watch_front(k, t, bad);
-               const std::lock_guard lock(watch_mutex);
-               failed[t] = bad != 0 ? 1 : 0;
-               if (bad != 0) positive = false;
-               watch.merge(found);
-             },
-             [&](double work) {
-               done += work;
-               progress.update(done);
-             });
-    report_.smallest_pivot = watch.smallest;
-    report_.smallest_component = watch.component;
-    return positive;
-  }
-
-  void solve(std::span<double> x, int right_hand_sides) const override {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    const auto columns = static_cast<std::size_t>(right_hand_sides);
-    const std::size_t n = symbolic_->position.size() * b;
-    LargeVector<Real> y(n * columns);
-    std::vector<double> size(columns, 1.0);
-    for (std::size_t c = 0; c < columns; ++c) {
-      const std::span<double> column = x.subspan(c * n, n);
-      if constexpr (single) size[c] = scale_to_one(column);
-      permute_to_elimination<Real>(*symbolic_, column, std::span(y).subspan(c * n, n));
-    }
-    for (std::size_t c = 0; c < columns; c += most_columns) {
-      const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
-      solve_sweep_.up([&](std::size_t t) { return symbolic_->updates(t) * some.count; },
-                      [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
-                        forward(t, some, update, children);
-                      },
-                      [](double) {});
-      solve_sweep_.down([&](std::size_t t) { backward(t, some); });
-    }
-    for (std::size_t c = 0; c < columns; ++c) {
-      const std::span<double> column = x.subspan(c * n, n);
-      permute_from_elimination<Real>(*symbolic_, std::span(y).subspan(c * n, n), column);
-      if constexpr (single) multiply_by_scale(column, size[c]);
-    }
-  }
-
-  [[nodiscard]] std::vector<double> softest_motion() const override {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    const std::size_t n = symbolic_->position.size() * b;
-    LargeVector<Real> y(n);
-    std::fill(y.begin(), y.end(), Real{0});
-    std::vector<double> x(n);
-    const auto component = static_cast<std::size_t>(report_.smallest_component);
-    y[symbolic_->position[component / b] * b + component % b] = 1;
-    for (std::size_t t = symbolic_->fronts(); t-- > 0;) backward(t, {y.data(), n, 1});
-    permute_from_elimination<Real>(*symbolic_, y, x);
-    if constexpr (single) multiply_by_scale(x, 1);
-    return x;
-  }
-
-  [[nodiscard]] const FactorReport& report() const override { return report_; }
-
- private:
-  using Sweep = TreeSweep<Real>;
-  static constexpr bool single = std::is_same_v<Real, float>;
-
-  void choose_scale(const StiffnessMatrix& matrix) {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    scale_.resize(symbolic_->position.size() * b);
-    for (std::size_t k = 0; k < scale_.size(); ++k) {
-      const double entry = matrix.diagonal_block(k / b)[k % b * (b + 1)];
-      scale_[k] = entry > 0 ? 1 / std::sqrt(entry) : 1;
-    }
-  }
-
-  /// x := factor S x.
-  void multiply_by_scale(std::span<double> x, double factor) const {
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] *= factor * scale_[k];
-  }
-
-  /// x := S x over its largest component, which is returned.
-  double scale_to_one(std::span<double> x) const {
-    double largest = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) largest = std::max(largest, std::abs(scale_[k] * x[k]));
-    if (!(largest > 0)) return 1;
-    multiply_by_scale(x, 1 / largest);
-    return largest;
-  }
-
-  PivotWatch watch_front(const MatrixOnGraph& k, std::size_t t, int bad) const {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    const std::size_t pivots = symbolic_->pivots(t), ld = pivots + symbolic_->updates(t);
-    const Real* panel = panels_.data() + offset_[t];
-    PivotWatch watch;
-    for (std::size_t p = 0; p < (bad != 0 ? static_cast<std::size_t>(bad) : pivots); ++p) {
-      const std::int32_t disc = symbolic_->tree.order[symbolic_->tree.nodes[t].begin + p / b];
-      const double entry = single ? 1.0 : k.matrix.diagonal_block(disc)[(p % b) * (b + 1)];
-      const double l = panel[p * (ld + 1)];
-      const double share =
-          bad != 0 && p + 1 == static_cast<std::size_t>(bad) ? std::min(0.0, l / entry) : l * l / entry;
-      watch.merge({share, static_cast<std::int64_t>(disc * b + p % b)});
-    }
-    return watch;
-  }
-
-  /// Right-hand sides in the order of elimination, one after another.
-  struct Columns {
-    Real* data;
-    std::size_t size;
-    std::size_t count;  // <= most_columns
-  };
-
-  [[nodiscard]] Panel<Real> panel_of(std::size_t t) const {
-    return {panels_.data() + offset_[t], symbolic_->pivots(t), symbolic_->pivots(t) + symbolic_->updates(t)};
-  }
-
-  /// Columns of a front: own unknowns, then those that it updates.
-  static std::vector<Real>& work(std::size_t numbers) {
-    thread_local std::vector<Real> values;
-    if (values.size() < numbers) values.resize(numbers);
-    return values;
-  }
-
-  // L y = b on the front: y_own := L_11^-1 (b_own + children), update := children - L_21 y_own.
-  void forward(std::size_t t, const Columns& y, Real* update,
-               const std::vector<typename Sweep::Child>& children) const {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    const Panel<Real> panel = panel_of(t);
-    const std::size_t ld = panel.rows, updates = ld - panel.pivots;
-    Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
-    Real* w = work(ld * y.count).data();
-    for (std::size_t c = 0; c < y.count; ++c) {
-      std::copy_n(own + c * y.size, panel.pivots, w + c * ld);
-      std::fill_n(w + c * ld + panel.pivots, updates, Real{0});
-    }
-    thread_local std::vector<RowRun> runs;
-    for (const auto& child : children) {
-      match_rows(*symbolic_, child.node, runs);
-      const std::size_t rows = symbolic_->updates(child.node);
-      for (std::size_t c = 0; c < y.count; ++c) {
-        for (const RowRun& run : runs) {
-          const Real* from = child.values + c * rows + run.child * b;
-          Real* to = w + c * ld + run.parent * b;
-          for (std::size_t r = 0; r < run.count * b; ++r) to[r] += from[r];
-        }
-      }
-    }
-    solve_forward(panel, w, y.count);
-    for (std::size_t c = 0; c < y.count; ++c) {
-      std::copy_n(w + c * ld, panel.pivots, own + c * y.size);
-      std::copy_n(w + c * ld + panel.pivots, updates, update + c * updates);
-    }
-  }
-
-  // L^T x = y on the front: x_own := L_11^-T (y_own - L_21^T x_rows).
-  void backward(std::size_t t, const Columns& y) const {
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    const Panel<Real> panel = panel_of(t);
-    Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
-    Real* w = work(panel.rows * y.count).data();
-    for (std::size_t c = 0; c < y.count; ++c) {
-      Real* to = std::copy_n(own + c * y.size, panel.pivots, w + c * panel.rows);
-      for (const std::int32_t row : symbolic_->rows[t]) {
-        for (std::size_t r = 0; r < b; ++r) *to++ = y.data[c * y.size + row * b + r];
-      }
-    }
-    solve_backward(panel, w, y.count);
-    for (std::size_t c = 0; c < y.count; ++c) std::copy_n(w + c * panel.rows, panel.pivots, own + c * y.size);
-  }
-
-  std::shared_ptr<const SymbolicFactor> symbolic_;
-  Sweep solve_sweep_;
-  std::vector<std::size_t> offset_;  // of the panel of each front
-  LargeVector<Real> panels_;
-  std::vector<double> scale_;  // S in single precision, per component; else empty
-  FactorReport report_;
-};
+/// Columns of a front: own unknowns, then those that it updates.
+template <typename Real>
+std::vector<Real>& work(std::size_t numbers) {
+  thread_local std::vector<Real> values;
+  if (values.size() < numbers) values.resize(numbers);
+  return values;
+}
 
 }  // namespace
 
 template <typename Real>
+CholeskyFactor<Real>::CholeskyFactor(std::shared_ptr<const SymbolicFactor> symbolic)
+    : symbolic_(std::move(symbolic)), solve_sweep_(*symbolic_, [this](std::size_t t) {
+        return static_cast<double>(symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t)) + 100);
+      }) {
+  dense::use_one_thread_per_call();
+  offset_.resize(symbolic_->fronts());
+  std::size_t size = 0;
+  for (std::size_t t = 0; t < offset_.size(); ++t) {
+    offset_[t] = size;
+    size += symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t));
+  }
+  panels_ = LargeVector<Real>(size);
+  report_.name = single ? "multifrontal Cholesky in single precision" : "multifrontal Cholesky";
+  report_.single_precision = single;
+  report_.nonzeros = symbolic_->nonzeros;
+  report_.bytes = static_cast<double>(size) * sizeof(Real);
+  report_.negative_pivots = 0;
+}
+
+template <typename Real>
+bool CholeskyFactor<Real>::factorize(const MatrixOnGraph& k) {
+  if constexpr (single) choose_scale(k.matrix);
+  bool positive = true;
+  std::vector<std::uint8_t> failed(symbolic_->fronts(), 0);  // here or below: what stands above is not tried
+  std::mutex watch_mutex;
+  PivotWatch watch;
+  Sweep sweep(*symbolic_, [&](std::size_t t) { return symbolic_->front_operations(t) + 1000; });
+  Progress progress("factorizing");
+  double done = 0;
+  sweep.up([&](std::size_t t) { return symbolic_->updates(t) * symbolic_->updates(t); },
+           [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
+             const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
+             Real* const panel = this->panel(t);
+             clear_lower(pivots, ld, panel);
+             clear_lower(updates, updates, update);
+             add_matrix_columns<Real>(*symbolic_, k, t, scale_, panel, ld);
+             thread_local std::vector<RowRun> runs;
+             for (const auto& child : children) {
+               match_rows(*symbolic_, child.node, runs);
+               extend_add<Real>(runs, symbolic_->block, child.values, symbolic_->updates(child.node),
+                                {panel, ld, update, pivots / symbolic_->block});
+             }
+             if (std::any_of(children.begin(), children.end(), [&](const auto& c) { return failed[c.node] != 0; })) {
+               failed[t] = 1;
+               return;
+             }
+             const int bad = factorize_front(pivots, updates, panel, update);
+             const PivotWatch found = watch_front(*this, k, t, bad);
+             const std::lock_guard lock(watch_mutex);
+             failed[t] = bad != 0 ? 1 : 0;
+             if (bad != 0) positive = false;
+             watch.merge(found);
+           },
+           [&](double work) {
+             done += work;
+             progress.update(done);
+           });
+  report_.smallest_pivot = watch.smallest;
+  report_.smallest_component = watch.component;
+  return positive;
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) const {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const auto columns = static_cast<std::size_t>(right_hand_sides);
+  const std::size_t n = symbolic_->position.size() * b;
+  LargeVector<Real> y(n * columns);
+  std::vector<double> size(columns, 1.0);
+  for (std::size_t c = 0; c < columns; ++c) {
+    const std::span<double> column = x.subspan(c * n, n);
+    if constexpr (single) size[c] = scale_to_one(column);
+    permute_to_elimination<Real>(*symbolic_, column, std::span(y).subspan(c * n, n));
+  }
+  for (std::size_t c = 0; c < columns; c += most_columns) {
+    const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
+    solve_sweep_.up([&](std::size_t t) { return symbolic_->updates(t) * some.count; },
+                    [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
+                      forward(t, some, update, children);
+                    },
+                    [](double) {});
+    solve_sweep_.down([&](std::size_t t) { backward(t, some); });
+  }
+  for (std::size_t c = 0; c < columns; ++c) {
+    const std::span<double> column = x.subspan(c * n, n);
+    permute_from_elimination<Real>(*symbolic_, std::span(y).subspan(c * n, n), column);
+    if constexpr (single) multiply_by_scale(column, size[c]);
+  }
+}
+
+template <typename Real>
+std::vector<double> CholeskyFactor<Real>::softest_motion() const {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const std::size_t n = symbolic_->position.size() * b;
+  LargeVector<Real> y(n);
+  std::fill(y.begin(), y.end(), Real{0});
+  std::vector<double> x(n);
+  const auto component = static_cast<std::size_t>(report_.smallest_component);
+  y[symbolic_->position[component / b] * b + component % b] = 1;
+  for (std::size_t t = symbolic_->fronts(); t-- > 0;) backward(t, {y.data(), n, 1});
+  permute_from_elimination<Real>(*symbolic_, y, x);
+  if constexpr (single) multiply_by_scale(x, 1);
+  return x;
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::choose_scale(const StiffnessMatrix& matrix) {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  scale_.resize(symbolic_->position.size() * b);
+  for (std::size_t k = 0; k < scale_.size(); ++k) {
+    const double entry = matrix.diagonal_block(k / b)[k % b * (b + 1)];
+    scale_[k] = entry > 0 ? 1 / std::sqrt(entry) : 1;
+  }
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::multiply_by_scale(std::span<double> x, double factor) const {
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] *= factor * scale_[k];
+}
+
+template <typename Real>
+double CholeskyFactor<Real>::scale_to_one(std::span<double> x) const {
+  double largest = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) largest = std::max(largest, std::abs(scale_[k] * x[k]));
+  if (!(largest > 0)) return 1;
+  multiply_by_scale(x, 1 / largest);
+  return largest;
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::forward(std::size_t t, const Columns& y, Real* update,
+                                   const std::vector<typename Sweep::Child>& children) const {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const Panel<Real> panel = this->panel(t);
+  const std::size_t ld = panel.rows, updates = ld - panel.pivots;
+  Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
+  Real* w = work<Real>(ld * y.count).data();
+  for (std::size_t c = 0; c < y.count; ++c) {
+    std::copy_n(own + c * y.size, panel.pivots, w + c * ld);
+    std::fill_n(w + c * ld + panel.pivots, updates, Real{0});
+  }
+  thread_local std::vector<RowRun> runs;
+  for (const auto& child : children) {
+    match_rows(*symbolic_, child.node, runs);
+    const std::size_t rows = symbolic_->updates(child.node);
+    for (std::size_t c = 0; c < y.count; ++c) {
+      for (const RowRun& run : runs) {
+        const Real* from = child.values + c * rows + run.child * b;
+        Real* to = w + c * ld + run.parent * b;
+        for (std::size_t r = 0; r < run.count * b; ++r) to[r] += from[r];
+      }
+    }
+  }
+  solve_forward(panel, w, y.count);
+  for (std::size_t c = 0; c < y.count; ++c) {
+    std::copy_n(w + c * ld, panel.pivots, own + c * y.size);
+    std::copy_n(w + c * ld + panel.pivots, updates, update + c * updates);
+  }
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::backward(std::size_t t, const Columns& y) const {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const Panel<Real> panel = this->panel(t);
+  Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
+  Real* w = work<Real>(panel.rows * y.count).data();
+  for (std::size_t c = 0; c < y.count; ++c) {
+    Real* to = std::copy_n(own + c * y.size, panel.pivots, w + c * panel.rows);
+    for (const std::int32_t row : symbolic_->rows[t]) {
+      for (std::size_t r = 0; r < b; ++r) *to++ = y.data[c * y.size + row * b + r];
+    }
+  }
+  solve_backward(panel, w, y.count);
+  for (std::size_t c = 0; c < y.count; ++c) std::copy_n(w + c * panel.rows, panel.pivots, own + c * y.size);
+}
+
+template <typename Real>
 std::unique_ptr<Factorization> multifrontal_cholesky(std::shared_ptr<const SymbolicFactor> symbolic,
                                                      const MatrixOnGraph& matrix, FactorReport* report) {
-  auto factor = std::make_unique<Cholesky<Real>>(std::move(symbolic));
+  auto factor = std::make_unique<CholeskyFactor<Real>>(std::move(symbolic));
   const bool positive = factor->factorize(matrix);
   if (report != nullptr) *report = factor->report();
   if (!positive) return nullptr;
   return factor;
 }
 
+template class CholeskyFactor<float>;
+template class CholeskyFactor<double>;
 template std::unique_ptr<Factorization> multifrontal_cholesky<float>(std::shared_ptr<const SymbolicFactor>,
                                                                      const MatrixOnGraph&, FactorReport*);
 template std::unique_ptr<Factorization> multifrontal_cholesky<double>(std::shared_ptr<const SymbolicFactor>,

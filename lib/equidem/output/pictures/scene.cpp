@@ -124,7 +124,7 @@ std::string caption_of(const PictureScene& scene) {
     text += ", force chains too fine to draw";
   }
   if (!scene.options.cracks.empty())
-    text += fmt::format("; {} broken or cut: red in tension, blue in shear, the later the darker, black cut from the start",
+    text += fmt::format("; {} broken or cut: red in tension, blue in shear, the later the darker, black at the start",
                         scene.options.cracks.size());
   return text;
 }

@@ -14,11 +14,11 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t components_at_once = 1 << 14;
+constexpr std::size_t components_each = 1 << 14;
 constexpr double of_one_pass = 2e-6;  // accuracy of iterations, which multiply by a matrix in single precision
 
 double norm_of(std::span<const double> x) {
-  return std::sqrt(sums_over<1>(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+  return std::sqrt(sums_over<1>(x.size(), components_each, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (const double value : x.subspan(begin, end - begin)) sum += value * value;
     return std::array{sum};
@@ -50,7 +50,7 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
   if (moves) {
     evaluate(residual);
   } else {
-    parallel_ranges(residual.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(residual.size(), components_each, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         residual[k] = unknowns.held[k] != 0 || given.force.empty() ? 0 : given.force[k];
       }
@@ -66,7 +66,7 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
 }
 
 void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
-  parallel_ranges(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(x.size(), components_each, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       if (solver.unknowns_.held[k] != 0) x[k] = 0;
     }
@@ -196,7 +196,7 @@ template <typename Square>
 double StiffnessSolver::Refinement::norm_of_affine(const Square& square) const {
   if (!given.gradient) return 0;
   const Assembly& assembly = solver.assembly_;
-  return std::sqrt(sums_over<1>(assembly.contacts.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+  return std::sqrt(sums_over<1>(assembly.contacts.size(), components_each, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t c = begin; c < end; ++c) {
       sum +=

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Forces of contacts that follow motions, and the load factors at which they break.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/material/spring_constants.hpp"
+#include "equidem/statics/breaking/least_load_factor.hpp"
+
+namespace equidem {
+
+/// A contact with what its forces follow from. Discs are named by their position in the order of elimination.
+struct BreakingContact {
+  std::int32_t i = 0, j = 0;
+  Vec2 normal;
+  /// Levers and offsets over the length a by which rotations are scaled; 0 where rotations are no unknowns.
+  double turn_i = 0, turn_j = 0, open_i = 0, open_j = 0;
+  SpringConstants springs;
+  ContactStrength strength;
+  ProportionalForce force;
+};
+
+/// Add to the forces of contacts what motions of their discs do. \param live of the load that grows, `dead` of the
+/// other one, null where there is none: per component, `block` of a disc, m
+void add_forces(std::span<BreakingContact> contacts, int block, const double* live, const double* dead);
+
+/// The least load factor and the largest utilization under the dead load.
+Utilization utilization_of(std::span<const BreakingContact> contacts, double friction);
+
+}  // namespace equidem

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/breaking/updated_equilibrium.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/linear/kernels/panel_change.hpp"
+#include "equidem/statics/breaking/updated_state.hpp"
+
+namespace equidem {
+
+struct UpdatedEquilibrium::Implementation {
+  UpdatedState state;
+  int unwatched = 0;  // changes since the residual was looked at
+  int interval = 4;   // changes after which it is looked at again
+  bool carried = true;
+  /// Relative residual found over that estimated from the size of motions since the last refinement.
+  double rounding_share = 1, rounding = 0;
+  double measured = 0;  // relative residual after the last refinement
+  LargeVector<double> left{};
+
+  std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
+  /// \param least_steps done however small the residual is
+  /// \param found gets the mechanisms that a new factorization came across
+  double refine(int least_steps, std::vector<HeldMechanism>* found = nullptr);
+};
+
+namespace {
+
+constexpr double negligible = 1e-8;  // over the size of the load: what round-off leaves of a reaction
+
+/// Derivatives of stretch and slip by the motions of two discs, 0 for components that are held.
+struct MaskedGradient {
+  RankOneChange normal, tangential;
+};
+
+MaskedGradient masked_gradient(const SpringNetwork& network, std::size_t number) {
+  const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
+  const Contact& contact = network.assembly.contacts[number];
+  const DeformationGradient g =
+      deformation_gradient(frame_of(network.assembly, number), network.unknowns.rotation_scale);
+  const auto masked = [&](std::int32_t disc, std::array<double, 3> x) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      if (r >= b || network.unknowns.held[disc * b + r] != 0) x[r] = 0;
+    }
+    return x;
+  };
+  return {{0, contact.i, contact.j, masked(contact.i, g.normal_i), masked(contact.j, g.normal_j)},
+          {0, contact.i, contact.j, masked(contact.i, g.tangential_i), masked(contact.j, g.tangential_j)}};
+}
+
+void check_network(const ContactSprings& springs, std::size_t contacts, std::size_t cases, std::size_t strengths) {
+  if (springs.any_negative()) {
+    bad_input("a contact has a negative tangential spring",
+              "the factor that is updated is that of a positive definite matrix",
+              "Factorize anew after each removal, or take kT >= 0");
+  }
+  if (cases < 1 || cases > most_right_sides) {
+    bad_input(fmt::format("there are {} right-hand sides", cases), "one grows with the load factor, one may be dead",
+              "Give one or two");
+  }
+  if (strengths != contacts) {
+    bad_input(fmt::format("there are {} strengths for {} contacts", strengths, contacts), "",
+              "Give one for each contact");
+  }
+}
+
+}  // namespace
+
+std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_t number, SpringConstants springs) {
+  const SpringConstants before = state.springs[number], most = state.first_springs[number];
+  if (!(springs.kN >= 0 && springs.kT >= 0 && springs.kN <= most.kN && springs.kT <= most.kT)) {
+    bad_input(fmt::format("the springs of contact {} are to be {} and {} Pa", number, springs.kN, springs.kT),
+              "bounds on motions hold for springs that are at most as stiff as at first, and not negative",
+              "Weaken springs, or begin with the stiff ones");
+  }
+  const bool grows = springs.kN > before.kN || springs.kT > before.kT;
+  if (grows) refine(0);
+  const std::vector<std::int32_t> path_blocks = state.blocks_above(number);
+  for (auto block = path_blocks.rbegin(); block != path_blocks.rend(); ++block) {
+    state.bring_up_to_date(*block, nullptr, 0);  // by the factor as it is
+  }
+  std::vector<ContactForce> after;
+  std::vector<UpdatedCholesky::Load> loads;
+  const MaskedGradient g = masked_gradient(state.network(), number);
+  const std::size_t cases = state.cases.size();
+  for (std::size_t p = 0; p < cases; ++p) {
+    const ContactForce now = state.force_of(number, p);
+    ContactForce then{before.kN > 0 ? now.normal * (springs.kN / before.kN) : 0,
+                      before.kT > 0 ? now.tangential * (springs.kT / before.kT) : 0};
+    if (grows) {
+      then =
+          linear_spring_force(springs, deformation_of(state.network(), state.base[p], state.cases[p].gradient, number));
+    }
+    after.push_back(then);
+    UpdatedCholesky::Load load;
+    for (std::size_t r = 0; r < 3; ++r) {
+      const double n = now.normal - then.normal, t = now.tangential - then.tangential;
+      load.at_i[r] = n * g.normal.at_i[r] + t * g.tangential.at_i[r];
+      load.at_j[r] = n * g.normal.at_j[r] + t * g.tangential.at_j[r];
+    }
+    loads.push_back(load);
+  }
+  std::vector<RankOneChange> changes;
+  const auto add = [&](RankOneChange spring, double stiffness) {
+    spring.stiffness = stiffness;
+    if (stiffness != 0) changes.push_back(spring);
+  };
+  add(g.normal, springs.kN - before.kN);
+  add(g.tangential, springs.kT - before.kT);
+  if (changes.empty()) return {};
+  ++state.counters.updates;
+  const FactorPath path = state.factor->change(changes, loads);
+  state.set_contact(number, springs, after);
+
+  std::vector<HeldMechanism> mechanisms;
+  std::vector<double> anchors;
+  for (const std::int64_t component : path.held) {
+    mechanisms.push_back({component, state.hold(component), std::vector<double>(cases), {}});
+    for (std::size_t p = 0; p < cases; ++p) anchors.push_back(state.moved_by(component, p));
+  }
+  rounding = state.follow(path, path_blocks);
+  for (std::size_t m = 0; m < mechanisms.size(); ++m) {
+    for (std::size_t p = 0; p < cases; ++p) {
+      double& reaction = mechanisms[m].reaction[p];
+      reaction = mechanisms[m].stiffness * (anchors[m * cases + p] - state.moved_by(mechanisms[m].component, p));
+      mechanisms[m].driven.push_back(std::abs(reaction) > negligible * state.scales[p] ? 1 : 0);
+      if (mechanisms[m].driven[p] != 0) carried = false;
+    }
+  }
+  ++unwatched;
+  constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
+  const bool rounded = rounding_share * rounding > 0.7 * state.options.watched_residual;
+  if (carried && (path.share < delicate || path.share > 1 / delicate || rounded || unwatched >= interval))
+    refine(0, &mechanisms);
+  return mechanisms;
+}
+
+double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<HeldMechanism>* found) {
+  const auto& options = state.options;
+  state.bring_all_up_to_date();
+  state.fold_motions();
+  ++state.counters.refinements;
+  const auto improved = [&](double residual) {
+    constexpr int most_steps = 5;
+    double last = 0;
+    for (int step = 0; step < most_steps && (step < least_steps || residual > options.residual); ++step) {
+      if (step > 0 && !(residual < 0.5 * last)) break;
+      last = residual;
+      state.correct_motions(left);
+      residual = state.residual(left);
+    }
+    return residual;
+  };
+  const double before = state.residual(left);
+  double after = improved(before);
+  state.counters.largest_residual = std::max(state.counters.largest_residual, before);
+  if (carried && after > options.watched_residual) {
+    ++state.counters.mended;
+    const std::size_t held = state.holds().size();
+    if (!state.factorize()) {
+      computation_failed("the stiffness matrix could not be factorized anew",
+                         "round-off of changes had grown, and the network is singular in more than a few places",
+                         "Stop before the network falls apart");
+    }
+    after = improved(after);
+    for (const auto& [component, stiffness] : state.holds().subspan(held)) {
+      HeldMechanism mechanism{component, stiffness, {}, {}};
+      for (std::size_t p = 0; p < state.cases.size(); ++p) {
+        mechanism.reaction.push_back(left[p * state.components() + static_cast<std::size_t>(component)]);
+        mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > negligible * state.scales[p] ? 1 : 0);
+        if (mechanism.driven[p] != 0) carried = false;
+      }
+      if (found != nullptr) found->push_back(std::move(mechanism));
+    }
+  }
+  if (rounding > 0) rounding_share = std::clamp(2 * before / rounding, 0.01, 1.0);
+  rounding = 0;
+  measured = after;
+  unwatched = 0;
+  if (before > options.watched_residual) {
+    interval = std::max(interval / 4, 1);
+  } else {
+    interval = std::min(2 * interval, options.most_changes_unwatched);
+  }
+  state.evaluate_contacts();
+  return before;
+}
+
+UpdatedEquilibrium::UpdatedEquilibrium(const Assembly& assembly, const ContactSprings& springs,
+                                       DegreesOfFreedom unknowns, std::vector<RightHandSide> cases,
+                                       std::vector<ContactStrength> strengths,
+                                       const UpdatedEquilibriumOptions& options) {
+  check_network(springs, assembly.contacts.size(), cases.size(), strengths.size());
+  implementation_ = std::make_unique<Implementation>(
+      Implementation{{assembly, springs, std::move(unknowns), std::move(cases), std::move(strengths), options}});
+  UpdatedState& state = implementation_->state;
+  if (!state.factorize()) {
+    computation_failed("the stiffness matrix is not positive definite", "the network has a mechanism",
+                       "Hold what moves without energy, or take it out");
+  }
+  implementation_->refine(2);
+  state.counters.largest_residual = 0;  // of the motion 0
+  implementation_->interval = 4;
+}
+
+UpdatedEquilibrium::~UpdatedEquilibrium() = default;
+
+std::vector<HeldMechanism> UpdatedEquilibrium::remove(std::size_t contact) {
+  return implementation_->change(contact, {0, 0});
+}
+
+std::vector<HeldMechanism> UpdatedEquilibrium::change(std::size_t contact, SpringConstants springs) {
+  return implementation_->change(contact, springs);
+}
+
+CriticalContact UpdatedEquilibrium::critical() {
+  return implementation_->state.critical();
+}
+
+std::vector<ContactForce> UpdatedEquilibrium::forces(std::size_t of_case) {
+  UpdatedState& state = implementation_->state;
+  state.bring_all_up_to_date();
+  std::vector<ContactForce> all;
+  for (std::size_t c = 0; c < state.assembly.contacts.size(); ++c) all.push_back(state.force_of(c, of_case));
+  return all;
+}
+
+PreciseMotion UpdatedEquilibrium::motion(std::size_t of_case) {
+  UpdatedState& state = implementation_->state;
+  state.bring_all_up_to_date();
+  PreciseMotion motion = state.base[of_case];
+  motion.add(state.moved(of_case));
+  return motion;
+}
+
+double UpdatedEquilibrium::refine() {
+  return implementation_->refine(1);
+}
+
+double UpdatedEquilibrium::relative_residual() {
+  UpdatedState& state = implementation_->state;
+  double largest = 0;
+  std::vector<double> residual(state.components());
+  for (std::size_t p = 0; p < state.cases.size(); ++p) {
+    residual_force(state.network(), motion(p), state.cases[p].gradient, state.cases[p].force, residual);
+    double sum = 0;
+    for (const double value : residual) sum += value * value;
+    if (state.scales[p] > 0) largest = std::max(largest, std::sqrt(sum) / state.scales[p]);
+  }
+  return largest;
+}
+
+double UpdatedEquilibrium::estimated_residual() const {
+  return implementation_->measured + implementation_->rounding_share * implementation_->rounding;
+}
+
+const ContactSprings& UpdatedEquilibrium::springs() const {
+  return implementation_->state.springs;
+}
+
+const UpdateCounters& UpdatedEquilibrium::counters() const {
+  return implementation_->state.counters;
+}
+
+double UpdatedEquilibrium::factor_bytes() const {
+  return implementation_->state.factor->report().bytes;
+}
+
+double UpdatedEquilibrium::bytes() const {
+  return implementation_->state.bytes();
+}
+
+}  // namespace equidem

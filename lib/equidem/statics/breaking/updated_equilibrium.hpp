@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The states of rest of a network whose contacts break one after another, from a factor that is updated.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/statics/breaking/least_load_factor.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+
+namespace equidem {
+
+struct UpdatedEquilibriumOptions {
+  double friction = 0;           ///< >= 0
+  double tie_tolerance = 1e-10;  ///< load factors that differ by less, relatively, count as equal
+  /// Bring only those parts of the network up to date in which a contact may be critical. The contact found is the
+  /// same.
+  bool skip = true;
+  double residual = 1e-13;  ///< relative, to which states are refined
+  /// Relative residual that every state is to stay below: motions are refined where what they have moved since the
+  /// last refinement is estimated to have rounded so much.
+  double watched_residual = 1e-12;
+  int most_changes_unwatched = 256;  ///< after which the residual is looked at in any case
+};
+
+struct UpdateCounters {
+  std::int64_t updates = 0;         ///< changes of a contact made in the factor
+  std::int64_t factorizations = 0;  ///< of the whole matrix, the first included
+  std::int64_t mended = 0;          ///< of these, because round-off of updates had grown
+  std::int64_t refinements = 0;     ///< times that the residual was evaluated and the motion refined
+  std::int64_t held = 0;            ///< components held because a removal left a mechanism
+  std::int64_t fronts = 0;          ///< swept back through, by all searches
+  double largest_residual = 0;      ///< relative, before refinement
+};
+
+/// The contact that breaks next.
+struct CriticalContact {
+  BreakingPoint at;
+  std::int64_t contact = -1;  ///< -1: none breaks at any load factor; of ties the least number
+  std::int64_t ties = 0;      ///< other contacts with the same load factor
+};
+
+/// A mechanism that a change left, and the component that is held instead.
+struct HeldMechanism {
+  std::int64_t component = -1;  ///< disc * per_disc + k
+  double stiffness = 0;         ///< of its support, Pa
+  /// Per right-hand side, N/m: force of the support. Not zero beyond round-off where the load works on the mechanism:
+  /// the network does not carry it.
+  std::vector<double> reaction;
+  std::vector<std::uint8_t> driven;  ///< per right-hand side, 1: the reaction is more than round-off
+};
+
+/// At most two right-hand sides, the first in proportion to lambda, the second, where there is one, dead. Every motion
+/// follows from the one before by the forces that a removed contact set free: forward substitution along one path of
+/// the elimination tree, back substitution where something moves enough to matter. Positive definite networks only.
+class UpdatedEquilibrium {
+ public:
+  /// The assembly must outlive the object. \param unknowns holds what supports and free rigid motions need.
+  /// \throws Error (bad_input) where a spring is negative, or there are no or more than two right-hand sides;
+  ///         (computation_failed) where K is not positive definite: the network has mechanisms
+  UpdatedEquilibrium(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom unknowns,
+                     std::vector<RightHandSide> cases, std::vector<ContactStrength> strengths,
+                     const UpdatedEquilibriumOptions& options = {});
+  ~UpdatedEquilibrium();
+  UpdatedEquilibrium(const UpdatedEquilibrium&) = delete;
+  UpdatedEquilibrium& operator=(const UpdatedEquilibrium&) = delete;
+
+  /// Take a contact out: it carries nothing and never breaks again. \return mechanisms that this leaves
+  std::vector<HeldMechanism> remove(std::size_t contact);
+  /// Springs of a contact instead of those that it has; at most as stiff as at first. A contact that was removed comes
+  /// back without its strength, and without force only where its ends are where they were at first.
+  std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
+  [[nodiscard]] CriticalContact critical();
+
+  /// Per contact, N/m.
+  [[nodiscard]] std::vector<ContactForce> forces(std::size_t of_case);
+  /// Per component.
+  [[nodiscard]] PreciseMotion motion(std::size_t of_case);
+  /// Evaluate the residuals of the contact law, refine the motions by one step at least, and factorize anew where that
+  /// does not serve.
+  /// \return the largest relative residual before
+  double refine();
+  /// Of the motions as they are, the largest of all right-hand sides.
+  [[nodiscard]] double relative_residual();
+  /// Measured when motions were last refined, estimated since from how far they have moved; the largest.
+  [[nodiscard]] double estimated_residual() const;
+  [[nodiscard]] const ContactSprings& springs() const;
+  [[nodiscard]] const UpdateCounters& counters() const;
+  [[nodiscard]] double factor_bytes() const;
+  /// Of everything that the object keeps, the factor included.
+  [[nodiscard]] double bytes() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace equidem

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/breaking/updated_state.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/linear/ordering/nested_dissection.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t entries_at_once = 1 << 13;
+
+double length_of(std::span<const double> x) {
+  return std::sqrt(sums_over<1>(x.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (const double value : x.subspan(begin, end - begin)) sum += value * value;
+    return std::array{sum};
+  })[0]);
+}
+
+}  // namespace
+
+UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& springs_in, DegreesOfFreedom unknowns_in,
+                           std::vector<RightHandSide> cases_in, std::vector<ContactStrength> strengths,
+                           const UpdatedEquilibriumOptions& options_in)
+    : assembly(assembly_in),
+      graph(assembly_in),
+      springs(springs_in),
+      first_springs(springs_in),
+      unknowns(std::move(unknowns_in)),
+      cases(std::move(cases_in)),
+      options(options_in),
+      symbolic_(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
+  factor = std::make_unique<UpdatedCholesky>(symbolic_);
+  blocks_ = std::make_unique<MotionBlocks>(network(), *symbolic_);
+  path_offset_.assign(symbolic_->fronts(), -1);
+  moved_.resize(components() * cases.size());
+  std::fill(moved_.begin(), moved_.end(), 0.0);
+  boundary_.assign(blocks_->boundaries() * symbolic_->block * cases.size(), 0.0);
+  slot_.resize(assembly.contacts.size());
+  contacts_.resize(assembly.contacts.size());
+  const bool turns = unknowns.per_disc == 3;
+  for (std::size_t slot = 0; slot < contacts_.size(); ++slot) {
+    const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
+    slot_[number] = static_cast<std::int32_t>(slot);
+    const Contact& contact = assembly.contacts[number];
+    const ContactFrame frame = frame_of(assembly, number);
+    const auto scaled = [&](double arm) { return turns ? arm / unknowns.rotation_scale : 0.0; };
+    contacts_[slot] = {symbolic_->position[contact.i],
+                       symbolic_->position[contact.j],
+                       frame.normal,
+                       scaled(frame.lever_i),
+                       scaled(frame.lever_j),
+                       scaled(frame.offset_i),
+                       scaled(frame.offset_j),
+                       springs[number],
+                       strengths[number],
+                       {}};
+  }
+  states_.resize(blocks_->all().size());
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const MotionBlock& block = (*blocks_)[k];
+    for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) {
+      states_[k].rate =
+          std::max(states_[k].rate, utilization_rate(contacts_[c].springs, contacts_[c].strength, options.friction));
+    }
+    for (const std::int32_t child : block.children) states_[k].rate = std::max(states_[k].rate, states_[child].rate);
+  }
+  for (const RightHandSide& given : cases) {
+    base.emplace_back(components());
+    double affine = 0;
+    for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
+      if (unknowns.held[k] != 0) base.back().high[k] = given.prescribed[k];
+    }
+    for (std::size_t c = 0; given.gradient && c < assembly.contacts.size(); ++c) {
+      const ContactFrame frame = frame_of(assembly, c);
+      const ContactForce f = linear_spring_force(
+          springs[c], affine_deformation(frame, assembly.branch(assembly.contacts[c]), *given.gradient));
+      affine += f.normal * f.normal + f.tangential * f.tangential;
+    }
+    std::vector<double> residual(components());
+    residual_force(network(), base.back(), given.gradient, given.force, residual);
+    scales.push_back(std::max(length_of(residual), std::sqrt(affine)));
+  }
+}
+
+std::vector<std::int32_t> UpdatedState::blocks_above(std::size_t contact) const {
+  std::vector<std::int32_t> blocks;
+  const Contact& c = assembly.contacts[contact];
+  for (std::int32_t k = blocks_->of_front(factor->path_of(c.i, c.j).front()); k >= 0; k = (*blocks_)[k].parent) {
+    blocks.push_back(k);
+  }
+  return blocks;
+}
+
+bool UpdatedState::boundary_motion(std::size_t number, std::vector<double>& motion) const {
+  const MotionBlock& block = (*blocks_)[number];
+  const auto& rows = symbolic_->rows[block.root];
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const std::size_t size = rows.size() * b;
+  motion.resize(size * cases.size());
+  bool any = false;
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    const double* now = moved_.data() + p * components();
+    const double* last = boundary_.data() + (p * blocks_->boundaries() + block.boundary) * b;
+    double* to = motion.data() + p * size;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (std::size_t r = 0; r < b; ++r) {
+        to[k * b + r] = now[rows[k] * b + r] - last[k * b + r];
+        any |= to[k * b + r] != 0;
+      }
+    }
+  }
+  return any;
+}
+
+std::size_t UpdatedState::bring_up_to_date(std::size_t number, const FactorPath* path, int worker) {
+  thread_local std::vector<double> motion;
+  if (!boundary_motion(number, motion) && path == nullptr) return 0;
+  const MotionBlock& block = (*blocks_)[number];
+  const auto& rows = symbolic_->rows[block.root];
+  const auto& nodes = symbolic_->tree.nodes;
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  const std::size_t n = components();
+  LargeVector<double>& x = scratch_[worker];
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    double* last = boundary_.data() + (p * blocks_->boundaries() + block.boundary) * b;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (std::size_t r = 0; r < b; ++r) {
+        const std::size_t component = rows[k] * b + r;
+        x[p * n + component] = motion[(p * rows.size() + k) * b + r];
+        last[k * b + r] = moved_[p * n + component];
+      }
+    }
+  }
+  for (std::int32_t t = block.root; t >= block.first; --t) {
+    const std::size_t own = nodes[t].begin * b, pivots = symbolic_->pivots(t);
+    for (std::size_t p = 0; p < cases.size(); ++p) {
+      double* to = x.data() + p * n + own;
+      if (path != nullptr && path_offset_[t] >= 0) {
+        std::copy_n(path->values.data() + path_offset_[t] + p * pivots, pivots, to);
+      } else {
+        std::fill_n(to, pivots, 0.0);
+      }
+    }
+    factor->backward(t, {x.data(), n, cases.size()});
+  }
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    for (std::size_t k = p * n + nodes[block.first].begin * b; k < p * n + nodes[block.root].end * b; ++k) {
+      moved_[k] += x[k];
+    }
+  }
+  const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
+  add_forces(contacts, symbolic_->block, x.data(), cases.size() > 1 ? x.data() + n : nullptr);
+  evaluate_block(number);
+  return block.root - block.first + 1;
+}
+
+void UpdatedState::evaluate_block(std::size_t number) {
+  const MotionBlock& block = (*blocks_)[number];
+  states_[number].own = utilization_of(
+      std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin), options.friction);
+}
+
+double UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
+  std::int32_t offset = 0;
+  for (const std::int32_t t : path.fronts) {
+    path_offset_[t] = offset;
+    offset += static_cast<std::int32_t>(symbolic_->pivots(t) * cases.size());
+  }
+  for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
+    counters.fronts += static_cast<std::int64_t>(bring_up_to_date(*block, &path, 0));
+    states_[*block].subtree = {0, 0};  // unknown: its children are looked at
+  }
+  for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
+  // The fronts above a contact go from its discs through the whole of the assembly: their motions stand for all.
+  const double rounding = std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(components()));
+  double residual = 0;
+  for (const std::int32_t block : blocks) {
+    const auto& nodes = symbolic_->tree.nodes;
+    const auto b = static_cast<std::size_t>(symbolic_->block);
+    for (std::size_t p = 0; p < cases.size(); ++p) {
+      if (!(scales[p] > 0)) continue;
+      double largest = 0;
+      for (std::size_t k = nodes[(*blocks_)[block].first].begin * b; k < nodes[(*blocks_)[block].root].end * b; ++k) {
+        largest = std::max(largest, std::abs(moved_[p * components() + k]) * factor->stiffness_in_order()[k]);
+      }
+      residual = std::max(residual, rounding * largest / scales[p]);
+    }
+  }
+  return residual;
+}
+
+void UpdatedState::bring_all_up_to_date() {
+  std::vector<std::int32_t> level, next;
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if ((*blocks_)[k].parent < 0) level.push_back(static_cast<std::int32_t>(k));
+  }
+  while (!level.empty()) {
+    parallel_tasks(level.size(), [&](std::size_t k, int worker) { bring_up_to_date(level[k], nullptr, worker); });
+    next.clear();
+    for (const std::int32_t k : level) {
+      counters.fronts += (*blocks_)[k].root - (*blocks_)[k].first + 1;
+      next.insert(next.end(), (*blocks_)[k].children.begin(), (*blocks_)[k].children.end());
+    }
+    std::swap(level, next);
+  }
+}
+
+void UpdatedState::set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces) {
+  springs.set(contact, k, assembly.contacts.size());
+  BreakingContact& c = contacts_[slot_[contact]];
+  c.springs = k;
+  if (k.kN == 0 && k.kT == 0) c.strength = {};
+  c.force.live = forces[0];
+  if (forces.size() > 1) c.force.dead = forces[1];
+}
+
+ContactForce UpdatedState::force_of(std::size_t contact, std::size_t of_case) const {
+  const ProportionalForce& force = contacts_[slot_[contact]].force;
+  return of_case == 0 ? force.live : force.dead;
+}
+
+double UpdatedState::hold(std::int64_t component) {
+  const double stiffness = factor->stiffness_of(component);
+  holds_.push_back({component, stiffness});
+  blocks_->hold(component, stiffness);
+  ++counters.held;
+  return stiffness;
+}
+
+double UpdatedState::moved_by(std::int64_t component, std::size_t of_case) const {
+  const std::int64_t b = symbolic_->block;
+  return moved_[of_case * components() + symbolic_->position[component / b] * b + component % b];
+}
+
+std::vector<double> UpdatedState::moved(std::size_t of_case) const {
+  std::vector<double> x(components());
+  permute_from_elimination<double>(*symbolic_, std::span(moved_).subspan(of_case * components(), components()), x);
+  return x;
+}
+
+bool UpdatedState::factorize() {
+  constexpr int most_holds = 16;
+  for (int attempt = 0; attempt < most_holds; ++attempt) {
+    StiffnessMatrix matrix = assemble_stiffness(assembly, graph, springs, unknowns);
+    const auto b = static_cast<std::int64_t>(symbolic_->block);
+    for (const Held& held : holds_) {
+      matrix.diagonal[held.component / b * b * b + held.component % b * (b + 1)] += held.stiffness;
+    }
+    ++counters.factorizations;
+    const bool first = counters.factorizations == 1;
+    if (factor->factorize({matrix, assembly, graph})) return true;
+    if (first || factor->report().smallest_component < 0) return false;
+    hold(factor->report().smallest_component);
+  }
+  return false;
+}
+
+void UpdatedState::fold_motions() {
+  for (std::size_t p = 0; p < cases.size(); ++p) base[p].add(moved(p));
+  std::fill(moved_.begin(), moved_.end(), 0.0);
+  std::fill(boundary_.begin(), boundary_.end(), 0.0);
+}
+
+double UpdatedState::residual(LargeVector<double>& left) const {
+  left.resize(components() * cases.size());
+  double largest = 0;
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    residual_force(network(), base[p], cases[p].gradient, cases[p].force, column(left, p));
+    if (scales[p] > 0) largest = std::max(largest, length_of(column(left, p)) / scales[p]);
+  }
+  return largest;
+}
+
+void UpdatedState::correct_motions(LargeVector<double>& left) {
+  factor->solve(left, static_cast<int>(cases.size()));
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    const std::span<double> x = column(left, p);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (unknowns.held[k] != 0) x[k] = 0;
+    }
+    base[p].add(x);
+  }
+}
+
+void UpdatedState::evaluate_contacts() {
+  parallel_ranges(contacts_.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slot = begin; slot < end; ++slot) {
+      const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
+      const auto force = [&](std::size_t p) {
+        return linear_spring_force(contacts_[slot].springs,
+                                   deformation_of(network(), base[p], cases[p].gradient, number));
+      };
+      contacts_[slot].force.live = force(0);
+      if (cases.size() > 1) contacts_[slot].force.dead = force(1);
+    }
+  });
+  scratch_.resize(thread_count());
+  for (auto& x : scratch_) x.resize(moved_.size());
+  for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
+    evaluate_block(k);
+    states_[k].subtree = states_[k].own;
+    for (const std::int32_t child : (*blocks_)[k].children) states_[k].subtree.include(states_[child].subtree);
+  }
+}
+
+double UpdatedState::bytes() const {
+  const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
+  double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(slot_) + of(moved_) +
+                 of(boundary_) + of(path_offset_);
+  for (const auto& x : scratch_) bytes += of(x);
+  for (const PreciseMotion& motion : base) bytes += of(motion.high) + of(motion.low);
+  return bytes;
+}
+
+}  // namespace equidem

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Motions and contact forces of a network behind an updated factor, each part of the network as of some earlier
+/// change, and what brings a part up to date.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "equidem/linear/large_buffer.hpp"
+#include "equidem/linear/multifrontal/updated_cholesky.hpp"
+#include "equidem/statics/breaking/kernels/breaking_contacts.hpp"
+#include "equidem/statics/breaking/motion_blocks.hpp"
+#include "equidem/statics/breaking/updated_equilibrium.hpp"
+#include "equidem/statics/internal_force.hpp"
+
+namespace equidem {
+
+class UpdatedState {
+ public:
+  struct Held {
+    std::int64_t component;  ///< disc * per_disc + k
+    double stiffness;        ///< Pa
+  };
+
+  UpdatedState(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom unknowns,
+               std::vector<RightHandSide> cases, std::vector<ContactStrength> strengths,
+               const UpdatedEquilibriumOptions& options);
+
+  [[nodiscard]] SpringNetwork network() const { return {assembly, graph, springs, unknowns}; }
+  [[nodiscard]] std::size_t components() const { return unknowns.held.size(); }
+
+  /// Blocks from that of a contact up to its root.
+  [[nodiscard]] std::vector<std::int32_t> blocks_above(std::size_t contact) const;
+  /// Apply what the boundary of a block has moved since its last visit, and the forward solution of `path` where it
+  /// passes through; what stands above must be up to date. \return fronts swept
+  std::size_t bring_up_to_date(std::size_t block, const FactorPath* path, int worker);
+  /// The motions that follow from a change. \param blocks above its contact, all up to date before it
+  /// \return the relative residual that rounding of motions since the last refinement is estimated to leave
+  double follow(const FactorPath& path, std::span<const std::int32_t> blocks);
+  void bring_all_up_to_date();
+  [[nodiscard]] CriticalContact critical();
+
+  void set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces);
+  [[nodiscard]] ContactForce force_of(std::size_t contact, std::size_t of_case) const;
+  [[nodiscard]] std::span<const Held> holds() const { return holds_; }
+  /// Hold a component that nothing resists any more. \return the stiffness, Pa
+  double hold(std::int64_t component);
+  /// Since the motions were last refined, as of the last visit, m.
+  [[nodiscard]] double moved_by(std::int64_t component, std::size_t of_case) const;
+
+  /// The same of all components, where everything is up to date.
+  [[nodiscard]] std::vector<double> moved(std::size_t of_case) const;
+
+  /// A factor of the network as it is; components are held where it is singular. \return whether one was found
+  bool factorize();
+  /// Everything must be up to date: motions become those since the last refinement and those before it.
+  void fold_motions();
+  /// What the contact law leaves of the loads on the motions of the last refinement, N/m. \return over `scales`, the
+  /// largest
+  double residual(LargeVector<double>& left) const;
+  /// Add the motions that balance what is left, which is lost.
+  void correct_motions(LargeVector<double>& left);
+  /// Forces and load factors of all contacts from their motions.
+  void evaluate_contacts();
+  [[nodiscard]] double bytes() const;
+
+  const Assembly& assembly;
+  ContactGraph graph;
+  ContactSprings springs;
+  const ContactSprings first_springs;
+  DegreesOfFreedom unknowns;
+  std::vector<RightHandSide> cases;
+  UpdatedEquilibriumOptions options;
+  UpdateCounters counters;
+  std::vector<double> scales;       ///< per right-hand side, N/m: reference of relative residuals
+  std::vector<PreciseMotion> base;  ///< per right-hand side, when motions were last refined
+  std::unique_ptr<UpdatedCholesky> factor;
+
+ private:
+  struct BlockState {
+    Utilization own;       ///< of the contacts of the block, as of its last visit
+    Utilization subtree;   ///< at worst, as of its last visit
+    Utilization at_worst;  ///< of its subtree now, where its parent is up to date
+    double rate = 0;       ///< the largest utilization_rate of its subtree
+    bool open = false;     ///< of the search at hand: its children are looked at one by one
+  };
+
+  [[nodiscard]] std::span<double> column(LargeVector<double>& of, std::size_t of_case) const {
+    return std::span(of).subspan(of_case * components(), components());
+  }
+  /// Motion of the boundary of a block since its last visit, of each right-hand side. \return whether there was any
+  bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
+  void evaluate_block(std::size_t block);
+  void bound_children(std::size_t block);
+  /// The contact with the least load factor among those of open blocks.
+  [[nodiscard]] CriticalContact least_of_open(double least);
+
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+  std::unique_ptr<MotionBlocks> blocks_;
+  std::vector<BlockState> states_;            // per block
+  std::vector<BreakingContact> contacts_;     // in the order of blocks
+  std::vector<std::int32_t> slot_;            // of each contact in contacts_
+  LargeVector<double> moved_;                 // since the last refinement, in the order of elimination, case by case
+  std::vector<double> boundary_;              // moved_ of the boundary of each block at its last visit
+  std::vector<std::int32_t> path_offset_;     // into FactorPath::values, per front; -1: not on the path
+  std::vector<LargeVector<double>> scratch_;  // per worker: motion since the last visit
+  std::vector<std::int32_t> open_;            // blocks, parents first
+  std::vector<Held> holds_;
+};
+
+}  // namespace equidem

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""equidem quasistatic: run_quasistatic.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
+import json
+import unittest
+
+from program import CASES, SOURCE, ProgramTest, equidem, parse_json
+
+NOTCH = CASES / "notched_plate.toml"
+NO_PICTURE = ("--set", "output.picture=false")
+REFERENCE = SOURCE / "data" / "reference"
+
+
+class Quasistatic(ProgramTest):
+    def run_notch(self, *options):
+        done = equidem("quasistatic", NOTCH, "--json", "-", "--threads", 1, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return parse_json(done.stdout)
+
+    def events_of(self, out):
+        with open(out / "events.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_strengths_in_the_assembly_file_give_the_events_of_the_reference(self):
+        cell = json.loads((REFERENCE / "perturbed_hexagonal_400.json").read_text())
+        expected = json.loads((REFERENCE / "perturbed_hexagonal_400_breakage.json").read_text())
+        cell["strengths"] = [list(pair) for pair in zip(expected["tension_strength"], expected["shear_strength"])]
+        (self.folder / "cell.json").write_text(json.dumps(cell))
+        xx, yy, xy = expected["results"][1]["strain"]
+        case = self.folder / "case.toml"
+        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "cell.json"\n'
+                        f'[springs]\nkN = {expected["kN"]}\nkT = {expected["kT"]}\n'
+                        f'[strength]\nfriction = {expected["friction"]}\n'
+                        f'[strain]\nxx = {xx}\nyy = {yy}\nxy = {xy}\n[quasistatic]\nmax_events = 30\n')
+        done = equidem("quasistatic", case, "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        events = parse_json(done.stdout)["events"]
+        self.assertEqual(len(events), 30)
+        for event, known in zip(events, expected["results"][1]["breaks"]):
+            self.assertEqual((event["contact"], event["mode"]), (known["contact"], known["mode"]))
+            self.assertAlmostEqual(event["lambda"] / known["lambda"], 1, delta=1e-9)
+            for ours, theirs in zip(event["stress"], known["stress_at_lambda"]):
+                self.assertAlmostEqual(ours, theirs, delta=1e-9)
+
+    def test_a_result_holds_events_curve_envelopes_and_energies(self):
+        result = self.run_notch("--set", "quasistatic.max_events=12")
+        self.assertEqual(result["status"], "done")
+        self.assertEqual((result["event_count"], len(result["events"]), result["end"]), (12, 12, "most_events"))
+        self.assertEqual(len(result["curve"]["load"]), 13)
+        self.assertLess(result["energies"]["error"], 1e-10)
+        self.assertLess(result["relative_residual"], 1e-12)
+        self.assertEqual(result["cut_contacts"], 15)
+        self.assertEqual(result["units"]["events.load"], "N/m")
+        loads = [event["load"] for event in result["events"]]
+        self.assertEqual(max(loads), result["peak"]["load"])
+        self.assertEqual(sorted(result["load_envelope"]["load"]), result["load_envelope"]["load"])
+
+    def test_stopped_and_resumed_it_has_the_same_events(self):
+        whole, part = self.folder / "whole", self.folder / "part"
+        self.run_notch("--out", whole, *NO_PICTURE)
+        table = part / "events.csv"
+        equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--set", "quasistatic.max_events=1")
+        text = (part / "case.toml").read_text()
+        refused = equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--resume")
+        self.check_error(refused, 2, "another case")
+        rows = (whole / "events.csv").read_text().splitlines(keepends=True)
+        (part / "case.toml").write_text((whole / "case.toml").read_text())
+        for kept in (1, 20, len(rows) - 1):
+            table.write_text("".join(rows[:kept + 1]))
+            result = self.run_notch("--out", part, *NO_PICTURE, "--resume")
+            self.assertTrue(result["complete"])
+            self.assertEqual(table.read_text(), "".join(rows))
+        table.write_text("".join(rows[:3]).replace("tension", "shear", 1))
+        self.check_error(equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--resume"), 2, "events.csv")
+        self.assertNotEqual(text, "")
+        self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
+
+    def test_frames_pictures_and_a_page_are_written(self):
+        out = self.folder / "out"
+        done = equidem("quasistatic", NOTCH, "--out", out, "--set", "quasistatic.frame_every=10")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = {path.name for path in out.iterdir()}
+        self.assertLessEqual({"cracks.svg", "cracks.png", "curve.csv", "events.csv", "frames.pvd", "index.html", "case.toml"},
+                             names)
+        self.assertEqual(len(self.events_of(out)), 50)
+        self.assertEqual((out / "frames.pvd").read_text().count("discs_"), 5)
+
+    def test_a_dry_run_tells_sizes_and_breaks_nothing(self):
+        result = self.run_notch("--dry-run")
+        self.assertEqual(result["status"], "dry_run")
+        self.assertGreater(result["peak_bytes"], 0)
+        self.assertNotIn("events", result)
+
+    def test_what_is_missing_or_contradictory_is_refused(self):
+        self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=true"), 2, "nothing grows with lambda")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "notch.0.to=[-0.0005,0.0152]"), 2, "crosses no contact")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.tension=-1"), 2, "strength.tension")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "strain.xx=1e-3"), 2, "not periodic")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// States of rest from a factor that is updated, and the contacts that break next, against factorizing anew.
+#include "equidem/statics/breaking/updated_equilibrium.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/random.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+
+#include "support/assemblies.hpp"
+#include "support/catch.hpp"
+#include "support/fields.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+/// A network with what acts on it.
+struct BreakingScene {
+  std::string name;
+  Assembly assembly;
+  ContactSprings springs;
+  DegreesOfFreedom unknowns;
+  std::vector<RightHandSide> cases;
+  std::vector<ContactStrength> strengths;
+  double friction = 0;
+
+  [[nodiscard]] UpdatedEquilibrium updated(bool skip = true) const {
+    return {assembly, springs, unknowns, cases, strengths, {.friction = friction, .skip = skip}};
+  }
+};
+
+std::vector<ContactStrength> random_strengths(std::size_t contacts, double size, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<ContactStrength> strengths(contacts);
+  for (ContactStrength& s : strengths) {  // Weibull, modulus 4
+    s.tension = size * std::pow(-std::log(1 - random.uniform()), 0.25);
+    s.shear = 2 * size * std::pow(-std::log(1 - random.uniform()), 0.25);
+  }
+  return strengths;
+}
+
+DegreesOfFreedom unknowns_of(const Assembly& assembly, const ContactSprings& springs,
+                             std::span<const Support> supports) {
+  const Effects effects = derive_effects(assembly, springs, Rotation::from_scene);
+  DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
+  hold_free_motions(assembly, ContactGraph(assembly), springs, unknowns);
+  return unknowns;
+}
+
+/// Pulled at its right side, held at its left side; `dead`: its own weight beside that.
+BreakingScene pulled(std::string name, const Assembly& assembly, const ContactSprings& springs, bool dead,
+                     std::uint64_t seed) {
+  const std::vector<Support> supports = {{"left", 0.0, 0.0, std::nullopt}};
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0.3};
+  const auto b = static_cast<std::size_t>(scene.unknowns.per_disc);
+  RightHandSide live;
+  live.force.resize(assembly.size() * b);
+  for (const std::int32_t disc : group(assembly, "right").discs) live.force[disc * b] = 1;
+  scene.cases.push_back(live);
+  if (dead) {
+    RightHandSide weight;
+    weight.force.resize(assembly.size() * b);
+    for (std::size_t d = 0; d < assembly.size(); ++d) weight.force[d * b + 1] = -0.001;
+    scene.cases.push_back(weight);
+  }
+  scene.strengths = random_strengths(assembly.contacts.size(), 10, seed);
+  return scene;
+}
+
+/// A periodic cell under a mean strain.
+BreakingScene strained(std::string name, const Assembly& assembly, const ContactSprings& springs,
+                       const Tensor2& gradient, std::uint64_t seed) {
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, {}), {}, {}, 0.5};
+  scene.cases.resize(1);
+  scene.cases[0].gradient = gradient;
+  scene.strengths = random_strengths(assembly.contacts.size(), 10, seed);
+  return scene;
+}
+
+/// Moved at its right side.
+BreakingScene drawn(std::string name, const Assembly& assembly, const ContactSprings& springs, std::uint64_t seed) {
+  const std::vector<Support> supports = {{"left", 0.0, 0.0, 0.0}, {"right", 0.01, 0.0, std::nullopt}};
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0};
+  scene.cases.resize(1);
+  scene.cases[0].prescribed = scene.unknowns.prescribed;
+  scene.strengths = random_strengths(assembly.contacts.size(), 1e6, seed);
+  return scene;
+}
+
+ContactSprings spread_springs(std::size_t contacts, double ratio, double decades, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<SpringConstants> springs(contacts);
+  for (SpringConstants& k : springs) {
+    k.kN = 1e9 * std::pow(10, random.uniform(-decades, 0));
+    k.kT = ratio * k.kN;
+  }
+  return ContactSprings(std::move(springs));
+}
+
+std::vector<BreakingScene> breaking_scenes() {
+  const Assembly hexagonal = hexagonal_lattice({.columns = 20, .rows = 20, .radius = 0.01});
+  const Assembly cell = hexagonal_lattice({.columns = 18, .rows = 16, .radius = 0.01, .periodic = true});
+  const Assembly delaunay = delaunay_assembly({.discs = 500});
+  const ContactSprings uniform(SpringConstants{1e9, 4e8});
+  return {pulled("hexagonal", hexagonal, uniform, false, 1),
+          pulled("hexagonal with its weight", hexagonal, uniform, true, 2),
+          pulled("delaunay with its weight", delaunay, uniform, true, 3),
+          pulled("hexagonal, kT = 0", hexagonal, ContactSprings(SpringConstants{1e9, 0}), false, 4),
+          pulled("springs over six decades", delaunay, spread_springs(delaunay.contacts.size(), 0.5, 6, 1), false, 5),
+          strained("cell, sheared", cell, uniform, {1e-4, 2e-3, 0, 1e-4}, 6),
+          strained("cell, drawn", cell, uniform, {1e-3, 0, 0, 0}, 7),
+          drawn("delaunay, right side moved", delaunay, uniform, 8)};
+}
+
+/// Forces of the network with some contacts gone, factorized anew.
+std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, const ContactSprings& springs) {
+  StageTimes times;
+  SolverOptions options;
+  options.method = SolverMethod::multifrontal;
+  options.precision = FactorPrecision::double_precision;
+  const StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
+                               Mechanisms::hold, times);
+  const std::vector<Solution> solutions = solver.solve(scene.cases, times);
+  std::vector<std::vector<ContactForce>> forces(scene.cases.size());
+  for (std::size_t p = 0; p < scene.cases.size(); ++p) {
+    for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+      forces[p].push_back(linear_spring_force(springs[c], solver.deformation(scene.cases[p], solutions[p].motion, c)));
+    }
+  }
+  return forces;
+}
+
+double largest_force(const std::vector<ContactForce>& forces) {
+  double largest = 0;
+  for (const ContactForce& f : forces) largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
+  return largest;
+}
+
+double force_difference(const std::vector<ContactForce>& a, const std::vector<ContactForce>& b) {
+  double largest = 0;
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    largest = std::max({largest, std::abs(a[c].normal - b[c].normal), std::abs(a[c].tangential - b[c].tangential)});
+  }
+  return largest / largest_force(b);
+}
+
+/// The least load factor by the definition, contact by contact; the next one must be apart for the contact to be
+/// compared.
+struct Least {
+  BreakingPoint at;
+  std::int64_t contact = -1;
+  double next = std::numeric_limits<double>::infinity();
+};
+
+Least first_to_break(const BreakingScene& scene, const std::vector<std::vector<ContactForce>>& forces,
+                     const std::vector<std::uint8_t>& gone) {
+  Least least;
+  for (std::size_t c = 0; c < forces[0].size(); ++c) {
+    if (gone[c] != 0) continue;
+    const ContactForce dead = forces.size() > 1 ? forces[1][c] : ContactForce{};
+    const BreakingPoint at = breaking_point({dead, forces[0][c]}, scene.strengths[c], scene.friction);
+    if (at.load_factor < least.at.load_factor) {
+      least.next = least.at.load_factor;
+      least.at = at;
+      least.contact = static_cast<std::int64_t>(c);
+    } else {
+      least.next = std::min(least.next, at.load_factor);
+    }
+  }
+  return least;
+}
+
+bool is_carried(const std::vector<HeldMechanism>& mechanisms) {
+  for (const HeldMechanism& m : mechanisms) {
+    for (const double r : m.reaction) {
+      if (std::abs(r) > 1e-6) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("contacts_break_in_the_order_that_factorizing_anew_finds") {
+  for (const BreakingScene& scene : breaking_scenes()) {
+    UpdatedEquilibrium lazy = scene.updated(true), eager = scene.updated(false);
+    std::vector<std::uint8_t> gone(scene.assembly.contacts.size(), 0);
+    std::int64_t held = 0;
+    int events = 0;
+    double first = 0;  // load factor
+    for (; events < 120; ++events) {
+      const CriticalContact next = lazy.critical(), same = eager.critical();
+      if (events == 0) first = next.at.load_factor;
+      CAPTURE(scene.name, events, next.at.load_factor, next.contact, same.contact, held);
+      if (next.contact < 0 || next.at.load_factor > 1e4 * first) break;
+      REQUIRE(next.contact == same.contact);
+      CHECK(next.at.load_factor == Approx(same.at.load_factor).epsilon(1e-11));
+      CHECK(next.at.in_shear == same.at.in_shear);
+      if (events % 12 == 0) {
+        const auto forces = anew(scene, lazy.springs());
+        const Least least = first_to_break(scene, forces, gone);
+        CAPTURE(least.contact, least.next);
+        CHECK(next.at.load_factor == Approx(least.at.load_factor).epsilon(1e-9));
+        if (least.next > least.at.load_factor * (1 + 1e-8)) CHECK(next.contact == least.contact);
+        for (std::size_t p = 0; p < scene.cases.size(); ++p) {
+          CHECK(force_difference(eager.forces(p), forces[p]) < 1e-10);
+          if (events % 60 == 0) CHECK(force_difference(lazy.forces(p), forces[p]) < 1e-10);
+        }
+        CHECK(eager.relative_residual() < 1e-12);
+      }
+      gone[next.contact] = 1;
+      const auto mechanisms = lazy.remove(next.contact), others = eager.remove(next.contact);
+      CHECK(mechanisms.size() == others.size());
+      held += static_cast<std::int64_t>(mechanisms.size());
+      if (!is_carried(mechanisms)) break;
+    }
+    const UpdateCounters& counters = lazy.counters();
+    CAPTURE(scene.name, events, held, counters.refinements, counters.mended, counters.largest_residual, counters.fronts,
+            eager.counters().fronts);
+    CHECK(events > 20);
+    CHECK(counters.updates >= events);
+    CHECK(counters.largest_residual < 1e-9);
+    CHECK(counters.fronts < eager.counters().fronts);
+    CHECK(counters.factorizations == 1 + counters.mended);
+  }
+}
+
+TEST_CASE("breaking_has_the_same_bits_on_every_number_of_threads") {
+  for (const BreakingScene& scene : breaking_scenes()) {
+    std::vector<std::vector<double>> found;
+    for (const int threads : {1, 2, 3}) {
+      const ThreadsFor set(threads);
+      UpdatedEquilibrium state = scene.updated();
+      std::vector<double> numbers;
+      for (int event = 0; event < 25; ++event) {
+        const CriticalContact next = state.critical();
+        numbers.push_back(next.at.load_factor);
+        numbers.push_back(static_cast<double>(next.contact));
+        static_cast<void>(state.remove(next.contact));
+      }
+      for (const ContactForce& f : state.forces(0)) numbers.push_back(f.normal), numbers.push_back(f.tangential);
+      found.push_back(std::move(numbers));
+    }
+    CAPTURE(scene.name);
+    CHECK(std::memcmp(found[0].data(), found[1].data(), found[0].size() * sizeof(double)) == 0);
+    CHECK(std::memcmp(found[0].data(), found[2].data(), found[0].size() * sizeof(double)) == 0);
+  }
+}
+
+TEST_CASE("contacts_that_go_and_come_back_leave_no_trace") {
+  for (const BreakingScene& scene : breaking_scenes()) {
+    UpdatedEquilibrium state = scene.updated();
+    std::vector<std::vector<ContactForce>> first;
+    for (std::size_t p = 0; p < scene.cases.size(); ++p) first.push_back(state.forces(p));
+    Random random(11);
+    std::vector<std::size_t> gone;
+    ContactSprings weaker = scene.springs;
+    for (int step = 0; step < 60; ++step) {
+      const std::size_t contact = random.below(scene.assembly.contacts.size());
+      if (std::find(gone.begin(), gone.end(), contact) != gone.end()) continue;
+      SpringConstants k = scene.springs[contact];
+      const double share = step % 3 == 0 ? random.uniform() : 0;
+      k = {share * k.kN, share * k.kT};
+      weaker.set(contact, k, scene.assembly.contacts.size());
+      CHECK(state.change(contact, k).empty());
+      gone.push_back(contact);
+    }
+    const auto forces = anew(scene, weaker);
+    CAPTURE(scene.name, state.counters().refinements, state.counters().mended);
+    for (std::size_t p = 0; p < scene.cases.size(); ++p) CHECK(force_difference(state.forces(p), forces[p]) < 1e-10);
+    for (const std::size_t contact : gone) CHECK(state.change(contact, scene.springs[contact]).empty());
+    for (std::size_t p = 0; p < scene.cases.size(); ++p) CHECK(force_difference(state.forces(p), first[p]) < 1e-10);
+    CHECK(state.relative_residual() < 1e-12);
+  }
+}
+
+TEST_CASE("what_comes_loose_is_held_and_named_and_a_load_on_it_is_not_carried") {
+  // A strip held at both ends is cut through twice: the piece between floats.
+  const Assembly strip = hexagonal_lattice({.columns = 24, .rows = 6, .radius = 0.01});
+  const ContactSprings springs(SpringConstants{1e9, 5e8});
+  const std::vector<Support> supports = {{"left", 0.0, 0.0, std::nullopt}, {"right", 0.0, 0.0, std::nullopt}};
+  BreakingScene scene{"strip", strip, springs, unknowns_of(strip, springs, supports), {}, {}, 0};
+  scene.strengths.resize(strip.contacts.size());
+  const bool loaded = GENERATE(false, true);
+  const std::array<double, 2> cuts = {strip.centres[8].x + 0.003, strip.centres[16].x + 0.003};
+  const auto piece_of = [&](std::size_t disc) {
+    return (strip.centres[disc].x > cuts[0] ? 1 : 0) + (strip.centres[disc].x > cuts[1] ? 1 : 0);
+  };
+  RightHandSide load;
+  load.force.resize(3 * strip.size());
+  for (std::size_t d = 0; d < strip.size(); ++d) {
+    if (piece_of(d) == (loaded ? 1 : 0)) load.force[3 * d + 1] = 1;
+  }
+  scene.cases.push_back(load);
+  UpdatedEquilibrium state = scene.updated();
+  std::vector<HeldMechanism> held;
+  for (std::size_t c = 0; c < strip.contacts.size(); ++c) {
+    if (piece_of(strip.contacts[c].i) == piece_of(strip.contacts[c].j)) continue;
+    for (HeldMechanism& m : state.remove(c)) held.push_back(std::move(m));
+  }
+  CAPTURE(loaded, held.size());
+  bool reacts = false;
+  for (const HeldMechanism& m : held) {
+    CAPTURE(m.component, m.stiffness, m.reaction[0]);
+    CHECK(piece_of(static_cast<std::size_t>(m.component) / 3) == 1);
+    CHECK(m.stiffness > 0);
+    reacts |= std::abs(m.reaction[0]) > 1e-6;
+  }
+  CHECK(held.size() == 3);
+  CHECK(reacts == loaded);
+  if (!loaded) CHECK(force_difference(state.forces(0), anew(scene, state.springs())[0]) < 1e-11);
+}
+
+TEST_CASE("a_factor_that_is_updated_needs_little_memory_beside_itself") {
+  const Assembly assembly = hexagonal_lattice({.columns = 60, .rows = 60, .radius = 0.01});
+  const BreakingScene scene = pulled("hexagonal", assembly, ContactSprings(SpringConstants{1e9, 4e8}), false, 1);
+  UpdatedEquilibrium state = scene.updated();
+  for (int event = 0; event < 10; ++event) static_cast<void>(state.remove(state.critical().contact));
+  CAPTURE(state.bytes(), state.factor_bytes());
+  CHECK(state.bytes() < 1.3 * state.factor_bytes());
+}
+
+TEST_CASE("updates_refuse_networks_that_are_not_positive_definite") {
+  const Assembly assembly = hexagonal_lattice({.columns = 6, .rows = 6, .radius = 0.01});
+  const BreakingScene scene = pulled("hexagonal", assembly, ContactSprings(SpringConstants{1e9, 4e8}), false, 1);
+  BreakingScene negative = scene, loose = scene, stiffer = scene;
+  negative.springs = ContactSprings(SpringConstants{1e9, -1e7});
+  CHECK(refusal_of([&] { static_cast<void>(negative.updated()); }).says("negative tangential spring"));
+  loose.unknowns = all_free(assembly, 3);
+  CHECK(refusal_of([&] { static_cast<void>(loose.updated()); }).says("mechanism"));
+  UpdatedEquilibrium state = scene.updated();
+  CHECK(refusal_of([&] { static_cast<void>(state.change(0, {2e9, 4e8})); }).says("Weaken springs"));
+}

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Breaking contacts one after another, with a factor that is updated, beside factorizing anew: bench_breakage --help.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+#include "equidem/core/random.hpp"
+#include "equidem/core/stopwatch.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
+#include "equidem/statics/breaking/updated_equilibrium.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+
+#include "bench.hpp"
+#include "text_table.hpp"
+
+namespace equidem::bench {
+namespace {
+
+struct Request {
+  std::vector<double> discs = {1e4, 1e5};
+  std::vector<std::string> kinds = assembly_kinds();
+  std::vector<int> threads = {1, 2};
+  int breaks = 5000;
+  int rounds = 3;
+  double weibull_modulus = 2;
+  double notch = 0.2;
+};
+
+/// Without contacts across a horizontal line of this share of the width, from the left side in half of the height.
+Assembly notched(Assembly assembly, double share) {
+  Vec2 low = assembly.centres[0], high = low;
+  for (const Vec2 x : assembly.centres) {
+    low = {std::min(low.x, x.x), std::min(low.y, x.y)};
+    high = {std::max(high.x, x.x), std::max(high.y, x.y)};
+  }
+  const double height = 0.5 * (low.y + high.y) + 1e-3 * assembly.mean_radius();
+  const double tip = low.x + share * (high.x - low.x);
+  std::vector<Contact> kept;
+  std::vector<double> facets;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Vec2 a = assembly.centres[assembly.contacts[c].i], b = assembly.centres[assembly.contacts[c].j];
+    if ((a.y - height) * (b.y - height) < 0 && 0.5 * (a.x + b.x) < tip) continue;
+    kept.push_back(assembly.contacts[c]);
+    if (!assembly.facet_lengths.empty()) facets.push_back(assembly.facet_lengths[c]);
+  }
+  assembly.contacts = std::move(kept);
+  assembly.facet_lengths = std::move(facets);
+  return assembly;
+}
+
+struct Scene {
+  Assembly assembly;
+  ContactSprings springs{SpringConstants{1e9, 4e8}};
+  DegreesOfFreedom unknowns;
+  std::vector<RightHandSide> cases;
+  std::vector<ContactStrength> strengths;
+};
+
+/// Pulled apart along y: the bottom is held, forces act on the top.
+Scene build(const Request& request, const std::string& kind, double discs) {
+  Scene scene{.assembly = notched(build_assembly(kind, std::llround(discs), 0.005), request.notch)};
+  const std::vector<Support> supports = {{"bottom", 0.0, 0.0, std::nullopt}};
+  scene.unknowns =
+      number_unknowns(scene.assembly, scene.springs, derive_effects(scene.springs, Rotation::from_scene), supports);
+  RightHandSide load;
+  load.force.resize(scene.assembly.size() * scene.unknowns.per_disc);
+  for (const std::int32_t disc : group(scene.assembly, "top").discs) load.force[disc * scene.unknowns.per_disc + 1] = 1;
+  scene.cases.push_back(std::move(load));
+  Random random(1);
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+    const auto draw = [&] { return std::pow(-std::log(1 - random.uniform()), 1 / request.weibull_modulus); };
+    const double tension = draw();
+    scene.strengths.push_back({tension, 2 * draw()});
+  }
+  return scene;
+}
+
+/// Processor time with one thread, wall time with more.
+class Clock {
+ public:
+  double lap() {
+    const double at = now(), taken = at - last_;
+    last_ = at;
+    return taken;
+  }
+
+ private:
+  [[nodiscard]] double now() const { return thread_count() == 1 ? processor_time() : watch_.seconds(); }
+
+  Stopwatch watch_;
+  double last_ = now();
+};
+
+struct Times {
+  double remove = 0, search = 0;
+  int breaks = 0;
+  UpdateCounters counters;
+  double bytes_over_factor = 0;
+};
+
+Times follow(const Scene& scene, int breaks, bool skip) {
+  UpdatedEquilibrium state(scene.assembly, scene.springs, scene.unknowns, scene.cases, scene.strengths,
+                           {.friction = 0.3, .skip = skip});
+  Times times;
+  Clock watch;
+  for (; times.breaks < breaks; ++times.breaks) {
+    watch.lap();
+    const CriticalContact next = state.critical();
+    const double search = watch.lap();
+    if (next.contact < 0) break;
+    bool carried = true;
+    for (const HeldMechanism& m : state.remove(next.contact)) carried = carried && m.driven[0] == 0;
+    const double remove = watch.lap();
+    times.search += search, times.remove += remove;
+    if (!carried) break;
+  }
+  times.counters = state.counters();
+  times.bytes_over_factor = state.bytes() / state.factor_bytes();
+  return times;
+}
+
+/// Assemble, factorize in the order at hand, solve once, evaluate all contact forces: what a break costs without
+/// updates.
+double factorize_anew(const Scene& scene, const ContactGraph& graph, std::shared_ptr<const SymbolicFactor> symbolic) {
+  Clock watch;
+  const StiffnessMatrix matrix = assemble_stiffness(scene.assembly, graph, scene.springs, scene.unknowns);
+  const auto factor = multifrontal_cholesky(std::move(symbolic), {matrix, scene.assembly, graph});
+  std::vector<double> x = scene.cases[0].force;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (scene.unknowns.held[k] != 0) x[k] = 0;
+  }
+  factor->solve(x, 1);
+  PreciseMotion motion(x.size());
+  motion.add(x);
+  std::vector<ContactForce> forces(scene.assembly.contacts.size());
+  contact_forces_of(scene.assembly, scene.springs, scene.unknowns, motion, forces);
+  return watch.lap();
+}
+
+void compare(const Request& request, const std::string& kind, double discs, int threads, TextTable& table) {
+  set_thread_count(threads);
+  const Scene scene = build(request, kind, discs);
+  const ContactGraph graph(scene.assembly);
+  const auto symbolic =
+      std::make_shared<const SymbolicFactor>(analyze(dissect(scene.assembly, graph), graph, scene.unknowns.per_disc));
+  static_cast<void>(factorize_anew(scene, graph, symbolic));  // the first use of memory is slow
+  Seconds anew, lazy;
+  Times times, all;
+  for (int round = 0; round < request.rounds; ++round) {
+    anew.push_back(factorize_anew(scene, graph, symbolic));
+    times = follow(scene, request.breaks, true);
+    lazy.push_back((times.remove + times.search) / times.breaks);
+  }
+  const int some = std::min(request.breaks, 200);
+  all = follow(scene, some, false);
+  const double each = 1e3 / times.breaks;
+  const auto fronts = static_cast<double>(symbolic->fronts());
+  table.add(
+      "{} & {} & {} & {} & {} & {:.3g} & {:.3g} & {:.3g} & {:.3g} & {:.1f} % & {} & {} & {} & {} & {:.1e} & {:.2f}",
+      kind, scene.assembly.size(), threads, times.breaks, (range_of(lazy) * 1e3).text("{:.3g}"), each * times.remove,
+      each * times.search, 1e3 * (all.remove + all.search) / all.breaks, 1e3 * range_of(anew).median,
+      100 * static_cast<double>(times.counters.fronts) / fronts / times.breaks, ratio_of(anew, lazy).text("{:.0f}"),
+      times.counters.refinements, times.counters.mended, times.counters.held, times.counters.largest_residual,
+      times.bytes_over_factor);
+}
+
+}  // namespace
+}  // namespace equidem::bench
+
+int main(int argc, char** argv) {
+  using namespace equidem::bench;
+  Request request;
+  return run_benchmark(
+      "bench_breakage", "Contacts that break one after another, beside factorizing anew", argc, argv,
+      [&](CLI::App& app) {
+        app.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--kinds", request.kinds, "assemblies")->delimiter(',');
+        app.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
+        app.add_option("--breaks", request.breaks, "of each assembly")->check(CLI::PositiveNumber);
+        app.add_option("--rounds", request.rounds, "of both, one after the other")->check(CLI::PositiveNumber);
+        app.add_option("--weibull-modulus", request.weibull_modulus, "of the strengths")->check(CLI::PositiveNumber);
+        app.add_option("--notch", request.notch, "length over the width")->check(CLI::Range(0.0, 0.9));
+      },
+      [&](Report& report) {
+        report.begin("Breaking contacts");
+        equidem::TextTable table(
+            "assembly & discs & threads & breaks & a break, ms & change & search & without skipping & anew & fronts & "
+            "anew over a break & refined & mended & held & residual & memory");
+        for (const std::string& kind : request.kinds)
+          for (const double count : request.discs)
+            for (const int each : request.threads) compare(request, kind, count, each, table);
+        report.add(
+            "\nA notched sample (a line of contacts cut from the left side in half of the height) is held at its "
+            "bottom "
+            "and pulled at its top; kT/kN = 0.4, 3 unknowns per disc, Weibull strengths, friction 0.3. A break: take "
+            "the "
+            "contact out of the factor, follow the motions (change), find the next contact (search); refinements are "
+            "included. Without skipping: every subtree is swept back through, the first breaks only. Anew: assemble, "
+            "factorize in the order at hand, solve once, evaluate the forces; both take turns in every round. Fronts: "
+            "swept back through, a break. Refined: times that the residual of the contact law was evaluated; mended: "
+            "factorized anew for round-off; held: mechanisms that breaks left; residual: largest found, relative; "
+            "memory: "
+            "of everything kept, over the factor. Processor time with one thread, wall time with more; medians "
+            "(smallest "
+            ".. largest).\n\n" +
+            table.markdown());
+      });
+}
