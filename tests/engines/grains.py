@@ -95,24 +95,42 @@ def lammps_elastic(program, folder):
 
 
 def lammps_friction(program, folder):
-    """Both settle with friction: LAMMPS turns discs by forces at their radii, equidem by forces at the contact point,
-    so that moments differ by the overlap over the diameter, here 1e-3; which contacts slide decides the rest."""
+    """Both settle with friction: the levers of LAMMPS are the radii, those of equidem add up to the distance of the
+    centres, so that moments differ by overlap over diameter, here 1e-3; which contacts slide decides the rest."""
     box, places, _ = lammps_box(engines.lammps(), program, folder, EQUAL, duration=1.5)
     return settled_difference(places, box.end[:, :2], EQUAL)
 
 
+class Sliding:
+    """A disc at rest on the floor, pressed in by its weight, gets a speed along it and slides until it rolls."""
+
+    def __init__(self, program, folder):
+        pressed = 2500 * np.pi * 0.0075**2 * 9.81 / STIFFNESS
+        (folder / "discs.csv").write_text(f"x,y,radius,vx,vy,spin\n0.01,{0.0075 - pressed!r},0.0075,0.2,0,0\n")
+        case = BOX.format(restitution=1.0, friction=0.3, further="", duration=0.03).replace("5e-5", "2e-6")
+        self.model = Model(program, folder, case)
+        table = self.model.equidem("run", "run") / "grains.csv"
+        self.end = engines.columns(table, "vx_m_per_s", "spin_rad_per_s")[0]
+
+    def difference(self, speed, spin):
+        """Relative to the first speed."""
+        return float(max(abs(speed - self.end[0]), 0.0075 * abs(spin - self.end[1])) / 0.2)
+
+
 def lammps_sliding(program, folder):
-    """A disc is set on the floor with a speed along it and slides until it rolls: speed and spin, relative to the first
-    speed. LAMMPS takes the slip at the end of a step, equidem in its middle: the difference is of first order."""
-    step = "1e-6"
-    (folder / "discs.csv").write_text("x,y,radius,vx,vy,spin\n0.01,0.00749,0.0075,0.2,0,0\n")
-    model = Model(program, folder, BOX.format(restitution=0.4, friction=0.3, further="", duration=0.03)
-                  .replace("5e-5", step))
-    end = engines.columns(model.equidem("run", "run") / "grains.csv", "vx_m_per_s", "spin_rad_per_s")[0]
-    out = model.export("lammps")
+    disc = Sliding(program, folder)
+    out = disc.model.export("lammps")
     engines.run_lammps(engines.lammps(), out)
-    dump = engines.dump(out / "end.dump")
-    return max(abs(dump["vx"][0] - end[0]), 0.0075 * abs(dump["omegaz"][0] - end[1])) / 0.2
+    end = engines.dump(out / "end.dump")
+    return disc.difference(end["vx"][0], end["omegaz"][0])
+
+
+def yade_sliding(program, folder):
+    disc = Sliding(program, folder)
+    out = disc.model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    end = np.loadtxt(out / "end.txt")
+    return disc.difference(end[5], end[7])
 
 
 def overlaps(places, radii):

@@ -32,8 +32,9 @@ and the same checks are tests with the label `engines`; they are skipped where a
   certain to about 1e-5 at strains of 1e-5, and worse below.
 - Periods: the factor 1 + (omega h)²/24 of leapfrog with the step h is taken out.
 - Grains: without friction LAMMPS and equidem (`integrator = "velocity_verlet"`) make the same steps. With friction
-  LAMMPS and YADE turn discs by forces at their radii, equidem by forces at the contact point, whose distances add
-  up to that of the centres: moments differ by the overlap over the diameter, and settled boxes by what slides
-  because of it.
+  the levers of contacts differ by parts of the overlap: LAMMPS takes the radii, YADE the middle of the overlap,
+  equidem parts of the distance in the ratio of the radii, and the radius at a wall. Moments differ by overlap over
+  diameter, here 1e-3, and settled boxes by which contacts slide because of it; and the slip of a step is taken at
+  its end, in equidem in its middle.
 - PFC is not free: its commands are not run here.
 '''

@@ -14,6 +14,7 @@ import tempfile
 import bonds
 import engines
 import grains
+import vibration
 
 #: group, engine, what is compared, limit, function of the program and a folder that returns the relative difference
 CHECKS = [
@@ -25,7 +26,7 @@ CHECKS = [
      bonds.lammps_shrinking),
     ("lammps_bonds", "LAMMPS", "at rest, with prescribed displacements and rotations", 1e-4, bonds.lammps_shear),
     ("lammps_bonds", "LAMMPS", "at rest, with restrained rotations", 1e-4, bonds.lammps_restrained),
-    ("lammps_bonds", "LAMMPS", "period of the lowest mode", 1e-4, bonds.lammps_period),
+    ("lammps_bonds", "LAMMPS", "period of the lowest mode", 1e-4, vibration.lammps_period),
     ("lammps_bonds", "LAMMPS", "a block that falls on a wall of springs, with gravity and local damping", 1e-3,
      bonds.lammps_wall),
     ("lammps_bonds", "LAMMPS", "a pulse in a periodic cell", 1e-3, bonds.lammps_periodic),
@@ -36,7 +37,7 @@ CHECKS = [
     ("yade_bonds", "YADE", "at rest, with prescribed displacements and rotations, and moments", 1e-6, bonds.yade_shear),
     ("yade_bonds", "YADE", "at rest, with restrained rotations", 1e-6, bonds.yade_restrained),
     ("yade_bonds", "YADE", "at rest, discs of two radii, contact points off the middle", 1e-6, bonds.yade_unequal),
-    ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, bonds.yade_period),
+    ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, vibration.yade_period),
     ("lammps_grains", "LAMMPS", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.lammps_motion),
     ("lammps_grains", "LAMMPS", "overlaps and normal forces when they have settled", 1e-6, grains.lammps_settled),
     ("lammps_grains", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls", 1e-4,
@@ -49,6 +50,7 @@ CHECKS = [
      grains.lammps_elastic),
     ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,
      grains.yade_settled),
+    ("yade_grains", "YADE", "speed and spin of a disc that slides on a floor until it rolls", 1e-3, grains.yade_sliding),
 ]
 
 

@@ -144,7 +144,7 @@ class Folders(ExportTest):
         self.assertEqual(parse_json(done.stdout)["bonds"], 1210)
 
     def test_formats_and_options_that_are_missing_or_unknown(self):
-        self.check_error(equidem("export", TENSION, "--to", "lamps", "--out", self.folder / "x"), 2, "'lamps'", 'mean "lammps"')
+        self.check_error(self.export(TENSION, "lamps"), 2, "'lamps'", 'mean "lammps"')
         self.check_error(equidem("export", TENSION, "--to", "yade"), 2, "--out")
         self.check_error(equidem("export", TENSION, "--out", self.folder / "x"), 2, "--to")
         self.check_error(self.export(CASES / "pack_jammed.toml", "yade"), 2, "assembly")
@@ -153,21 +153,20 @@ class Folders(ExportTest):
 
 class Models(ExportTest):
     def test_masses_springs_and_the_step_are_those_of_equidem(self):
-        case = self.bonds("[run]\nduration = 1e-3\n", load='schedule = "x"\n').read_text().replace('schedule = "x"\n', "")
-        (self.folder / "bonds.toml").write_text(case)
-        run = parse_json(self.check_done(equidem("run", self.folder / "bonds.toml", "--dry-run", "--json", "-")).stdout)
+        case = self.bonds("[run]\nduration = 1e-3\n")
+        run = parse_json(self.check_done(equidem("run", case, "--dry-run", "--json", "-")).stdout)
         mass = 2500 * math.pi * 0.005**2
-        script = (self.exported(self.folder / "bonds.toml", "yade", out="yade") / "run_equidem.py").read_text()
+        script = (self.exported(case, "yade", out="yade") / "run_equidem.py").read_text()
         self.assertEqual(float(re.search(r"O.dt = (\S+)", script).group(1)), run["time_step"])
         row = re.search(r'BODIES = """\n(.*?)\n', script).group(1).split()
         self.assertAlmostEqual(float(row[3]), mass, delta=1e-14 * mass)
         self.assertAlmostEqual(float(row[4]), mass * 0.005**2 / 2, delta=1e-18)
         self.assertEqual(row[12:], ["0", "0", "-"])
-        data = (self.exported(self.folder / "bonds.toml", "lammps", out="lammps") / "assembly.data").read_text()
+        data = (self.exported(case, "lammps", out="lammps") / "assembly.data").read_text()
         atom = data.split("Atoms # bpm/sphere\n\n")[1].split()
         volume = 4 / 3 * math.pi * (float(atom[3]) / 2)**3
         self.assertAlmostEqual(float(atom[4]) * volume, mass, delta=1e-14 * mass)
-        commands = (self.exported(self.folder / "bonds.toml", "pfc", out="pfc") / "equidem.dat").read_text()
+        commands = (self.exported(case, "pfc", out="pfc") / "equidem.dat").read_text()
         self.assertIn("model linearcbond property kn 1000000000 ks 500000000 lin_mode 1", commands)
         density = float(re.search(r"density (\S+)", commands).group(1))
         self.assertAlmostEqual(density, 2500, delta=1e-10)
@@ -186,7 +185,8 @@ class Models(ExportTest):
         self.assertNotIn("assumed", self.check_done(self.export(self.bonds(), "yade", out="given")).stdout)
 
     def test_lammps_dashpots_are_those_of_the_reduced_mass(self):
-        out = self.exported(self.grains(restitution=0.5, collisions="contact_end = \"zero_overlap\"\nfriction = 0.0"), "lammps")
+        end = 'contact_end = "zero_overlap"'
+        out = self.exported(self.grains(restitution=0.5, collisions=end), "lammps")
         script = (out / "in.equidem").read_text()
         coefficients = re.search(r"pair_style gran/hooke/history (.*)", script).group(1).split()
         loss = -math.log(0.5)
@@ -194,7 +194,7 @@ class Models(ExportTest):
         reduced = 2500 * math.pi * 0.01**2 / 2
         self.assertAlmostEqual(float(coefficients[2]), 2 * zeta * math.sqrt(1e6 / reduced), delta=1e-9)
         self.assertNotIn("limit_damping", script)
-        graded = self.grains(restitution=0.5, radius=0.008, collisions="contact_end = \"zero_overlap\"")
+        graded = self.grains(restitution=0.5, radius=0.008, collisions=end)
         script = (self.exported(graded, "lammps", "--overwrite") / "in.equidem").read_text()
         self.assertIn("pair_style granular", script)
         self.assertAlmostEqual(float(re.search(r"hooke \S+ (\S+) tangential", script).group(1)), 0.5, delta=1e-14)
@@ -251,7 +251,8 @@ force = [0.0, -1.0]
 
     def test_dashpots_and_friction(self):
         self.check_refused(self.grains(restitution=0.5), ["yade"], "restitution below 1", "lammps")
-        self.check_refused(self.grains(collisions="friction = 0.3\ntangential_ratio = 0.0"), ENGINES, "friction without")
+        rigid = "friction = 0.3\ntangential_ratio = 0.0"
+        self.check_refused(self.grains(collisions=rigid), ENGINES, "friction without")
         self.check_refused(self.grains(restitution=0.5, collisions="friction = 0.3\ntangential_damping = 0.2\n"
                                        "friction_cap = \"spring_alone\""), ENGINES, "does not carry")
 

@@ -55,7 +55,7 @@ Run declare_export(CLI::App& command) {
       "Examples:\n"
       "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"
       "  equidem export data/cases/delaunay_tension.toml --to yade --out tension    then yade run_equidem.py\n"
-      "  equidem export case.toml --to pfc --out tension");
+      "  equidem export data/cases/grains_cradle.toml --set collisions.law=linear_dashpot --to yade --out cradle");
   return [options] { return export_case(*options); };
 }
 

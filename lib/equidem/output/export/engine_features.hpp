@@ -130,7 +130,7 @@ struct EnumNames<EngineFeature> {
        "Take discs, or 'equidem run'"},
       {grain_bonds, "bonds of dashpots", false, false, false, "it has no such bonds", "Take [[bond]] out"},
       {other_laws, "laws of collision other than linear_dashpot", false, false, false,
-       "linear spring and dashpot is what it computes too", "Set collisions.law = \"linear_dashpot\""},
+       "it computes a linear spring and dashpot", "Set collisions.law = \"linear_dashpot\""},
       {stiffness_by_mass, "stiffness that follows from the masses of unequal bodies", false, false, false,
        "its stiffness is one number", "Give collisions.stiffness"},
       {normal_dashpots, "restitution below 1", true, false, true, "its law of this export has no dashpot",
@@ -153,7 +153,7 @@ struct EnumNames<EngineFeature> {
 /// The features of a model with an instance of each, such as "contact 3".
 using FoundFeatures = std::map<EngineFeature, std::string>;
 
-/// \throws Error (bad_input) on the first feature that the engine does not carry: its name, an instance, why, what to do
+/// \throws Error (bad_input) on the first feature that the engine does not carry: name, instance, why, what to do
 void require_carried(const FoundFeatures& found, Engine engine);
 
 /// The table in Markdown: a row for each feature, a column for each engine.

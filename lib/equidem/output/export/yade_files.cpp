@@ -63,7 +63,7 @@ O.engines = [
     ForceResetter(),
     InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
     InteractionLoop(
-        [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+        [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False), Ig2_Wall_Sphere_ScGeom()],
         [
             Ip2_FrictMat_FrictMat_FrictPhys(
                 kn=MatchMaker(matches=[(a, b, kn) for a, b, kn, ks, angle in PAIRS]),
