@@ -171,9 +171,13 @@ std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) 
   check(KSPGetConvergedReason(solver_, &reason));
   PetscInt iterations = 0;
   check(KSPGetIterationNumber(solver_, &iterations));
+  if (reason == KSP_DIVERGED_PC_FAILED) {
+    computation_failed("the factor or preconditioner of PETSc cannot be made",
+                       "the matrix is singular: the assembly has a mechanism", "'equidem solve' names it");
+  }
   if (reason < 0) {
     computation_failed(
-        fmt::format("the solver of PETSc did not converge ({} after {})", KSPConvergedReasons[reason],
+        fmt::format("the solver of PETSc did not converge: {} after {}", KSPConvergedReasons[reason],
                     counted(iterations, "iteration")),
         n.any_negative() ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
                          : "the assembly may have a mechanism, or be close to one",

@@ -285,6 +285,14 @@ def bad_input_ends_all_ranks_with_one_sentence(folder):
     refused(parallel(2, "solve", path), "counter-rotate")
 
 
+def a_load_that_drives_a_mechanism_is_refused(folder):
+    path = folder / "rows.toml"
+    path.write_text(BLOCK.format(kind="square", kT=0.0, rotation="free"), encoding="utf-8")
+    for method in ("auto", "multifrontal"):
+        result = parallel(2, "solve", path, "--set", f"solver.method={method}", "--set", "support.1=none")
+        assert result.returncode == 1 and "mechanism" in result.stderr, (method, result.returncode, result.stderr)
+
+
 def options_that_petsc_does_not_use_are_named(folder):
     result = checked(parallel(2, "solve", CASES / "abe1996_fig6.toml", "-equidem_pc_typo", "gamg", "--json", folder / "a.json",
                               "-equidem_ksp_rtol", "1e-6"), "solve")
