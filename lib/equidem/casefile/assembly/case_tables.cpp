@@ -228,7 +228,7 @@ void bind_breakage(File<CaseTables>& file) {
              key("to", &Notch::to, required, unit("m"), "[x, y] of the other end")});
   using Q = QuasistaticCase;
   file.table("quasistatic", &CaseTables::quasistatic, completed,
-             "the path of the verb quasistatic: loads and motions of the case, or its [strain], times lambda")
+             "the path of the verb quasistatic: loads, motions or [strain] times lambda")
       .keys(
           {key("control", &Q::control,
                "what does not fall while contacts break: path: nothing, lambda may fall from event to event "
