@@ -56,9 +56,9 @@ Assembly notched(Assembly assembly, double share) {
 struct Scene {
   Assembly assembly;
   ContactSprings springs{SpringConstants{1e9, 4e8}};
-  DegreesOfFreedom unknowns;
-  std::vector<RightHandSide> cases;
-  std::vector<ContactStrength> strengths;
+  DegreesOfFreedom unknowns{};
+  std::vector<RightHandSide> cases{};
+  std::vector<ContactStrength> strengths{};
 };
 
 /// Pulled apart along y: the bottom is held, forces act on the top.

@@ -77,7 +77,7 @@ struct Sequence {
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
   void begin() {
     const Stopwatch watch;
-    system = make_refactorized_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
+    system = make_breakable_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
     if (!cut.empty()) system->remove(cut);
     run = std::make_unique<BreakageRun>(scene(), *system);
     problem.times.add("first state", watch.seconds());
