@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Contacts that break, from arrays."""
+import numpy as np
+import pytest
+
+import equidem as eq
+
+
+def bundle():
+    """Three pairs of discs, one above the other."""
+    centres = [(3.0 * k, 2.0 * y) for k in range(3) for y in range(2)]
+    return eq.Assembly(centres, 1.0, [(2 * k, 2 * k + 1) for k in range(3)])
+
+
+def test_strengths_of_arrays_decide_the_order():
+    fibres = bundle().with_strengths([(4.0, 1e9), (1.0, 1e9), (1.2, 1e9)])
+    result = eq.Case(assembly=fibres, springs=(1000.0, 300.0),
+                     supports=[{"group": [0, 2, 4], "ux": 0.0, "uy": 0.0, "rotation": 0.0},
+                               {"group": [1, 3, 5], "ux": 0.0, "uy": 1e-3, "rotation": 0.0}]).quasistatic()
+    events = result.events
+    assert [event["contact"] for event in events] == [1, 2, 0]
+    assert [event["mode"] for event in events] == ["tension"] * 3
+    np.testing.assert_allclose([event["lambda"] for event in events], [1.0, 1.2, 4.0], rtol=1e-12)
+    np.testing.assert_allclose([event["load"] for event in events], [3.0, 2.4, 4.0], rtol=1e-12)
+
+
+def test_wrong_strengths_are_refused():
+    for wrong in ([(1.0, 1.0)], np.ones((3, 3)), [(1.0, -1.0)] * 3):
+        with pytest.raises(eq.BadInput):
+            bundle().with_strengths(wrong)
