@@ -50,7 +50,7 @@ class BreakableSystem {
   BreakableSystem(const BreakableSystem&) = delete;
   BreakableSystem& operator=(const BreakableSystem&) = delete;
 
-  /// Removes contacts, several at once where a computation is resumed, and solves anew.
+  /// Removes contacts, several where a computation is resumed, and solves anew.
   /// \return discs that leave the network with them, ascending
   /// \throws Error (computation_failed) where a motion resists no more than round-off, and is no mechanism
   virtual std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) = 0;

@@ -37,25 +37,14 @@ class UpdatedSystem final : public BreakableSystem {
     first_force_ = largest_force();
   }
 
+  /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
   std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
-    bool loose = false;
-    for (const std::size_t contact : contacts) {
-      broken_[contact] = 1;
-      loose = loose || parts(contact);
-      for (const HeldMechanism& mechanism : equilibrium_.remove(contact)) {
-        loose = true;
-        for (std::size_t p = 0; p < states_.size(); ++p) judge(mechanism, p);
-      }
-    }
     std::vector<std::int32_t> gone;
-    if (loose) gone = leave();
-    take();
-    // Round-off is that of the forces of the last refinement, of which little may be left.
-    constexpr double little = 1e-2;
-    if (largest_force() < little * first_force_) {
-      static_cast<void>(equilibrium_.refine());
-      take();
+    for (const std::size_t contact : contacts) {
+      const std::vector<std::int32_t> loosened = remove(contact);
+      gone.insert(gone.end(), loosened.begin(), loosened.end());
     }
+    std::ranges::sort(gone);
     return gone;
   }
 
@@ -79,6 +68,25 @@ class UpdatedSystem final : public BreakableSystem {
     std::vector<double> motion, reactions;
     bool carried = true;
   };
+
+  std::vector<std::int32_t> remove(std::size_t contact) {
+    broken_[contact] = 1;
+    bool loose = parts(contact);
+    for (const HeldMechanism& mechanism : equilibrium_.remove(contact)) {
+      loose = true;
+      for (std::size_t p = 0; p < states_.size(); ++p) judge(mechanism, p);
+    }
+    std::vector<std::int32_t> gone;
+    if (loose) gone = leave();
+    take();
+    // Round-off is that of the forces of the last refinement, of which little may be left.
+    constexpr double little = 1e-2;
+    if (largest_force() < little * first_force_) {
+      static_cast<void>(equilibrium_.refine());
+      take();
+    }
+    return gone;
+  }
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
   void judge(const HeldMechanism& mechanism, std::size_t p) {
