@@ -41,7 +41,7 @@ class Halo {
   /// The values of ghosts are added to those of their owners, and become 0.
   void add(std::span<double> values, int per_disc) const;
 
-  /// What this rank sends in an exchange of one number for each disc.
+  /// Bytes that this rank sends in an exchange of one number for each disc.
   [[nodiscard]] double bytes() const { return bytes_; }
   [[nodiscard]] int neighbours() const { return neighbours_; }
 

@@ -16,7 +16,7 @@
 namespace equidem {
 namespace {
 
-/// What rank 0 has of the whole assembly until it is given out.
+/// The whole assembly on rank 0, until it is given out.
 struct WholeProblem {
   std::optional<Problem> problem;
   Effects effects;

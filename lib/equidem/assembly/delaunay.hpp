@@ -49,7 +49,7 @@ std::int64_t discs_that_fill(Vec2 box, const RadiusDistribution& radii);
 /// in their cell. Same options, same assembly, on every machine. \throws Error (bad_input) on options out of range
 Assembly delaunay_assembly(const DelaunayOptions& options);
 
-/// What one process has of an assembly that delaunay_assembly makes: all discs, and the network of one strip.
+/// The part of one process in an assembly that delaunay_assembly makes: all discs, and the network of one strip.
 struct DelaunayStrip {
   Assembly assembly;  ///< contacts that start in the strip; cells of its discs, of others parts; all sides
   std::vector<std::int32_t> strips;  ///< per disc: its strip

@@ -180,7 +180,7 @@ void BreakageRun::break_contact(const NextBreak& next) {
   response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
   event.energy_after = response_.energy_at(lambda_);
   const double moved = NetworkResponse::at(response_.loads_by_motions, lambda_);
-  // Of loads that are not carried any more, on parts that move away, the work has no end: none is counted.
+  // Loads on parts that move away do work without end: none is counted.
   const bool carried = system_.carries(0) && (!scene_.path.dead || system_.carries(1));
   const double work = carried ? moved - moved_before : 0;
   work_ += work;

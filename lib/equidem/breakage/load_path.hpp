@@ -18,7 +18,7 @@
 
 namespace equidem {
 
-/// What is kept from falling while contacts break.
+/// The quantity that is kept from falling while contacts break.
 enum class LoadControl {
   path,    ///< nothing: lambda may fall from one event to the next (snap-back)
   load,    ///< the load

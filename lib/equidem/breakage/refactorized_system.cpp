@@ -17,7 +17,7 @@ namespace {
 
 constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
 
-/// What is left of a network, with its numbers in the whole.
+/// The rest of a network, with its numbers in the whole.
 struct Rest {
   Assembly assembly;
   ContactSprings springs{SpringConstants{}};

@@ -139,7 +139,7 @@ class UpdatedSystem final : public BreakableSystem {
     return false;
   }
 
-  /// Of the first right-hand side, N/m.
+  /// The largest force of a contact under the first right-hand side, N/m.
   [[nodiscard]] double largest_force() const {
     double largest = 0;
     for (const ContactForce& f : states_[0].forces)

@@ -23,7 +23,7 @@ struct ExportedFile {
   std::function<std::string()> text;
 };
 
-/// What a format makes of a case. It owns what its functions refer to.
+/// The files that a format makes of a case. It owns what its functions refer to.
 struct Exported {
   std::vector<ExportedFile> files;
   Results results;  ///< lines of the report

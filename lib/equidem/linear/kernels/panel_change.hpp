@@ -33,7 +33,7 @@ struct PanelChangeResult {
   double share = 1;                   ///< product of new over old squares of the other pivots
 };
 
-/// What is found is added to `result`.
+/// Pivots that vanish are appended to those of `result`, and its share is multiplied.
 void change_panel(const PanelChange& change, PanelChangeResult& result);
 
 }  // namespace equidem

@@ -52,9 +52,9 @@ class UpdatedCholesky final : public BreakableFactor {
   void backward(std::size_t t, const Columns& y) const { factor_.backward(t, y); }
   /// The front that eliminates a disc, and those above it.
   [[nodiscard]] std::vector<std::int32_t> path_of(std::int32_t i, std::int32_t j) const;
-  /// That is added to a pivot that vanishes, Pa.
+  /// The stiffness that is added to a pivot that vanishes, Pa.
   [[nodiscard]] double stiffness_of(std::int64_t component) const;
-  /// The same of all components, in the order of elimination.
+  /// Likewise for all components, in the order of elimination.
   [[nodiscard]] std::span<const double> stiffness_in_order() const { return stiffness_; }
 
   /// Share of its stiffness below which a pivot counts as zero: round-off of thousands of changes leaves less, a

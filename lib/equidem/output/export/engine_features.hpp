@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What discrete-element codes carry of a model, as one table.
+/// The parts of a model that each discrete-element code carries, as one table.
 #pragma once
 
 #include <map>

@@ -66,7 +66,7 @@ struct Utilization {
     load_factor = std::min(load_factor, other.load_factor);
     dead = std::max(dead, other.dead);
   }
-  /// What it can be at worst where utilizations have changed by at most `by_dead` + lambda `by_live`: a utilization is
+  /// The worst that it can be where utilizations have changed by at most `by_dead` + lambda `by_live`: a utilization is
   /// convex in lambda, and so at most on the chord from lambda = 0 to the least load factor.
   [[nodiscard]] Utilization after(double by_dead, double by_live) const {
     const double slope = std::max(1 - dead, 0.0) / load_factor + by_live, left = 1 - dead - by_dead;

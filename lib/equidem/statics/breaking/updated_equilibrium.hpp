@@ -87,14 +87,14 @@ class UpdatedEquilibrium {
   /// does not serve.
   /// \return the largest relative residual before
   double refine();
-  /// Of the motions as they are, the largest of all right-hand sides.
+  /// Residual of the motions as they are, the largest of all right-hand sides.
   [[nodiscard]] double relative_residual();
   /// Measured when motions were last refined, estimated since from how far they have moved; the largest.
   [[nodiscard]] double estimated_residual() const;
   [[nodiscard]] const ContactSprings& springs() const;
   [[nodiscard]] const UpdateCounters& counters() const;
   [[nodiscard]] double factor_bytes() const;
-  /// Of everything that the object keeps, the factor included.
+  /// Bytes of everything that the object keeps, the factor included.
   [[nodiscard]] double bytes() const;
 
  private:

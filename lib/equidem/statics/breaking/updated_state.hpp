@@ -51,15 +51,15 @@ class UpdatedState {
   /// Since the motions were last refined, as of the last visit, m.
   [[nodiscard]] double moved_by(std::int64_t component, std::size_t of_case) const;
 
-  /// The same of all components, where everything is up to date.
+  /// Likewise for all components, where everything is up to date.
   [[nodiscard]] std::vector<double> moved(std::size_t of_case) const;
 
   /// A factor of the network as it is; components are held where it is singular. \return whether one was found
   bool factorize();
   /// Everything must be up to date: motions become those since the last refinement and those before it.
   void fold_motions();
-  /// What the contact law leaves of the loads on the motions of the last refinement, N/m. \return over `scales`, the
-  /// largest
+  /// The part of the loads that the contact law does not balance at the motions of the last refinement, N/m.
+  /// \return the largest over `scales`
   double residual(LargeVector<double>& left) const;
   /// Add the motions that balance what is left, which is lost.
   void correct_motions(LargeVector<double>& left);
