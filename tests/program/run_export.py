@@ -264,6 +264,12 @@ force = [0.0, -1.0]
         self.check_refused(self.bonds(schedule, load='schedule = "slow"'), ENGINES, "schedules", "load on 'top'")
         self.check_refused(self.bonds(load="moment = 1.0"), ["lammps"], "moments as loads", "yade")
 
+    def test_bonds_that_break(self):
+        for table in ("[strength]\ntension = 1.0\nshear = 2.0\n", '[[dead_load]]\ngroup = "top"\nforce = [0.0, 1.0]\n',
+                      "[[notch]]\nfrom = [0.0, 0.0]\nto = [0.01, 0.0]\n"):
+            with self.subTest(table):
+                self.check_refused(self.bonds(table), ENGINES, "strengths, notches and dead loads")
+
     def test_damping(self):
         run = "[run]\nduration = 1e-3\ndamping = {{ {} }}\n"
         self.check_refused(self.bonds(run.format("mass = 10.0")), ENGINES, "damping proportional to mass", "local")

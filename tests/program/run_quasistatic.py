@@ -76,6 +76,11 @@ class Quasistatic(ProgramTest):
         self.assertNotEqual(text, "")
         self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
 
+    def test_other_verbs_tell_that_they_take_no_notch(self):
+        done = equidem("solve", NOTCH)
+        self.check_done(done)
+        self.assertIn("[[notch]]: quasistatic alone takes them", done.stdout)
+
     def test_frames_pictures_and_a_page_are_written(self):
         out = self.folder / "out"
         done = equidem("quasistatic", NOTCH, "--out", out, "--set", "quasistatic.frame_every=10")

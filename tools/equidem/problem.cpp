@@ -296,6 +296,11 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
   results.append(of_whole);
   add_gaps(results, a.gaps, a.contacts_found);
   add_left_out(results, problem.left_out);
+  const bool notched = !problem.resolved.notches.empty(), dead = !problem.resolved.dead_loads.empty();
+  if ((notched || dead) && !problem.breaks) {
+    results.line("not used", fmt::format("{}{}{}: quasistatic alone takes them", notched ? "[[notch]]" : "",
+                                         notched && dead ? " and " : "", dead ? "[[dead_load]]" : ""));
+  }
   results.line("springs", problem.springs.report);
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)

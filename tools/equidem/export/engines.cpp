@@ -76,6 +76,9 @@ CaseModel bonded_model(const CommonOptions& options, Engine engine) {
   EngineModel& model = made.model;
   model.title = resolved.title;
   model.to_rest = !run || run->until_rest;
+  if (resolved.strength || !problem->assembly.contact_tension.empty() || !resolved.notches.empty() ||
+      !resolved.dead_loads.empty())
+    model.found.emplace(EngineFeature::breakage, "");
   if (!model.to_rest && model.found.contains(EngineFeature::given_displacements))
     model.found.emplace(EngineFeature::given_at_start, model.found.at(EngineFeature::given_displacements));
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;

@@ -29,6 +29,7 @@ struct QuasistaticOptions {
 /// Loads and supports as in solve, but bodies that hang loose stay: contacts keep their numbers.
 Problem build(Case resolved) {
   Problem problem = problem_of(std::move(resolved));
+  problem.breaks = true;
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {

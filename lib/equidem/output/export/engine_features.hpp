@@ -55,6 +55,7 @@ enum class EngineFeature {
   unequal_pairs,
   rigid_friction,
   friction_of_spring,
+  breakage,
 };
 
 /// A row of the table.
@@ -147,6 +148,8 @@ struct EnumNames<EngineFeature> {
        "its friction limits the force of a spring", "Set tangential_ratio, such as 2/7"},
       {friction_of_spring, "friction that limits the spring alone", false, false, false,
        "it limits spring and dashpot together", "Set friction_cap = \"whole_force\""},
+      {breakage, "strengths, notches and dead loads of quasistatic", false, false, false,
+       "its bonds are written without strength", "Take [strength], [[notch]] and [[dead_load]] out"},
   };
 };
 
