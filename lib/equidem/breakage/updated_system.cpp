@@ -35,6 +35,7 @@ class UpdatedSystem final : public BreakableSystem {
         states_(network_.cases.size()) {
     take();
     first_force_ = largest_force();
+    residual_ = equilibrium_.relative_residual();
   }
 
   /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
@@ -54,7 +55,7 @@ class UpdatedSystem final : public BreakableSystem {
   [[nodiscard]] bool carries(std::size_t k) const override { return states_[k].carried; }
   [[nodiscard]] std::string why_not() const override { return why_not_; }
   [[nodiscard]] std::span<const std::uint8_t> left() const override { return left_; }
-  [[nodiscard]] double relative_residual() const override { return equilibrium_.estimated_residual(); }
+  [[nodiscard]] double relative_residual() const override { return residual_; }
   [[nodiscard]] std::int64_t unstable_modes() const override { return 0; }
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
@@ -80,10 +81,12 @@ class UpdatedSystem final : public BreakableSystem {
     if (loose) gone = leave();
     take();
     // Round-off is that of the forces of the last refinement, of which little may be left.
-    constexpr double little = 1e-2;
-    if (largest_force() < little * first_force_) {
+    constexpr double little = 1e-2, allowed = 1e-13;
+    residual_ = equilibrium_.relative_residual();
+    if (residual_ > allowed || largest_force() < little * first_force_) {
       static_cast<void>(equilibrium_.refine());
       take();
+      residual_ = equilibrium_.relative_residual();
     }
     return gone;
   }
@@ -217,6 +220,7 @@ class UpdatedSystem final : public BreakableSystem {
   std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
   std::string why_not_;
   double first_force_ = 0;
+  double residual_ = 0;
 };
 
 }  // namespace
