@@ -198,7 +198,8 @@ def violations(root):
         if path.startswith("lib/") and path.endswith(".hpp"):
             includes[path] = ["lib/" + header for _, _, header in includes_of(text) if header.startswith("equidem/")]
         for number, line in enumerate(text.splitlines(), 1):
-            if is_source(path) and not (path.endswith(".py") and path.startswith(("tests/", "tools/"))) and len(line) > WIDEST_LINE:
+            script = path.endswith(".py") and path.startswith(("tests/", "tools/"))
+            if is_source(path) and not script and len(line) > WIDEST_LINE:
                 yield path, number, f"the line has {len(line)} characters, more than {WIDEST_LINE}"
             if MACHINE_PATH.search(line) and not line.startswith("#!"):
                 yield path, number, f"a path of one machine: {line.strip()[:100]}"

@@ -107,7 +107,7 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
       REQUIRE(std::abs(event.lambda - expected.lambda) <= 1e-9 * expected.lambda);
       REQUIRE(event.relative_residual < 1e-12);
       const double lambda = expected.lambda, before = dense.energy(lambda);
-      // What is left of the forces at large load factors has fewer digits in a dense matrix.
+      // A dense matrix leaves fewer digits of the forces at large load factors.
       REQUIRE(event.energy_before == Approx(before).epsilon(lambda > 1e4 ? 1e-8 : 1e-9));
       REQUIRE(event.unstable_modes == dense.negative());
       const auto c = static_cast<std::size_t>(event.contact);

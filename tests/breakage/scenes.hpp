@@ -64,7 +64,7 @@ class Broken {
   std::unique_ptr<BreakageRun> run_;
 };
 
-/// The same strengths for all contacts.
+/// Equal strengths of all contacts.
 inline ContactStrengths equal_strengths(const Assembly& assembly, double tension, double shear, double friction = 0) {
   ContactStrengths strengths;
   strengths.tension.assign(assembly.contacts.size(), tension);

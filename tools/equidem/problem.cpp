@@ -166,13 +166,7 @@ bool acts(const Case& resolved) {
   return resolved.test || !resolved.supports.empty() || !resolved.load_cases.front().loads.empty();
 }
 
-Problem build_problem(Case resolved) {
-  if (!acts(resolved)) {
-    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
-                 "Add [test], or [[support]] and [[load]]");
-  }
-  Problem problem = problem_of(std::move(resolved));
-  leave_out_loose(problem);
+void add_actions(Problem& problem) {
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {
@@ -184,6 +178,16 @@ Problem build_problem(Case resolved) {
     problem.supports = problem.tension->supports;
     problem.load_cases = {{"", problem.tension->loads}};
   }
+}
+
+Problem build_problem(Case resolved) {
+  if (!acts(resolved)) {
+    bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
+                 "Add [test], or [[support]] and [[load]]");
+  }
+  Problem problem = problem_of(std::move(resolved));
+  leave_out_loose(problem);
+  add_actions(problem);
   return problem;
 }
 

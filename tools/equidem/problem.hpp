@@ -88,6 +88,10 @@ void require_memory_for(const Case& resolved, Purpose purpose);
 /// Whether the case has supports or loads, those of a tension test among them.
 bool acts(const Case& resolved);
 
+/// Sets supports and loads: those of the case, or of its tension test.
+/// \throws Error (bad_input) as tension_setup does
+void add_actions(Problem& problem);
+
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
 Problem build_problem(Case resolved);
 
@@ -150,7 +154,7 @@ struct AssemblySummary {
   bool contacts_found = false;  ///< by a tolerance
 };
 AssemblySummary summary_of(const Assembly& assembly, const ContactSprings& springs);
-/// The same results from a summary. \param of_whole lines that need the whole assembly, after those of its area
+/// Gives the results from a summary. \param of_whole lines that need the whole assembly, after those of its area
 Results problem_results(const Problem& problem, const AssemblySummary& summary, const Results& of_whole,
                         const Effects& effects, AssemblyKeys keys = AssemblyKeys::all);
 

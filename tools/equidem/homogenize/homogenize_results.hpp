@@ -25,7 +25,7 @@ struct RelationBeside {
 /// Report and JSON of the verb.
 Results homogenized_results(const Problem& problem, const BoundedStiffness& homogenized,
                             const std::optional<RelationBeside>& relation);
-/// The same. \param of_problem results of the problem, which come first \param fabric none: not known
+/// Adds the results to those of a problem. \param of_problem results that come first \param fabric none: not known
 Results homogenized_results(const Problem& problem, Results of_problem, bool periodic,
                             const BoundedStiffness& homogenized, const std::optional<Fabric>& fabric,
                             const std::optional<RelationBeside>& relation);

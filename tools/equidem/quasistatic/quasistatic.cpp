@@ -30,17 +30,7 @@ struct QuasistaticOptions {
 Problem build(Case resolved) {
   Problem problem = problem_of(std::move(resolved));
   problem.breaks = true;
-  problem.supports = problem.resolved.supports;
-  problem.load_cases = problem.resolved.load_cases;
-  if (problem.resolved.test) {
-    try {
-      problem.tension = tension_setup(problem.assembly, *problem.resolved.test);
-    } catch (const Error& error) {
-      throw error.at(problem.resolved.where("test"));
-    }
-    problem.supports = problem.tension->supports;
-    problem.load_cases = {{"", problem.tension->loads}};
-  }
+  add_actions(problem);
   if (problem.load_cases.size() > 1) {
     bad_input_at(problem.resolved.where("load"), "there are several load cases", "a path has one",
                  "Keep one; loads that stay are [[dead_load]]");
