@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
@@ -24,19 +24,18 @@ struct Rest {
   std::vector<std::int32_t> discs, contacts;
 };
 
-class RefactorizedSystem final : public BreakableSystem {
+class RefactorizedSystem final : public SolvedStates {
  public:
   explicit RefactorizedSystem(BreakableNetwork network)
-      : network_(std::move(network)),
+      : SolvedStates(network.cases.size(), network.assembly.size()),
+        network_(std::move(network)),
         per_disc_(static_cast<std::size_t>(network_.effects.unknowns_per_disc())),
         scale_(network_.assembly.mean_radius()),
         broken_(network_.assembly.contacts.size(), 0),
-        left_(network_.assembly.size(), 0),
         held_(held_or_loaded(network_)) {
     if (network_.solver.method == SolverMethod::automatic) network_.solver.method = SolverMethod::multifrontal;
     if (network_.solver.precision == FactorPrecision::automatic)
       network_.solver.precision = FactorPrecision::double_precision;
-    states_.resize(network_.cases.size());
     solve();
   }
 
@@ -51,24 +50,11 @@ class RefactorizedSystem final : public BreakableSystem {
     return gone;
   }
 
-  [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override { return states_[k].forces; }
-  [[nodiscard]] std::span<const double> motion(std::size_t k) const override { return states_[k].motion; }
-  [[nodiscard]] std::span<const double> reactions(std::size_t k) const override { return states_[k].reactions; }
-  [[nodiscard]] bool carries(std::size_t k) const override { return states_[k].carried; }
-  [[nodiscard]] std::string why_not() const override { return why_not_; }
-  [[nodiscard]] std::span<const std::uint8_t> left() const override { return left_; }
-  [[nodiscard]] double relative_residual() const override { return residual_; }
   [[nodiscard]] std::int64_t unstable_modes() const override { return unstable_modes_; }
   [[nodiscard]] BreakableCounters counters() const override { return counters_; }
   [[nodiscard]] std::string solver_name() const override { return solver_name_; }
 
  private:
-  struct State {
-    std::vector<ContactForce> forces;
-    std::vector<double> motion, reactions;
-    bool carried = true;
-  };
-
   Rest unbroken() const;
   Rest load_bearing();
   void solve();
@@ -81,10 +67,8 @@ class RefactorizedSystem final : public BreakableSystem {
   BreakableNetwork network_;
   std::size_t per_disc_;
   double scale_;
-  std::vector<std::uint8_t> broken_, left_, held_;
-  std::vector<State> states_;
-  std::string why_not_, solver_name_;
-  double residual_ = 0;
+  std::vector<std::uint8_t> broken_, held_;
+  std::string solver_name_;
   std::int64_t unstable_modes_ = 0;
   BreakableCounters counters_;
 };
@@ -152,7 +136,7 @@ void RefactorizedSystem::solve() {
     state.reactions.assign(state.motion.size(), 0.0);
     state.carried = true;
   }
-  residual_ = 0;
+  measured(0);
   unstable_modes_ = 0;
   if (rest.discs.empty()) return;
   DegreesOfFreedom unknowns = number_unknowns(rest.assembly, rest.springs, network_.effects, network_.supports);
@@ -180,11 +164,13 @@ void RefactorizedSystem::solve_cases(const Rest& rest, DegreesOfFreedom unknowns
   }
   if (cases.empty()) return;
   const std::vector<Solution> solutions = solver.solve(cases, times);
+  double residual = 0;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     take(rest, solver, held, cases[k], solutions[k], states_[of[k]]);
-    residual_ = std::max(residual_, solutions[k].relative_residual());
+    residual = std::max(residual, solutions[k].relative_residual());
   }
-  counters_.largest_residual = std::max(counters_.largest_residual, residual_);
+  measured(residual);
+  counters_.largest_residual = largest_residual();
 }
 
 /// Where no spring is negative a mechanism deforms no contact, so that only loads can drive it.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/solved_states.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
@@ -21,21 +21,20 @@ DegreesOfFreedom unknowns_of(const BreakableNetwork& network) {
   return unknowns;
 }
 
-class UpdatedSystem final : public BreakableSystem {
+class UpdatedSystem final : public SolvedStates {
  public:
   UpdatedSystem(BreakableNetwork network, std::vector<std::uint8_t> held)
-      : network_(std::move(network)),
+      : SolvedStates(network.cases.size(), network.assembly.size()),
+        network_(std::move(network)),
         unknowns_(unknowns_of(network_)),
         graph_(network_.assembly),
         held_(std::move(held)),
-        left_(network_.assembly.size(), 0),
         broken_(network_.assembly.contacts.size(), 0),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases,
-                     std::vector<ContactStrength>(network_.assembly.contacts.size())),
-        states_(network_.cases.size()) {
+                     std::vector<ContactStrength>(network_.assembly.contacts.size())) {
     take();
     first_force_ = largest_force();
-    residual_ = equilibrium_.relative_residual();
+    measured(equilibrium_.relative_residual());
   }
 
   /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
@@ -49,27 +48,14 @@ class UpdatedSystem final : public BreakableSystem {
     return gone;
   }
 
-  [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override { return states_[k].forces; }
-  [[nodiscard]] std::span<const double> motion(std::size_t k) const override { return states_[k].motion; }
-  [[nodiscard]] std::span<const double> reactions(std::size_t k) const override { return states_[k].reactions; }
-  [[nodiscard]] bool carries(std::size_t k) const override { return states_[k].carried; }
-  [[nodiscard]] std::string why_not() const override { return why_not_; }
-  [[nodiscard]] std::span<const std::uint8_t> left() const override { return left_; }
-  [[nodiscard]] double relative_residual() const override { return residual_; }
   [[nodiscard]] std::int64_t unstable_modes() const override { return 0; }
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
-    return {c.factorizations, c.updates, c.mended, c.largest_residual};
+    return {c.factorizations, c.updates, c.mended, largest_residual()};
   }
   [[nodiscard]] std::string solver_name() const override { return "multifrontal Cholesky, updated"; }
 
  private:
-  struct State {
-    std::vector<ContactForce> forces;
-    std::vector<double> motion, reactions;
-    bool carried = true;
-  };
-
   std::vector<std::int32_t> remove(std::size_t contact) {
     broken_[contact] = 1;
     bool loose = parts(contact);
@@ -82,12 +68,13 @@ class UpdatedSystem final : public BreakableSystem {
     take();
     // Round-off is that of the forces of the last refinement, of which little may be left.
     constexpr double little = 1e-2, allowed = 1e-13;
-    residual_ = equilibrium_.relative_residual();
-    if (residual_ > allowed || largest_force() < little * first_force_) {
+    double residual = equilibrium_.relative_residual();
+    if (residual > allowed || largest_force() < little * first_force_) {
       static_cast<void>(equilibrium_.refine());
       take();
-      residual_ = equilibrium_.relative_residual();
+      residual = equilibrium_.relative_residual();
     }
+    measured(residual);
     return gone;
   }
 
@@ -214,13 +201,10 @@ class UpdatedSystem final : public BreakableSystem {
   BreakableNetwork network_;
   DegreesOfFreedom unknowns_;
   ContactGraph graph_;
-  std::vector<std::uint8_t> held_, left_, broken_;
+  std::vector<std::uint8_t> held_, broken_;
   UpdatedEquilibrium equilibrium_;
-  std::vector<State> states_;
   std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
-  std::string why_not_;
   double first_force_ = 0;
-  double residual_ = 0;
 };
 
 }  // namespace
