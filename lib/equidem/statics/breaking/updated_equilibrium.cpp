@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -19,11 +20,15 @@ struct UpdatedEquilibrium::Implementation {
   int unwatched = 0;  // changes since the residual was looked at
   int interval = 4;   // changes after which it is looked at again
   bool carried = true;
-  /// Relative residual found over that estimated from the size of motions since the last refinement.
-  double rounding_share = 1, rounding = 0;
   double measured = 0;  // relative residual after the last refinement
+  double reacted = 0;   // the largest reaction since then of what holds a mechanism, over the load
+  double caution = 1;   // factor on what rounding is taken to leave, more where a residual was found above it
   LargeVector<double> left{};
 
+  [[nodiscard]] double claimed() const {
+    constexpr double of_measuring = 4 * std::numeric_limits<double>::epsilon();
+    return measured + of_measuring + reacted + caution * state.rounding();
+  }
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
   /// \param least_steps done however small the residual is
   /// \param found gets the mechanisms that a new factorization came across
@@ -83,7 +88,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   if (grows) refine(0);
   const std::vector<std::int32_t> path_blocks = state.blocks_above(number);
   for (auto block = path_blocks.rbegin(); block != path_blocks.rend(); ++block) {
-    state.bring_up_to_date(*block, nullptr, 0);  // by the factor as it is
+    state.bring_up_to_date({&*block, 1}, nullptr);  // by the factor as it is
   }
   std::vector<ContactForce> after;
   std::vector<UpdatedCholesky::Load> loads;
@@ -124,26 +129,32 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
     mechanisms.push_back({component, state.hold(component), std::vector<double>(cases), {}});
     for (std::size_t p = 0; p < cases; ++p) anchors.push_back(state.moved_by(component, p));
   }
-  rounding = state.follow(path, path_blocks);
+  state.follow(path, path_blocks);
   for (std::size_t m = 0; m < mechanisms.size(); ++m) {
     for (std::size_t p = 0; p < cases; ++p) {
       double& reaction = mechanisms[m].reaction[p];
       reaction = mechanisms[m].stiffness * (anchors[m * cases + p] - state.moved_by(mechanisms[m].component, p));
       mechanisms[m].driven.push_back(std::abs(reaction) > negligible * state.scales[p] ? 1 : 0);
-      if (mechanisms[m].driven[p] != 0) carried = false;
+      if (mechanisms[m].driven[p] != 0) {
+        carried = false;
+      } else if (state.scales[p] > 0) {
+        reacted = std::max(reacted, std::abs(reaction) / state.scales[p]);
+      }
     }
   }
   ++unwatched;
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
-  const bool rounded = rounding_share * rounding > 0.7 * state.options.watched_residual;
-  if (carried && (path.share < delicate || path.share > 1 / delicate || rounded || unwatched >= interval))
+  const bool lost_digits = path.share < delicate || path.share > 1 / delicate || !path.held.empty();
+  if (carried && (lost_digits || claimed() > state.options.watched_residual || unwatched >= interval))
     refine(0, &mechanisms);
+  if (carried) state.counters.largest_residual = std::max(state.counters.largest_residual, claimed());
   return mechanisms;
 }
 
 double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<HeldMechanism>* found) {
   const auto& options = state.options;
   state.bring_all_up_to_date();
+  const double expected = claimed();
   state.fold_motions();
   ++state.counters.refinements;
   const auto improved = [&](double residual) {
@@ -159,7 +170,8 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
   };
   const double before = state.residual(left);
   double after = improved(before);
-  state.counters.largest_residual = std::max(state.counters.largest_residual, before);
+  const double found_over_claimed = state.counters.refinements > 1 && carried ? before / expected : 0;
+  state.counters.most_over_claimed = std::max(state.counters.most_over_claimed, found_over_claimed);
   if (carried && after > options.watched_residual) {
     ++state.counters.mended;
     const std::size_t held = state.holds().size();
@@ -179,11 +191,13 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
       if (found != nullptr) found->push_back(std::move(mechanism));
     }
   }
-  if (rounding > 0) rounding_share = std::clamp(2 * before / rounding, 0.01, 1.0);
-  rounding = 0;
   measured = after;
+  reacted = 0;
   unwatched = 0;
-  if (before > options.watched_residual) {
+  if (found_over_claimed > 1) {
+    caution *= 2 * found_over_claimed;
+    interval = 1;
+  } else if (before > options.watched_residual) {
     interval = std::max(interval / 4, 1);
   } else {
     interval = std::min(2 * interval, options.most_changes_unwatched);
@@ -205,7 +219,6 @@ UpdatedEquilibrium::UpdatedEquilibrium(const Assembly& assembly, const ContactSp
                        "Hold what moves without energy, or take it out");
   }
   implementation_->refine(2);
-  state.counters.largest_residual = 0;  // of the motion 0
   implementation_->interval = 4;
 }
 
@@ -220,7 +233,14 @@ std::vector<HeldMechanism> UpdatedEquilibrium::change(std::size_t contact, Sprin
 }
 
 CriticalContact UpdatedEquilibrium::critical() {
-  return implementation_->state.critical();
+  Implementation& all = *implementation_;
+  CriticalContact found = all.state.critical();
+  if (!all.carried || !(all.claimed() > all.state.options.watched_residual) || all.state.is_refined()) return found;
+  std::vector<HeldMechanism> mechanisms;
+  all.refine(0, &mechanisms);
+  if (all.carried) found = all.state.critical();
+  found.mechanisms = std::move(mechanisms);
+  return found;
 }
 
 std::vector<ContactForce> UpdatedEquilibrium::forces(std::size_t of_case) {
@@ -257,7 +277,7 @@ double UpdatedEquilibrium::relative_residual() {
 }
 
 double UpdatedEquilibrium::estimated_residual() const {
-  return implementation_->measured + implementation_->rounding_share * implementation_->rounding;
+  return implementation_->claimed();
 }
 
 const ContactSprings& UpdatedEquilibrium::springs() const {

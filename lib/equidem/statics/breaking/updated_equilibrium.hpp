@@ -24,8 +24,8 @@ struct UpdatedEquilibriumOptions {
   /// same.
   bool skip = true;
   double residual = 1e-13;  ///< relative, to which states are refined
-  /// Relative residual that every state is to stay below: motions are refined where what they have moved since the
-  /// last refinement is estimated to have rounded so much.
+  /// Relative residual that every state is to stay below: motions are refined where rounding since the last refinement
+  /// may have left so much.
   double watched_residual = 1e-12;
   int most_changes_unwatched = 256;  ///< after which the residual is looked at in any case
 };
@@ -37,14 +37,8 @@ struct UpdateCounters {
   std::int64_t refinements = 0;     ///< times that the residual was evaluated and the motion refined
   std::int64_t held = 0;            ///< components held because a removal left a mechanism
   std::int64_t fronts = 0;          ///< swept back through, by all searches
-  double largest_residual = 0;      ///< relative, before refinement
-};
-
-/// The contact that breaks next.
-struct CriticalContact {
-  BreakingPoint at;
-  std::int64_t contact = -1;  ///< -1: none breaks at any load factor; of ties the least number
-  std::int64_t ties = 0;      ///< other contacts with the same load factor
+  double largest_residual = 0;      ///< relative, claimed of the states behind changes
+  double most_over_claimed = 0;     ///< residual found when motions were refined, over that claimed before; the largest
 };
 
 /// A mechanism that a change left, and the component that is held instead.
@@ -55,6 +49,15 @@ struct HeldMechanism {
   /// the network does not carry it.
   std::vector<double> reaction;
   std::vector<std::uint8_t> driven;  ///< per right-hand side, 1: the reaction is more than round-off
+};
+
+/// The contact that breaks next.
+struct CriticalContact {
+  BreakingPoint at;
+  std::int64_t contact = -1;  ///< -1: none breaks at any load factor; of ties the least number
+  std::int64_t ties = 0;      ///< other contacts with the same load factor
+  /// Found where motions had to be refined, and the factor made anew, before the contact could be told.
+  std::vector<HeldMechanism> mechanisms{};
 };
 
 /// At most two right-hand sides, the first in proportion to lambda, the second, where there is one, dead. Every motion
@@ -89,7 +92,8 @@ class UpdatedEquilibrium {
   double refine();
   /// Residual of the motions as they are, the largest of all right-hand sides.
   [[nodiscard]] double relative_residual();
-  /// Measured when motions were last refined, estimated since from how far they have moved; the largest.
+  /// An upper estimate of it: measured when motions were last refined, and what rounding may have added since. Where
+  /// a load drives a mechanism there is no state to claim anything of.
   [[nodiscard]] double estimated_residual() const;
   [[nodiscard]] const ContactSprings& springs() const;
   [[nodiscard]] const UpdateCounters& counters() const;

@@ -38,7 +38,7 @@ CriticalContact UpdatedState::critical() {
   open_.clear();
   double least = std::numeric_limits<double>::infinity();
   std::vector<std::int32_t> round;
-  std::vector<std::size_t> fronts;
+  std::vector<Visit> visits;
   while (true) {
     round.clear();
     const std::size_t most = 4 + open_.size() / 4;
@@ -48,13 +48,13 @@ CriticalContact UpdatedState::critical() {
       candidates.pop();
     }
     if (round.empty()) break;
-    fronts.assign(round.size(), 0);
+    visits.assign(round.size(), {});
     parallel_tasks(round.size(), [&](std::size_t k, int worker) {
-      fronts[k] = bring_up_to_date(round[k], nullptr, worker);
+      visits[k] = visit(round[k], nullptr, worker);
       bound_children(round[k]);
     });
     for (std::size_t k = 0; k < round.size(); ++k) {
-      counters.fronts += static_cast<std::int64_t>(fronts[k]);
+      account(visits[k]);
       states_[round[k]].open = true;
       open_.push_back(round[k]);
       least = std::min(least, states_[round[k]].own.load_factor);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -120,9 +121,10 @@ bool UpdatedState::boundary_motion(std::size_t number, std::vector<double>& moti
   return any;
 }
 
-std::size_t UpdatedState::bring_up_to_date(std::size_t number, const FactorPath* path, int worker) {
+UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* path, int worker) {
   thread_local std::vector<double> motion;
-  if (!boundary_motion(number, motion) && path == nullptr) return 0;
+  Visit done;
+  if (!boundary_motion(number, motion) && path == nullptr) return done;
   const MotionBlock& block = (*blocks_)[number];
   const auto& rows = symbolic_->rows[block.root];
   const auto& nodes = symbolic_->tree.nodes;
@@ -151,15 +153,37 @@ std::size_t UpdatedState::bring_up_to_date(std::size_t number, const FactorPath*
     }
     factor->backward(t, {x.data(), n, cases.size()});
   }
+  const std::size_t begin = nodes[block.first].begin * b, end = nodes[block.root].end * b;
+  const std::span<const double> stiffness = factor->stiffness_in_order();
   for (std::size_t p = 0; p < cases.size(); ++p) {
-    for (std::size_t k = p * n + nodes[block.first].begin * b; k < p * n + nodes[block.root].end * b; ++k) {
-      moved_[k] += x[k];
+    for (std::size_t k = begin; k < end; ++k) {
+      double& moved = moved_[p * n + k];
+      moved += x[p * n + k];
+      const double by = stiffness[k] * x[p * n + k], in_all = stiffness[k] * moved;
+      done.moved[p] += by * by;
+      done.accumulated[p] += in_all * in_all;
     }
   }
   const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
   add_forces(contacts, symbolic_->block, x.data(), cases.size() > 1 ? x.data() + n : nullptr);
   evaluate_block(number);
-  return block.root - block.first + 1;
+  done.fronts = block.root - block.first + 1;
+  return done;
+}
+
+void UpdatedState::account(const Visit& visit) {
+  counters.fronts += visit.fronts;
+  visits_.fronts += visit.fronts;
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    visits_.moved[p] += visit.moved[p];
+    visits_.accumulated[p] += visit.accumulated[p];
+  }
+}
+
+void UpdatedState::bring_up_to_date(std::span<const std::int32_t> blocks, const FactorPath* path) {
+  std::vector<Visit> visits(blocks.size());
+  parallel_tasks(blocks.size(), [&](std::size_t k, int worker) { visits[k] = visit(blocks[k], path, worker); });
+  for (const Visit& visit : visits) account(visit);
 }
 
 void UpdatedState::evaluate_block(std::size_t number) {
@@ -168,33 +192,23 @@ void UpdatedState::evaluate_block(std::size_t number) {
       std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin), options.friction);
 }
 
-double UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
+void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
   std::int32_t offset = 0;
   for (const std::int32_t t : path.fronts) {
     path_offset_[t] = offset;
     offset += static_cast<std::int32_t>(symbolic_->pivots(t) * cases.size());
   }
+  // The column of a pivot of which little is left has lost digits, which this motion meets, and others after it.
+  constexpr double share_that_doubles = 1.0 / 64, shares_that_double = 4096;
+  const double left = std::min(path.share, 1.0), lost = 1 + squared(share_that_doubles / left);
+  growth_ += 1 / (shares_that_double * left);
   for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
-    counters.fronts += static_cast<std::int64_t>(bring_up_to_date(*block, &path, 0));
+    Visit done = visit(*block, &path, 0);
+    for (double& moved : done.moved) moved *= lost;
+    account(done);
     states_[*block].subtree = {0, 0};  // unknown: its children are looked at
   }
   for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
-  // The fronts above a contact go from its discs through the whole of the assembly: their motions stand for all.
-  const double rounding = std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(components()));
-  double residual = 0;
-  for (const std::int32_t block : blocks) {
-    const auto& nodes = symbolic_->tree.nodes;
-    const auto b = static_cast<std::size_t>(symbolic_->block);
-    for (std::size_t p = 0; p < cases.size(); ++p) {
-      if (!(scales[p] > 0)) continue;
-      double largest = 0;
-      for (std::size_t k = nodes[(*blocks_)[block].first].begin * b; k < nodes[(*blocks_)[block].root].end * b; ++k) {
-        largest = std::max(largest, std::abs(moved_[p * components() + k]) * factor->stiffness_in_order()[k]);
-      }
-      residual = std::max(residual, rounding * largest / scales[p]);
-    }
-  }
-  return residual;
 }
 
 void UpdatedState::bring_all_up_to_date() {
@@ -203,14 +217,30 @@ void UpdatedState::bring_all_up_to_date() {
     if ((*blocks_)[k].parent < 0) level.push_back(static_cast<std::int32_t>(k));
   }
   while (!level.empty()) {
-    parallel_tasks(level.size(), [&](std::size_t k, int worker) { bring_up_to_date(level[k], nullptr, worker); });
+    bring_up_to_date(level, nullptr);
     next.clear();
     for (const std::int32_t k : level) {
-      counters.fronts += (*blocks_)[k].root - (*blocks_)[k].first + 1;
       next.insert(next.end(), (*blocks_)[k].children.begin(), (*blocks_)[k].children.end());
     }
     std::swap(level, next);
   }
+}
+
+// A solution with L leaves a residual of some units of round-off of sqrt(K_ii K_jj) |x_j|, summed over j (Higham,
+// Accuracy and Stability of Numerical Algorithms, theorem 10.4), and each addition to a motion one of half a unit of
+// K_ii |u_i|. Roundings are independent of each other, so that squares add up; K is the first one, of which errors of
+// the factor keep the size. The factors are about twice the largest that sequences of lattices and random networks
+// needed to their last contact.
+double UpdatedState::rounding() const {
+  constexpr double of_solution = 20, of_sum = 1;
+  double largest = 0;
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    if (!(scales[p] > 0)) continue;
+    const double square =
+        of_solution * of_solution * growth_ * visits_.moved[p] + of_sum * of_sum * visits_.accumulated[p];
+    largest = std::max(largest, std::sqrt(square) / scales[p]);
+  }
+  return std::numeric_limits<double>::epsilon() * largest;
 }
 
 void UpdatedState::set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces) {
@@ -255,6 +285,7 @@ bool UpdatedState::factorize() {
       matrix.diagonal[held.component / b * b * b + held.component % b * (b + 1)] += held.stiffness;
     }
     ++counters.factorizations;
+    growth_ = 1;
     const bool first = counters.factorizations == 1;
     if (factor->factorize({matrix, assembly, graph})) return true;
     if (first || factor->report().smallest_component < 0) return false;
@@ -267,6 +298,7 @@ void UpdatedState::fold_motions() {
   for (std::size_t p = 0; p < cases.size(); ++p) base[p].add(moved(p));
   std::fill(moved_.begin(), moved_.end(), 0.0);
   std::fill(boundary_.begin(), boundary_.end(), 0.0);
+  visits_ = {};
 }
 
 double UpdatedState::residual(LargeVector<double>& left) const {

@@ -4,6 +4,7 @@
 /// change, and what brings a part up to date.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,13 +35,17 @@ class UpdatedState {
 
   /// Blocks from that of a contact up to its root.
   [[nodiscard]] std::vector<std::int32_t> blocks_above(std::size_t contact) const;
-  /// Apply what the boundary of a block has moved since its last visit, and the forward solution of `path` where it
-  /// passes through; what stands above must be up to date. \return fronts swept
-  std::size_t bring_up_to_date(std::size_t block, const FactorPath* path, int worker);
+  /// Apply what the boundaries of blocks have moved since their last visit, and the forward solution of `path` where it
+  /// passes through; what stands above must be up to date.
+  void bring_up_to_date(std::span<const std::int32_t> blocks, const FactorPath* path);
   /// The motions that follow from a change. \param blocks above its contact, all up to date before it
-  /// \return the relative residual that rounding of motions since the last refinement is estimated to leave
-  double follow(const FactorPath& path, std::span<const std::int32_t> blocks);
+  void follow(const FactorPath& path, std::span<const std::int32_t> blocks);
   void bring_all_up_to_date();
+  /// Bound on the relative residual that rounding has left since the motions were last refined, as of the last visits
+  /// (updated_state.cpp says how it is found).
+  [[nodiscard]] double rounding() const;
+  /// Whether motions were refined after the last visit that found any.
+  [[nodiscard]] bool is_refined() const { return visits_.fronts == 0; }
   [[nodiscard]] CriticalContact critical();
 
   void set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces);
@@ -80,6 +85,12 @@ class UpdatedState {
   std::unique_ptr<UpdatedCholesky> factor;
 
  private:
+  /// What a visit of a block has rounded, sums of squares per right-hand side, N²/m².
+  struct Visit {
+    std::int64_t fronts = 0;              ///< swept back through
+    std::array<double, 2> moved{};        ///< stiffness times motion since the visit before
+    std::array<double, 2> accumulated{};  ///< stiffness times motion since the last refinement
+  };
   struct BlockState {
     Utilization own;       ///< of the contacts of the block, as of its last visit
     Utilization subtree;   ///< at worst, as of its last visit
@@ -93,6 +104,8 @@ class UpdatedState {
   }
   /// Motion of the boundary of a block since its last visit, of each right-hand side. \return whether there was any
   bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
+  Visit visit(std::size_t block, const FactorPath* path, int worker);
+  void account(const Visit& visit);
   void evaluate_block(std::size_t block);
   void bound_children(std::size_t block);
   /// The contact with the least load factor among those of open blocks.
@@ -109,6 +122,8 @@ class UpdatedState {
   std::vector<LargeVector<double>> scratch_;  // per worker: motion since the last visit
   std::vector<std::int32_t> open_;            // blocks, parents first
   std::vector<Held> holds_;
+  Visit visits_;       // all since the last refinement
+  double growth_ = 1;  // of the squares of errors of the factor since it was made
 };
 
 }  // namespace equidem
