@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string>
+#include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 
 #include "breakage/dense_network.hpp"
 #include "breakage/scenes.hpp"
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -25,13 +29,13 @@ struct Drawn {
   Rotation rotation = Rotation::from_scene;
 };
 
-/// Assemblies of some ten discs with springs, levers and strengths at random, in every combination of what drives them,
-/// tangential springs, friction and rotation.
-Drawn draw(std::uint64_t seed) {
+/// Assemblies of about `discs` discs with springs, levers and strengths at random, in every combination of what drives
+/// them, tangential springs, friction and rotation.
+Drawn draw(std::uint64_t seed, std::int64_t discs) {
   Random random(seed);
   Drawn d;
   const bool periodic = seed % 2 == 0;
-  d.assembly = delaunay_assembly({.discs = periodic ? 8 : 10,
+  d.assembly = delaunay_assembly({.discs = periodic ? discs : discs + 2,
                                   .points = PointProcess::perturbed_hexagonal,
                                   .disorder = 0.25,
                                   .seed = seed,
@@ -80,7 +84,7 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
   const MakeSystem make = GENERATE(&make_breakable_system, &make_refactorized_system);
   std::int64_t events = 0, by_shear = 0, snap_backs = 0, loosened = 0, released = 0, at_zero = 0, too_soft = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
-    const Drawn d = draw(seed);
+    const Drawn d = draw(seed, 8);
     CAPTURE(d.name, make == &make_breakable_system);
     Broken broken(d.assembly, d.springs, d.strengths, d.path, d.rotation, make);
     const DegreesOfFreedom unknowns =
@@ -144,4 +148,91 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
   CHECK(loosened > 30);
   CHECK(released > 500);
   CHECK(too_soft < 10);
+}
+
+TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew") {
+  std::int64_t events = 0, refused = 0, by_control = 0, loosened = 0;
+  double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_residual = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    Drawn d = draw(seed, 40);
+    const LoadControl controls[] = {LoadControl::path, LoadControl::load, LoadControl::motion};
+    d.path.control = controls[seed % 3];
+    if (seed % 5 == 0) d.path.legs = {1.5, -1, 50};
+    CAPTURE(d.name, to_string(d.path.control));
+    Broken fast(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_breakable_system);
+    Broken slow(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_refactorized_system);
+    double largest_stress = 0, largest_work = 0;
+    while (true) {
+      CAPTURE(slow.events().size());
+      bool more = false;
+      try {
+        more = slow.run().advance();
+      } catch (const Error&) {  // a motion that resists no more than round-off, and is no mechanism of discs
+        ++refused;
+        break;
+      }
+      CAPTURE(slow.run().why());
+      REQUIRE(fast.run().advance() == more);
+      if (!more) break;
+      const BreakEvent &a = fast.events().back(), &b = slow.events().back();
+      CAPTURE(a.lambda, b.lambda, a.gap, b.gap, a.contact, b.contact);
+      if (a.contact != b.contact && std::min(a.gap, b.gap) < 1e-8) break;  // no order to the digits that there are
+      REQUIRE(a.contact == b.contact);
+      REQUIRE(a.mode == b.mode);
+      REQUIRE(a.leg == b.leg);
+      REQUIRE(a.ties == b.ties);
+      REQUIRE(a.loosened == b.loosened);
+      if (b.gap < 1e6) CHECK(a.gap == Approx(b.gap).epsilon(1e-6).margin(1e-8));
+      largest_stress = std::max({largest_stress, std::abs(b.stress.xx), std::abs(b.stress.yy), std::abs(b.stress.xy)});
+      largest_work = std::max({largest_work, std::abs(b.work), b.energy_before});
+      ++events;
+      by_control += d.path.control != LoadControl::path ? 1 : 0;
+      loosened += a.loosened.empty() ? 0 : 1;
+      worst_residual = std::max(worst_residual, a.relative_residual);
+      if (std::abs(b.lambda) > 1e3) continue;  // what is left is as soft, and its digits as few
+      worst_lambda = std::max(worst_lambda, std::abs(a.lambda - b.lambda) / std::abs(b.lambda != 0 ? b.lambda : 1));
+      for (const auto quantity :
+           {&BreakEvent::energy_before, &BreakEvent::energy_after, &BreakEvent::energy_released, &BreakEvent::work}) {
+        worst_work = std::max(worst_work, std::abs(a.*quantity - b.*quantity) / largest_work);
+      }
+      for (const auto component : {&Tensor2::xx, &Tensor2::xy, &Tensor2::yx, &Tensor2::yy})
+        worst_stress = std::max(worst_stress, std::abs(a.stress.*component - b.stress.*component) / largest_stress);
+      CHECK(a.load == Approx(b.load).epsilon(1e-8).margin(1e-10));
+      CHECK(a.motion == Approx(b.motion).epsilon(1e-8).margin(1e-10));
+    }
+    if (slow.run().end() != PathEnd::none) CHECK(fast.run().end() == slow.run().end());
+  }
+  CAPTURE(events, refused, by_control, loosened, worst_lambda, worst_work, worst_stress, worst_residual);
+  CHECK(events > 3000);
+  CHECK(refused < 10);
+  CHECK(by_control > 1000);
+  CHECK(loosened > 100);
+  CHECK(worst_lambda < 1e-9);
+  CHECK(worst_work < 1e-9);
+  CHECK(worst_stress < 1e-9);
+  CHECK(worst_residual < 1e-12);
+}
+
+TEST_CASE("paths_have_the_same_bits_on_every_number_of_threads") {
+  for (const std::uint64_t seed : {3, 4, 5, 8, 13}) {
+    const Drawn d = draw(seed, 300);
+    CAPTURE(d.name);
+    std::vector<std::vector<double>> found;
+    for (const int threads : {1, 2, 3}) {
+      const ThreadsFor set(threads);
+      Broken broken(d.assembly, d.springs, d.strengths, d.path, d.rotation);
+      std::vector<double> numbers;
+      while (broken.events().size() < 60 && broken.run().advance()) {
+        const BreakEvent& e = broken.events().back();
+        numbers.insert(numbers.end(), {e.lambda, e.gap, e.load, e.motion, e.stress.xx, e.stress.xy, e.energy_before,
+                                       e.energy_after, e.work, e.relative_residual, static_cast<double>(e.contact)});
+      }
+      found.push_back(std::move(numbers));
+    }
+    CHECK(found[0].size() > 200);
+    REQUIRE(found[1].size() == found[0].size());
+    REQUIRE(found[2].size() == found[0].size());
+    CHECK(std::memcmp(found[0].data(), found[1].data(), found[0].size() * sizeof(double)) == 0);
+    CHECK(std::memcmp(found[0].data(), found[2].data(), found[0].size() * sizeof(double)) == 0);
+  }
 }

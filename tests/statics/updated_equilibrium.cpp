@@ -160,7 +160,7 @@ double force_difference(const std::vector<ContactForce>& a, const std::vector<Co
 /// The least load factor by the definition, contact by contact; the next one must be apart for the contact to be
 /// compared.
 struct Least {
-  BreakingPoint at;
+  double load_factor = std::numeric_limits<double>::infinity();
   std::int64_t contact = -1;
   double next = std::numeric_limits<double>::infinity();
 };
@@ -171,13 +171,13 @@ Least first_to_break(const BreakingScene& scene, const std::vector<std::vector<C
   for (std::size_t c = 0; c < forces[0].size(); ++c) {
     if (gone[c] != 0) continue;
     const ContactForce dead = forces.size() > 1 ? forces[1][c] : ContactForce{};
-    const BreakingPoint at = breaking_point({dead, forces[0][c]}, scene.strengths[c], scene.friction);
-    if (at.load_factor < least.at.load_factor) {
-      least.next = least.at.load_factor;
-      least.at = at;
+    const double at = breaking_moment({dead, forces[0][c]}, scene.strengths[c], scene.friction, {}).t;
+    if (at < least.load_factor) {
+      least.next = least.load_factor;
+      least.load_factor = at;
       least.contact = static_cast<std::int64_t>(c);
     } else {
-      least.next = std::min(least.next, at.load_factor);
+      least.next = std::min(least.next, at);
     }
   }
   return least;
@@ -204,18 +204,18 @@ TEST_CASE("contacts_break_in_the_order_that_factorizing_anew_finds") {
     double first = 0;  // load factor
     for (; events < 120; ++events) {
       const CriticalContact next = lazy.critical(), same = eager.critical();
-      if (events == 0) first = next.at.load_factor;
-      CAPTURE(scene.name, events, next.at.load_factor, next.contact, same.contact, held);
-      if (next.contact < 0 || next.at.load_factor > 1e4 * first) break;
+      if (events == 0) first = next.moment.t;
+      CAPTURE(scene.name, events, next.moment.t, next.contact, same.contact, held);
+      if (next.contact < 0 || next.moment.t > 1e4 * first) break;
       REQUIRE(next.contact == same.contact);
-      CHECK(next.at.load_factor == Approx(same.at.load_factor).epsilon(1e-11));
-      CHECK(next.at.in_shear == same.at.in_shear);
+      CHECK(next.moment.t == Approx(same.moment.t).epsilon(1e-11));
+      CHECK(next.moment.in_shear == same.moment.in_shear);
       if (events % 12 == 0) {
         const auto forces = anew(scene, lazy.springs());
         const Least least = first_to_break(scene, forces, gone);
         CAPTURE(least.contact, least.next);
-        CHECK(next.at.load_factor == Approx(least.at.load_factor).epsilon(1e-9));
-        if (least.next > least.at.load_factor * (1 + 1e-8)) CHECK(next.contact == least.contact);
+        CHECK(next.moment.t == Approx(least.load_factor).epsilon(1e-9));
+        if (least.next > least.load_factor * (1 + 1e-8)) CHECK(next.contact == least.contact);
         for (std::size_t p = 0; p < scene.cases.size(); ++p) {
           CHECK(force_difference(eager.forces(p), forces[p]) < 1e-10);
           if (events % 60 == 0) CHECK(force_difference(lazy.forces(p), forces[p]) < 1e-10);
@@ -284,7 +284,7 @@ TEST_CASE("breaking_has_the_same_bits_on_every_number_of_threads") {
       std::vector<double> numbers;
       for (int event = 0; event < 25; ++event) {
         const CriticalContact next = state.critical();
-        numbers.push_back(next.at.load_factor);
+        numbers.push_back(next.moment.t);
         numbers.push_back(static_cast<double>(next.contact));
         static_cast<void>(state.remove(next.contact));
       }

@@ -1,25 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The next contact to break in a network as it is.
-///
-/// With forces that are linear in lambda, N = N0 + lambda N1 and T likewise, the criteria of a contact are linear too:
-///
-///   tension   N - f_t >= 0
-///   shear     +-T + mu N - f_s >= 0
-///
-/// Seen from a value lambda_0 in the direction of a leg, a criterion a + b t >= 0 with lambda = lambda_0 +- t, t >= 0,
-/// is met first at
-///
-///   t = 0      where a > 0, or a = 0 and b >= 0: it is met at lambda_0 itself (b of whatever sign: on from there, or
-///              only there)
-///   t = -a/b   where a < 0 and b > 0, or never where b <= 0
-///
-/// A path without control has lambda_0 = 0 in every network: each network is loaded anew from its dead loads, and a
-/// contact that they alone break does so at lambda = 0. Under control lambda_0 is where the control holds the network;
-/// of several contacts that are beyond their strength there, that goes first which reached it at the least load.
+/// The next contact to break in a network as it is (statics/breaking/least_load_factor.hpp has the rules).
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -28,6 +11,7 @@
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/statics/breaking/least_load_factor.hpp"
 
 namespace equidem {
 
@@ -40,18 +24,6 @@ struct EnumNames<BreakMode> {
   static constexpr NamedValue<BreakMode> list[] = {{tension, "tension"}, {shear, "shear"}};
 };
 
-struct BreakSearch {
-  const ContactStrengths& strengths;
-  std::span<const ContactForce> pattern;  ///< N/m, at lambda = 1, without dead loads
-  std::span<const ContactForce> dead;     ///< N/m; empty: none
-  /// N/m of each of the two, below which a component of a force is round-off and counts as 0. A contact that carries no
-  /// force does not break, whatever its strength.
-  double no_pattern = 0, no_dead = 0;
-  double from = 0;             ///< lambda_0
-  double direction = 1;        ///< of lambda, 1 or -1
-  bool by_least_load = false;  ///< order of contacts that are beyond their strength at `from`; false: their numbers
-};
-
 struct NextBreak {
   double lambda = 0;
   std::size_t contact = 0;
@@ -60,7 +32,13 @@ struct NextBreak {
   double gap = 0;         ///< of lambda, relative, to the next contact that does not tie; infinite: none
 };
 
+/// \return none where no contact breaks
+std::optional<NextBreak> next_break_of(const FirstToBreak& first, const LoadFactorSearch& search);
+
 /// In a time proportional to the contacts. Contacts with the forces 0 are taken as removed.
-std::optional<NextBreak> next_break(const BreakSearch& search);
+/// \param pattern N/m, at lambda = 1, without dead loads
+/// \param dead N/m; empty: none
+std::optional<NextBreak> next_break(std::span<const ContactForce> pattern, std::span<const ContactForce> dead,
+                                    const ContactStrengths& strengths, const LoadFactorSearch& search);
 
 }  // namespace equidem

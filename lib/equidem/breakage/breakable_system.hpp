@@ -7,15 +7,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/breakage/break_search.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/statics/breaking/updated_equilibrium.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
@@ -32,6 +35,7 @@ struct BreakableNetwork {
   /// are divided by the mean radius of `assembly`.
   std::vector<RightHandSide> cases;
   SolverOptions solver;
+  const ContactStrengths* strengths = nullptr;  ///< of next_break(), for which it is prepared; null: of none
 };
 
 struct BreakableCounters {
@@ -55,6 +59,14 @@ class BreakableSystem {
   /// \throws Error (computation_failed) where a motion resists no more than round-off, and is no mechanism
   virtual std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) = 0;
 
+  /// The contact that breaks next, with the first right-hand side times lambda beside the second one. Both must be
+  /// carried.
+  [[nodiscard]] virtual std::optional<NextBreak> next_break(const ContactStrengths& strengths,
+                                                            const LoadFactorSearch& search) = 0;
+  /// What the last removal opened, where the state followed from the one before it and one contact was removed; else
+  /// null.
+  [[nodiscard]] virtual const OpenedContact* opened() const { return nullptr; }
+
   /// Per contact, N/m; 0 of those that are removed or carry nothing.
   [[nodiscard]] virtual std::span<const ContactForce> forces(std::size_t of_case) const = 0;
   /// Per component, m; 0 of discs that left the network.
@@ -68,7 +80,7 @@ class BreakableSystem {
   [[nodiscard]] virtual std::string why_not() const = 0;
   /// Discs that have left the network, the first included, per disc: 1.
   [[nodiscard]] virtual std::span<const std::uint8_t> left() const = 0;
-  /// |f - f_int| over |f|, the largest of the right-hand sides.
+  /// |f - f_int| over |f|, the largest of the right-hand sides, or an upper estimate of it.
   [[nodiscard]] virtual double relative_residual() const = 0;
   /// Negative eigenvalues of K beyond those that rotations bring by themselves where kT < 0; -1: not known.
   [[nodiscard]] virtual std::int64_t unstable_modes() const = 0;

@@ -22,7 +22,8 @@ double sign_of(double x) {
 
 BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
                                    const SolverOptions& solver) {
-  BreakableNetwork network{scene.assembly, scene.springs, effects, std::move(supports), {scene.path.pattern}, solver};
+  BreakableNetwork network{scene.assembly,       scene.springs, effects,         std::move(supports),
+                           {scene.path.pattern}, solver,        &scene.strengths};
   if (scene.path.dead) network.cases.push_back(*scene.path.dead);
   return network;
 }
@@ -37,8 +38,8 @@ BreakageRun::BreakageRun(BreakageScene scene, BreakableSystem& system) : scene_(
               "Hold that part by a support, or take the load off it");
   }
   response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
-  no_pattern_ = round_off * response_.largest_pattern;
-  no_dead_ = round_off * response_.largest_dead;
+  no_pattern_ = round_off * largest_force(system_.forces(0));
+  no_dead_ = dead ? round_off * largest_force(system_.forces(1)) : 0;
   no_rate_ = round_off * std::abs(scene_.path.control == LoadControl::load ? response_.load[1] : response_.motion[1]);
   work_ = 0.5 * response_.loads_by_motions[0];  // of the dead loads, applied in proportion
   held_ = held_quantity(0);
@@ -118,14 +119,12 @@ bool BreakageRun::advance() {
       break;
     }
     const std::optional<NextBreak> next =
-        next_break({.strengths = scene_.strengths,
-                    .pattern = system_.forces(0),
-                    .dead = dead ? system_.forces(1) : std::span<const ContactForce>{},
-                    .no_pattern = no_pattern_,
-                    .no_dead = no_dead_,
-                    .from = from,
-                    .direction = direction(leg_),
-                    .by_least_load = path.control != LoadControl::path});
+        system_.next_break(scene_.strengths, {.from = from,
+                                              .direction = direction(leg_),
+                                              .by_least_load = path.control != LoadControl::path,
+                                              .no_live = no_pattern_,
+                                              .no_dead = no_dead_});
+    if (!system_.carries(0) || (dead && !system_.carries(1))) continue;
     if (next && !leg_ends_before(next->lambda)) {
       break_contact(*next);
       return true;
@@ -138,7 +137,7 @@ bool BreakageRun::advance() {
 /// \return whether another leg follows
 bool BreakageRun::finish_leg(double from) {
   const std::vector<double>& legs = scene_.path.legs;
-  if (response_.largest_pattern <= no_pattern_) {
+  if (largest_force(system_.forces(0)) <= no_pattern_) {
     end(PathEnd::carries_nothing, "no contact carries a force that grows with lambda");
     return false;
   }
@@ -177,7 +176,12 @@ void BreakageRun::break_contact(const NextBreak& next) {
     held_ = way * std::max(way * held_, way * now);
   }
   event.loosened = system_.remove({&next.contact, 1});
-  response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  const OpenedContact* const opened = system_.opened();
+  if (opened != nullptr) {
+    follow(response_, *opened, scene_.path);
+  } else {
+    response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  }
   event.energy_after = response_.energy_at(lambda_);
   const double moved = NetworkResponse::at(response_.loads_by_motions, lambda_);
   // Loads on parts that move away do work without end: none is counted.

@@ -27,12 +27,6 @@ double product(std::span<const double> a, std::span<const double> b) {
   return contact_sums<1>(a.size(), [&](std::size_t k, std::array<double, 1>& sum) { sum[0] += a[k] * b[k]; })[0];
 }
 
-double largest(std::span<const ContactForce> forces) {
-  double most = 0;
-  for (const ContactForce& f : forces) most = std::max({most, std::abs(f.normal), std::abs(f.tangential)});
-  return most;
-}
-
 void add_tensor(const Tensor2& t, double* sum) {
   const double entries[] = {t.xx, t.xy, t.yx, t.yy};
   for (std::size_t e = 0; e < 4; ++e) sum[e] += entries[e];
@@ -42,7 +36,53 @@ Tensor2 tensor_of(const double* sum, double area) {
   return (1 / area) * Tensor2{sum[0], sum[1], sum[2], sum[3]};
 }
 
+/// Load and motion from the sums of work.
+void relate(NetworkResponse& r, const LoadPath& path) {
+  if (path.driven_by == DrivenBy::loads) {
+    r.load = {0, path.size};
+    r.motion = {r.pattern_by_dead / path.size, r.pattern_by_pattern / path.size};
+  } else {
+    const double by = path.driven_by == DrivenBy::strain ? path.size * r.area : path.size;
+    r.load = {r.imposed[0] / by, r.imposed[1] / by};
+    r.motion = {0, path.size};
+  }
+}
+
 }  // namespace
+
+double area_of_stress(const Assembly& assembly) {
+  return assembly.periodic() || !assembly.cell_areas.empty() ? assembly.area() : 0;
+}
+
+double largest_force(std::span<const ContactForce> forces) {
+  double most = 0;
+  for (const ContactForce& f : forces) most = std::max({most, std::abs(f.normal), std::abs(f.tangential)});
+  return most;
+}
+
+void follow(NetworkResponse& r, const OpenedContact& contact, const LoadPath& path) {
+  const auto& [force, opening, moment] = contact;  // of the pattern, and of dead loads or 0
+  const double pattern_pattern = work_of(force[0], opening[0]), pattern_dead = work_of(force[0], opening[1]);
+  const double dead_pattern = work_of(force[1], opening[0]), dead_dead = work_of(force[1], opening[1]);
+  r.loads_by_motions[0] += dead_dead;
+  r.dead_by_pattern += dead_pattern;
+  if (path.driven_by == DrivenBy::loads) {
+    r.pattern_by_dead += pattern_dead;
+    r.pattern_by_pattern += pattern_pattern;
+  } else {
+    r.imposed[0] -= pattern_dead;
+    r.imposed[1] -= pattern_pattern;
+  }
+  r.loads_by_motions[1] = r.dead_by_pattern + r.pattern_by_dead;
+  r.loads_by_motions[2] = r.pattern_by_pattern;
+  r.energy = {0.5 * r.loads_by_motions[0], r.dead_by_pattern + r.imposed[0],
+              0.5 * (r.pattern_by_pattern + r.imposed[1])};
+  if (r.area > 0) {
+    r.stress[0] += 1 / r.area * moment[1];
+    r.stress[1] += 1 / r.area * moment[0];
+  }
+  relate(r, path);
+}
 
 NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,
                             const LoadPath& path) {
@@ -67,29 +107,19 @@ NetworkResponse response_of(const BreakableSystem& system, const Assembly& assem
   NetworkResponse r;
   r.energy = {total[energy_0], total[energy_1], total[energy_2]};
   r.imposed = {total[imposed_0], total[imposed_1]};
-  const double area = assembly.periodic() || !assembly.cell_areas.empty() ? assembly.area() : 0;
-  if (area > 0) r.stress = {tensor_of(&total[stress_0], area), tensor_of(&total[stress_1], area)};
-  r.largest_pattern = largest(f1);
-  r.largest_dead = largest(f0);
+  r.area = area_of_stress(assembly);
+  if (r.area > 0) r.stress = {tensor_of(&total[stress_0], r.area), tensor_of(&total[stress_1], r.area)};
 
   const std::span<const double> u1 = system.motion(0), u0 = dead ? system.motion(1) : u1.first(0);
   const std::vector<double>& p1 = path.pattern.force;
-  const double pattern_by_dead = product(p1, u0);
+  r.pattern_by_dead = product(p1, u0);
   r.pattern_by_pattern = product(p1, u1);
   r.dead_by_pattern = dead ? product(path.dead->force, u1) : 0;
-  r.loads_by_motions = {dead ? product(path.dead->force, u0) : 0, r.dead_by_pattern + pattern_by_dead,
+  r.loads_by_motions = {dead ? product(path.dead->force, u0) : 0, r.dead_by_pattern + r.pattern_by_dead,
                         r.pattern_by_pattern};
   r.imposed[0] += dead ? product(path.pattern.prescribed, system.reactions(1)) : 0;
   r.imposed[1] += product(path.pattern.prescribed, system.reactions(0));
-
-  if (path.driven_by == DrivenBy::loads) {
-    r.load = {0, path.size};
-    r.motion = {pattern_by_dead / path.size, r.pattern_by_pattern / path.size};
-  } else {
-    const double by = path.driven_by == DrivenBy::strain ? path.size * area : path.size;
-    r.load = {r.imposed[0] / by, r.imposed[1] / by};
-    r.motion = {0, path.size};
-  }
+  relate(r, path);
   return r;
 }
 

@@ -20,9 +20,10 @@ struct NetworkResponse {
   std::array<double, 3> energy{};            ///< N, elastic
   std::array<double, 3> loads_by_motions{};  ///< N, sum f . u of all loads
   double dead_by_pattern = 0;                ///< N, f0 . u1
+  double pattern_by_dead = 0;                ///< N, f1 . u0
   double pattern_by_pattern = 0;             ///< N, f1 . u1
   std::array<double, 2> imposed{};           ///< N, the work of imposed motions or a mean strain is imposed d(lambda)
-  double largest_pattern = 0, largest_dead = 0;  ///< N/m, of the forces of contacts
+  double area = 0;                           ///< m²; 0: not known
 
   static double at(const std::array<double, 2>& c, double lambda) { return c[0] + lambda * c[1]; }
   static double at(const std::array<double, 3>& c, double lambda) { return c[0] + lambda * (c[1] + lambda * c[2]); }
@@ -34,6 +35,23 @@ struct NetworkResponse {
            0.5 * (to * to - from * from) * (pattern_by_pattern + imposed[1]);
   }
 };
+
+/// The response behind a break, from that before it: with right-hand sides that a network carries, A and B, and contact
+/// k gone, the work of the loads of B on the change of the motions of A, less that of the imposed motions of B with the
+/// change of the reactions of A, is F_k(B) d_k(A), of the force that k carried under B and the opening of its ends
+/// under A. Energies are works halved (Clapeyron).
+void follow(NetworkResponse& response, const OpenedContact& contact, const LoadPath& path);
+
+/// m², of the assembly; 0: not known, and with it no stress.
+double area_of_stress(const Assembly& assembly);
+
+/// N
+inline double work_of(const ContactForce& f, const ContactDeformation& d) {
+  return f.normal * d.normal + f.tangential * d.tangential;
+}
+
+/// N/m, the largest component of any contact.
+double largest_force(std::span<const ContactForce> forces);
 
 /// \param system with the right-hand sides of the path, the pattern first
 NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,

@@ -178,12 +178,13 @@ bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const Rest
   if (given.force.empty()) return false;
   for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
     const std::vector<double> motion = solver.factor().null_motion(m);
-    double work = 0, size = 0;
+    double work = 0, largest_motion = 0, load = 0;
     for (std::size_t k = 0; k < motion.size(); ++k) {
       work += motion[k] * given.force[k];
-      size += std::abs(motion[k] * given.force[k]);
+      largest_motion = std::max(largest_motion, std::abs(motion[k]));
+      load += std::abs(given.force[k]);
     }
-    if (std::abs(work) <= negligible * size) continue;
+    if (std::abs(work) <= negligible * largest_motion * load) continue;
     why_not_ = "a load drives " + describe_motion(rest.assembly, disc_motions(solver.unknowns(), motion));
     return true;
   }

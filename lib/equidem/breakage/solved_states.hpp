@@ -19,6 +19,11 @@ class SolvedStates : public BreakableSystem {
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override { return states_[k].forces; }
   [[nodiscard]] std::span<const double> motion(std::size_t k) const override { return states_[k].motion; }
   [[nodiscard]] std::span<const double> reactions(std::size_t k) const override { return states_[k].reactions; }
+  [[nodiscard]] std::optional<NextBreak> next_break(const ContactStrengths& strengths,
+                                                    const LoadFactorSearch& search) override {
+    return equidem::next_break(forces(0), states_.size() > 1 ? forces(1) : std::span<const ContactForce>{}, strengths,
+                               search);
+  }
   [[nodiscard]] bool carries(std::size_t k) const override { return states_[k].carried; }
   [[nodiscard]] std::string why_not() const override { return why_not_; }
   [[nodiscard]] std::span<const std::uint8_t> left() const override { return left_; }
@@ -39,7 +44,7 @@ class SolvedStates : public BreakableSystem {
   }
   [[nodiscard]] double largest_residual() const { return largest_residual_; }
 
-  std::vector<State> states_;
+  mutable std::vector<State> states_;  // an implementation may fill them when they are asked for
   std::vector<std::uint8_t> left_;
   std::string why_not_;
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "equidem/breakage/network_response.hpp"
 #include "equidem/breakage/solved_states.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
@@ -21,6 +25,13 @@ DegreesOfFreedom unknowns_of(const BreakableNetwork& network) {
   return unknowns;
 }
 
+std::vector<ContactStrength> strengths_of(const BreakableNetwork& network) {
+  std::vector<ContactStrength> strengths(network.assembly.contacts.size());
+  for (std::size_t c = 0; network.strengths != nullptr && c < strengths.size(); ++c)
+    strengths[c] = {network.strengths->tension[c], network.strengths->shear[c]};
+  return strengths;
+}
+
 class UpdatedSystem final : public SolvedStates {
  public:
   UpdatedSystem(BreakableNetwork network, std::vector<std::uint8_t> held)
@@ -30,11 +41,12 @@ class UpdatedSystem final : public SolvedStates {
         graph_(network_.assembly),
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
-        equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases,
-                     std::vector<ContactStrength>(network_.assembly.contacts.size())) {
-    take();
-    first_force_ = largest_force();
-    measured(equilibrium_.relative_residual());
+        moved_(std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; })),
+        equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
+                     {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
+                      .force_moments = area_of_stress(network_.assembly) > 0}) {
+    energy_ = first_energy_ = energy();
+    measured(equilibrium_.estimated_residual());
   }
 
   /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
@@ -44,8 +56,33 @@ class UpdatedSystem final : public SolvedStates {
       const std::vector<std::int32_t> loosened = remove(contact);
       gone.insert(gone.end(), loosened.begin(), loosened.end());
     }
+    if (contacts.size() != 1) opened_ = nullptr;
     std::ranges::sort(gone);
     return gone;
+  }
+
+  [[nodiscard]] std::optional<NextBreak> next_break(const ContactStrengths& strengths,
+                                                    const LoadFactorSearch& search) override {
+    if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
+    CriticalContact found = equilibrium_.critical(search);
+    for (const HeldMechanism& mechanism : found.mechanisms) judge(mechanism);
+    found_late_ = found_late_ || !found.mechanisms.empty();
+    if (why_not_.empty()) measured(equilibrium_.estimated_residual());
+    return next_break_of(found, search);
+  }
+  [[nodiscard]] const OpenedContact* opened() const override { return opened_; }
+
+  [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
+    take();
+    return SolvedStates::forces(k);
+  }
+  [[nodiscard]] std::span<const double> motion(std::size_t k) const override {
+    take();
+    return SolvedStates::motion(k);
+  }
+  [[nodiscard]] std::span<const double> reactions(std::size_t k) const override {
+    take();
+    return SolvedStates::reactions(k);
   }
 
   [[nodiscard]] std::int64_t unstable_modes() const override { return 0; }
@@ -58,33 +95,45 @@ class UpdatedSystem final : public SolvedStates {
  private:
   std::vector<std::int32_t> remove(std::size_t contact) {
     broken_[contact] = 1;
-    bool loose = parts(contact);
+    taken_ = false;
+    bool loose = parts(contact) || found_late_;
+    found_late_ = false;
     for (const HeldMechanism& mechanism : equilibrium_.remove(contact)) {
       loose = true;
-      for (std::size_t p = 0; p < states_.size(); ++p) judge(mechanism, p);
+      judge(mechanism);
     }
     std::vector<std::int32_t> gone;
     if (loose) gone = leave();
-    take();
-    // Round-off is that of the forces of the last refinement, of which little may be left.
-    constexpr double little = 1e-2, allowed = 1e-13;
-    double residual = equilibrium_.relative_residual();
-    if (residual > allowed || largest_force() < little * first_force_) {
-      static_cast<void>(equilibrium_.refine());
-      take();
-      residual = equilibrium_.relative_residual();
+    opened_ = equilibrium_.opened();
+    if (opened_ != nullptr) {
+      energy_ += (moved_ ? -0.5 : 0.5) * work_of(opened_->force[0], opened_->opening[0]);
+    } else {
+      energy_ = energy();
     }
-    measured(residual);
+    // Residuals are relative to forces at first. The softer the network is, the larger are the errors of motions that
+    // they leave, and where motions drive the fewer are the forces that are left.
+    constexpr double allowed = 1e-12, very_soft = 100;
+    const double softer = moved_ ? first_energy_ / energy_ : energy_ / first_energy_;
+    const bool soft = moved_ && !(energy_ * very_soft > first_energy_);
+    if (states_[0].carried && (soft || !(softer * softer * equilibrium_.estimated_residual() < allowed))) {
+      static_cast<void>(equilibrium_.refine());
+      taken_ = false;
+      opened_ = nullptr;
+      energy_ = energy();
+    }
+    if (why_not_.empty()) measured(equilibrium_.estimated_residual());
     return gone;
   }
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
-  void judge(const HeldMechanism& mechanism, std::size_t p) {
-    if (!mechanism.driven[p]) return;
-    const auto disc = static_cast<std::size_t>(mechanism.component / unknowns_.per_disc);
-    why_not_ =
-        fmt::format("a load moves the part around {}, which nothing holds", describe_disc(network_.assembly, disc));
-    states_[p].carried = false;
+  void judge(const HeldMechanism& mechanism) {
+    for (std::size_t p = 0; p < states_.size(); ++p) {
+      if (!mechanism.driven[p]) continue;
+      const auto disc = static_cast<std::size_t>(mechanism.component / unknowns_.per_disc);
+      why_not_ =
+          fmt::format("a load moves the part around {}, which nothing holds", describe_disc(network_.assembly, disc));
+      states_[p].carried = false;
+    }
   }
 
   /// Whether discs may carry nothing any more without a contact that broke. No disc does that, and no part hangs by one
@@ -95,20 +144,26 @@ class UpdatedSystem final : public SolvedStates {
     const Contact& c = network_.assembly.contacts[contact];
     for (const std::int32_t disc : {c.i, c.j}) {
       std::int64_t others = 0;
-      for (const auto& edge : graph_.of(disc)) others += broken_[edge.contact] == 0 ? 1 : 0;
+      for (const auto& edge : graph_.of(disc)) others += carries_on(edge) ? 1 : 0;
       if (others <= 2) return true;
     }
     way_.clear();
-    return !(finds_way(c.i, c.j) && finds_way(c.i, c.j));
+    return !(finds_way(c) && finds_way(c));
   }
 
-  /// A short way over contacts and discs that no earlier way of the same pair takes.
-  bool finds_way(std::int32_t from, std::int32_t to) {
+  [[nodiscard]] bool carries_on(const ContactGraph::Incidence& edge) const {
+    return broken_[edge.contact] == 0 && left_[edge.other] == 0;
+  }
+
+  /// A short way between the ends of a contact over contacts and discs that no earlier way takes; in a periodic cell to
+  /// the image of j that it joins to i.
+  bool finds_way(const Contact& gone) {
     constexpr std::size_t most_discs = 300;
     struct Step {
-      std::int32_t disc, before, contact;
+      std::int32_t disc, before, contact, shift_x, shift_y;
     };
-    std::vector<Step> reached = {{from, -1, -1}};
+    const std::int32_t to = gone.j;
+    std::vector<Step> reached = {{gone.i, -1, -1, 0, 0}};
     const auto taken = [&](std::int32_t disc) {
       return std::any_of(reached.begin(), reached.end(), [&](const Step& step) { return step.disc == disc; }) ||
              std::any_of(way_.begin(), way_.end(), [&](const auto& on) { return on.first == disc && disc != to; });
@@ -117,8 +172,13 @@ class UpdatedSystem final : public SolvedStates {
       for (const auto& edge : graph_.of(reached[next].disc)) {
         const bool used =
             std::any_of(way_.begin(), way_.end(), [&](const auto& on) { return on.second == edge.contact; });
-        if (broken_[edge.contact] != 0 || used || taken(edge.other)) continue;
-        reached.push_back({edge.other, static_cast<std::int32_t>(next), edge.contact});
+        if (!carries_on(edge) || used || taken(edge.other)) continue;
+        const Contact& contact = network_.assembly.contacts[edge.contact];
+        const std::int32_t sign = contact.i == reached[next].disc ? 1 : -1;
+        const std::int32_t x = reached[next].shift_x + sign * contact.shift_x;
+        const std::int32_t y = reached[next].shift_y + sign * contact.shift_y;
+        if (edge.other == to && (x != gone.shift_x || y != gone.shift_y)) continue;
+        reached.push_back({edge.other, static_cast<std::int32_t>(next), edge.contact, x, y});
         if (edge.other != to) continue;
         for (std::int32_t k = static_cast<std::int32_t>(reached.size()) - 1; reached[k].before >= 0;
              k = reached[k].before)
@@ -129,12 +189,12 @@ class UpdatedSystem final : public SolvedStates {
     return false;
   }
 
-  /// The largest force of a contact under the first right-hand side, N/m.
-  [[nodiscard]] double largest_force() const {
-    double largest = 0;
-    for (const ContactForce& f : states_[0].forces)
-      largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
-    return largest;
+  /// The elastic energy under the first right-hand side, N.
+  [[nodiscard]] double energy() const {
+    const std::span<const ContactForce> all = forces(0);
+    return contact_sums<1>(all.size(), [&](std::size_t c, std::array<double, 1>& sum) {
+      sum[0] += linear_spring_energy_of(network_.springs[c], all[c]);
+    })[0];
   }
 
   /// The network without discs that can carry no force any more.
@@ -164,10 +224,17 @@ class UpdatedSystem final : public SolvedStates {
       if (left[d] != 0 && left_[d] == 0) gone.push_back(static_cast<std::int32_t>(d));
     }
     left_ = std::move(left);
+    std::vector<std::size_t> idle;
+    for (const std::int32_t disc : gone) {
+      for (const auto& edge : graph_.of(disc)) idle.push_back(static_cast<std::size_t>(edge.contact));
+    }
+    equilibrium_.spare(idle);
     return gone;
   }
 
-  void take() {
+  void take() const {
+    if (taken_) return;
+    taken_ = true;
     const auto b = static_cast<std::size_t>(unknowns_.per_disc);
     for (std::size_t p = 0; p < states_.size(); ++p) {
       State& state = states_[p];
@@ -202,9 +269,13 @@ class UpdatedSystem final : public SolvedStates {
   DegreesOfFreedom unknowns_;
   ContactGraph graph_;
   std::vector<std::uint8_t> held_, broken_;
-  UpdatedEquilibrium equilibrium_;
+  bool moved_;  // by imposed motions or a mean strain alone
+  mutable UpdatedEquilibrium equilibrium_;
+  mutable bool taken_ = false;  // whether states_ are those of the network as it is
+  const OpenedContact* opened_ = nullptr;
+  bool found_late_ = false;  // mechanisms by the last search
+  double energy_ = 0, first_energy_ = 0;
   std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
-  double first_force_ = 0;
 };
 
 }  // namespace

@@ -148,11 +148,7 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
   }
   for (std::size_t c = 0; c < columns; c += most_columns) {
     const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
-    solve_sweep_.up([&](std::size_t t) { return symbolic_->updates(t) * some.count; },
-                    [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
-                      forward(t, some, update, children);
-                    },
-                    [](double) {});
+    forward(some);
     solve_sweep_.down([&](std::size_t t) { backward(t, some); });
   }
   for (std::size_t c = 0; c < columns; ++c) {
@@ -160,6 +156,15 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
     permute_from_elimination<Real>(*symbolic_, std::span(y).subspan(c * n, n), column);
     if constexpr (single) multiply_by_scale(column, size[c]);
   }
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::forward(const Columns& y) const {
+  solve_sweep_.up([&](std::size_t t) { return symbolic_->updates(t) * y.count; },
+                  [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
+                    forward(t, y, update, children);
+                  },
+                  [](double) {});
 }
 
 template <typename Real>

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "equidem/linear/breakable_factor.hpp"
+#include "equidem/linear/kernels/panel_change.hpp"
 #include "equidem/linear/multifrontal/cholesky_factor.hpp"
 
 namespace equidem {
@@ -40,15 +41,21 @@ class UpdatedCholesky final : public BreakableFactor {
   struct Load {
     std::array<double, 3> at_i{}, at_j{};
   };
+  /// Solutions z of L z = q, for given q that change with K: a change by c v v^T changes them by c v d.
+  struct Followed {
+    std::span<double> solutions;                       ///< one after another, in the order of elimination
+    std::vector<std::array<double, most_changes>> by;  ///< d of each of them, for each change
+  };
   /// Changes of one contact, at most most_changes, and loads on its discs, at most most_right_sides, for which L y = f
   /// is solved with the new factor. Stiffness that is added is added first.
-  FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads);
+  FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads, const Followed& followed = {});
   [[nodiscard]] bool change(std::span<const RankOneChange> changes) override;
 
   void solve(std::span<double> x, int right_hand_sides) const override { factor_.solve(x, right_hand_sides); }
   [[nodiscard]] const FactorReport& report() const override { return factor_.report(); }
   /// L^T x = y on one front (CholeskyFactor::backward).
   using Columns = CholeskyFactor<double>::Columns;
+  void forward(const Columns& y) const { factor_.forward(y); }
   void backward(std::size_t t, const Columns& y) const { factor_.backward(t, y); }
   /// The front that eliminates a disc, and those above it.
   [[nodiscard]] std::vector<std::int32_t> path_of(std::int32_t i, std::int32_t j) const;

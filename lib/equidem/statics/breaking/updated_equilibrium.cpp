@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -20,10 +21,12 @@ struct UpdatedEquilibrium::Implementation {
   int unwatched = 0;  // changes since the residual was looked at
   int interval = 4;   // changes after which it is looked at again
   bool carried = true;
+  bool lost_digits = true;  // since the last refinement: nothing is claimed before another one
   double measured = 0;  // relative residual after the last refinement
   double reacted = 0;   // the largest reaction since then of what holds a mechanism, over the load
   double caution = 1;   // factor on what rounding is taken to leave, more where a residual was found above it
   LargeVector<double> left{};
+  std::optional<OpenedContact> opened{};
 
   [[nodiscard]] double claimed() const {
     constexpr double of_measuring = 4 * std::numeric_limits<double>::epsilon();
@@ -32,6 +35,7 @@ struct UpdatedEquilibrium::Implementation {
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
   /// \param least_steps done however small the residual is
   /// \param found gets the mechanisms that a new factorization came across
+  /// The residual found is held against that claimed, but where digits were lost.
   double refine(int least_steps, std::vector<HeldMechanism>* found = nullptr);
 };
 
@@ -120,7 +124,9 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   add(g.tangential, springs.kT - before.kT);
   if (changes.empty()) return {};
   ++state.counters.updates;
-  const FactorPath path = state.factor->change(changes, loads);
+  OpenedContact let_go;
+  for (std::size_t p = 0; p < cases; ++p) let_go.force[p] = state.force_of(number, p);
+  const FactorPath path = state.change_factor(number, springs, changes, loads, let_go.moment);
   state.set_contact(number, springs, after);
 
   std::vector<HeldMechanism> mechanisms;
@@ -130,6 +136,8 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
     for (std::size_t p = 0; p < cases; ++p) anchors.push_back(state.moved_by(component, p));
   }
   state.follow(path, path_blocks);
+  for (std::size_t p = 0; p < cases; ++p) let_go.opening[p] = state.deformation(number, p);
+  opened.reset();
   for (std::size_t m = 0; m < mechanisms.size(); ++m) {
     for (std::size_t p = 0; p < cases; ++p) {
       double& reaction = mechanisms[m].reaction[p];
@@ -144,9 +152,12 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   }
   ++unwatched;
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
-  const bool lost_digits = path.share < delicate || path.share > 1 / delicate || !path.held.empty();
-  if (carried && (lost_digits || claimed() > state.options.watched_residual || unwatched >= interval))
+  lost_digits = lost_digits || path.share < delicate || path.share > 1 / delicate || !path.held.empty();
+  if (carried && (lost_digits || claimed() > state.options.watched_residual || unwatched >= interval)) {
     refine(0, &mechanisms);
+  } else if (carried && springs.kN == 0 && springs.kT == 0) {
+    opened = let_go;
+  }
   if (carried) state.counters.largest_residual = std::max(state.counters.largest_residual, claimed());
   return mechanisms;
 }
@@ -170,7 +181,7 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
   };
   const double before = state.residual(left);
   double after = improved(before);
-  const double found_over_claimed = state.counters.refinements > 1 && carried ? before / expected : 0;
+  const double found_over_claimed = lost_digits ? 0 : before / expected;
   state.counters.most_over_claimed = std::max(state.counters.most_over_claimed, found_over_claimed);
   if (carried && after > options.watched_residual) {
     ++state.counters.mended;
@@ -192,6 +203,7 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
     }
   }
   measured = after;
+  lost_digits = !carried;
   reacted = 0;
   unwatched = 0;
   if (found_over_claimed > 1) {
@@ -228,17 +240,25 @@ std::vector<HeldMechanism> UpdatedEquilibrium::remove(std::size_t contact) {
   return implementation_->change(contact, {0, 0});
 }
 
+const OpenedContact* UpdatedEquilibrium::opened() const {
+  return implementation_->opened ? &*implementation_->opened : nullptr;
+}
+
+void UpdatedEquilibrium::spare(std::span<const std::size_t> contacts) {
+  for (const std::size_t contact : contacts) implementation_->state.spare(contact);
+}
+
 std::vector<HeldMechanism> UpdatedEquilibrium::change(std::size_t contact, SpringConstants springs) {
   return implementation_->change(contact, springs);
 }
 
-CriticalContact UpdatedEquilibrium::critical() {
+CriticalContact UpdatedEquilibrium::critical(const LoadFactorSearch& search) {
   Implementation& all = *implementation_;
-  CriticalContact found = all.state.critical();
+  CriticalContact found{all.state.critical(search)};
   if (!all.carried || !(all.claimed() > all.state.options.watched_residual) || all.state.is_refined()) return found;
   std::vector<HeldMechanism> mechanisms;
   all.refine(0, &mechanisms);
-  if (all.carried) found = all.state.critical();
+  found = all.carried ? CriticalContact{all.state.critical(search)} : CriticalContact{};
   found.mechanisms = std::move(mechanisms);
   return found;
 }
@@ -260,6 +280,7 @@ PreciseMotion UpdatedEquilibrium::motion(std::size_t of_case) {
 }
 
 double UpdatedEquilibrium::refine() {
+  implementation_->opened.reset();
   return implementation_->refine(1);
 }
 

@@ -3,6 +3,7 @@
 /// The states of rest of a network whose contacts break one after another, from a factor that is updated.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,8 +19,7 @@
 namespace equidem {
 
 struct UpdatedEquilibriumOptions {
-  double friction = 0;           ///< >= 0
-  double tie_tolerance = 1e-10;  ///< load factors that differ by less, relatively, count as equal
+  double friction = 0;  ///< >= 0
   /// Bring only those parts of the network up to date in which a contact may be critical. The contact found is the
   /// same.
   bool skip = true;
@@ -28,6 +28,16 @@ struct UpdatedEquilibriumOptions {
   /// may have left so much.
   double watched_residual = 1e-12;
   int most_changes_unwatched = 256;  ///< after which the residual is looked at in any case
+  bool force_moments = false;        ///< follow the sums of OpenedContact::moment
+};
+
+/// A contact that was removed, and what all others did. Work and energy follow (breakage/network_response.hpp): with
+/// contact k gone, sum over loads and imposed motions of right-hand side b as they work on the change of the state of a
+/// is the work of the force that k carried under b along the opening of its ends under a.
+struct OpenedContact {
+  std::array<ContactForce, 2> force{};          ///< per right-hand side, as it let go, N/m
+  std::array<ContactDeformation, 2> opening{};  ///< of its ends without it, m
+  std::array<Tensor2, 2> moment{};              ///< change of sum F_i l_j over all contacts, N
 };
 
 struct UpdateCounters {
@@ -52,10 +62,7 @@ struct HeldMechanism {
 };
 
 /// The contact that breaks next.
-struct CriticalContact {
-  BreakingPoint at;
-  std::int64_t contact = -1;  ///< -1: none breaks at any load factor; of ties the least number
-  std::int64_t ties = 0;      ///< other contacts with the same load factor
+struct CriticalContact : FirstToBreak {
   /// Found where motions had to be refined, and the factor made anew, before the contact could be told.
   std::vector<HeldMechanism> mechanisms{};
 };
@@ -80,7 +87,14 @@ class UpdatedEquilibrium {
   /// Springs of a contact instead of those that it has; at most as stiff as at first. A contact that was removed comes
   /// back without its strength, and without force only where its ends are where they were at first.
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
-  [[nodiscard]] CriticalContact critical();
+  /// Contacts that were removed do not break. Where lambda goes back towards 0, in a time proportional to the contacts.
+  [[nodiscard]] CriticalContact critical(const LoadFactorSearch& search = {});
+
+  /// The contact that the last call of remove() took out, where the state has followed from that before it alone: null
+  /// where motions were refined with it.
+  [[nodiscard]] const OpenedContact* opened() const;
+  /// Contacts that never break from now on, such as those of discs that carry nothing any more.
+  void spare(std::span<const std::size_t> contacts);
 
   /// Per contact, N/m.
   [[nodiscard]] std::vector<ContactForce> forces(std::size_t of_case);

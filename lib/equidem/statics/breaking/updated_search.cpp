@@ -2,6 +2,7 @@
 /// \file
 /// The search for the contact that breaks next (UpdatedState::critical).
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -12,6 +13,27 @@
 #include "equidem/statics/breaking/updated_state.hpp"
 
 namespace equidem {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// The least of all keys, and one that does not tie with it and is none greater than the next such one.
+struct LeastKeys {
+  const LoadFactorSearch& search;
+  double least = never, second = never;
+
+  void include(double key) {
+    if (key == never) return;
+    if (key < least) {
+      if (least - key > tie_distance(key, search)) second = least;
+      least = key;
+    } else if (key - least > tie_distance(least, search)) {
+      second = std::min(second, key);
+    }
+  }
+};
+
+}  // namespace
 
 void UpdatedState::bound_children(std::size_t number) {
   thread_local std::vector<double> motion;
@@ -27,43 +49,57 @@ void UpdatedState::bound_children(std::size_t number) {
   }
 }
 
-CriticalContact UpdatedState::critical() {
-  // Best first: the block that may contain the least load factor is brought up to date, then its children are
-  // candidates. Blocks of one round are independent, and their choice does not depend on the number of threads.
+std::array<double, 2> UpdatedState::keys_of(std::size_t number, const LoadFactorSearch& search) const {
+  LeastKeys keys{search};
+  const MotionBlock& block = (*blocks_)[number];
+  for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) keys.include(moment_of(c, search).key());
+  return {keys.least, keys.second};
+}
+
+FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
+  if (search.direction != search_.direction || search.no_live != search_.no_live || search.no_dead != search_.no_dead) {
+    search_ = search;
+    bring_all_up_to_date();
+    evaluate_blocks();
+  }
+  // Best first: the block that may contain the least key is brought up to date, then its children are candidates.
+  // Blocks of one round are independent, and their choice does not depend on the number of threads.
   using Candidate = std::pair<double, std::int32_t>;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
   for (std::size_t k = 0; k < states_.size(); ++k) {
-    if ((*blocks_)[k].parent < 0) candidates.emplace(states_[k].subtree.load_factor, static_cast<std::int32_t>(k));
+    if ((*blocks_)[k].parent < 0) candidates.emplace(states_[k].subtree.least_key(search), k);
   }
   open_.clear();
-  double least = std::numeric_limits<double>::infinity();
+  LeastKeys keys{search};
   std::vector<std::int32_t> round;
   std::vector<Visit> visits;
+  std::vector<std::array<double, 2>> found;
   while (true) {
     round.clear();
     const std::size_t most = 4 + open_.size() / 4;
-    const double limit = least * (1 + options.tie_tolerance);
-    while (!candidates.empty() && round.size() < most && candidates.top().first <= limit) {
+    while (!candidates.empty() && round.size() < most && candidates.top().first <= keys.second &&
+           candidates.top().first < never) {
       round.push_back(candidates.top().second);
       candidates.pop();
     }
     if (round.empty()) break;
     visits.assign(round.size(), {});
+    found.assign(round.size(), {never, never});
     parallel_tasks(round.size(), [&](std::size_t k, int worker) {
       visits[k] = visit(round[k], nullptr, worker);
+      if (states_[round[k]].own.least_key(search) <= keys.second) found[k] = keys_of(round[k], search);
       bound_children(round[k]);
     });
     for (std::size_t k = 0; k < round.size(); ++k) {
       account(visits[k]);
       states_[round[k]].open = true;
       open_.push_back(round[k]);
-      least = std::min(least, states_[round[k]].own.load_factor);
-      for (const std::int32_t child : (*blocks_)[round[k]].children) {
-        candidates.emplace(states_[child].at_worst.load_factor, child);
-      }
+      for (const double key : found[k]) keys.include(key);
+      for (const std::int32_t child : (*blocks_)[round[k]].children)
+        candidates.emplace(states_[child].at_worst.least_key(search), child);
     }
   }
-  const CriticalContact found = least_of_open(least);
+  const FirstToBreak first = first_of_open(search, keys.second);
   for (auto k = open_.rbegin(); k != open_.rend(); ++k) {  // children first
     BlockState& state = states_[*k];
     state.subtree = state.own;
@@ -72,27 +108,22 @@ CriticalContact UpdatedState::critical() {
     }
   }
   for (const std::int32_t k : open_) states_[k].open = false;
-  return found;
+  return first;
 }
 
-CriticalContact UpdatedState::least_of_open(double least) {
-  CriticalContact found;
-  if (least == std::numeric_limits<double>::infinity()) return found;
-  const double limit = least * (1 + options.tie_tolerance);
-  std::int64_t reached = 0;
+FirstToBreak UpdatedState::first_of_open(const LoadFactorSearch& search, double limit) const {
+  std::vector<std::pair<BreakingMoment, std::int64_t>> contacts;
   for (const std::int32_t k : open_) {
-    if (states_[k].own.load_factor > limit) continue;
+    if (states_[k].own.least_key(search) > limit) continue;
     const MotionBlock& block = (*blocks_)[k];
     for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) {
-      const BreakingPoint at = breaking_point(contacts_[c].force, contacts_[c].strength, options.friction);
-      if (at.load_factor > limit) continue;
-      ++reached;
-      const std::int32_t number = blocks_->contacts()[c];
-      if (found.contact < 0 || number < found.contact) found.at = at, found.contact = number;
+      const BreakingMoment moment = moment_of(c, search);
+      if (moment.key() <= limit) contacts.emplace_back(moment, blocks_->contacts()[c]);
     }
   }
-  found.ties = reached - 1;
-  return found;
+  return FirstToBreak::among(
+      contacts.size(), [&](std::size_t k) { return contacts[k].first; },
+      [&](std::size_t k) { return contacts[k].second; }, search);
 }
 
 }  // namespace equidem

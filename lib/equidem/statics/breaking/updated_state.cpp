@@ -15,7 +15,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t entries_at_once = 1 << 13;
+constexpr std::size_t entries_at_once = 1 << 13, blocks_at_once = 1 << 6;
 
 double length_of(std::span<const double> x) {
   return std::sqrt(sums_over<1>(x.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
@@ -68,8 +68,9 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
   for (std::size_t k = 0; k < states_.size(); ++k) {
     const MotionBlock& block = (*blocks_)[k];
     for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) {
-      states_[k].rate =
-          std::max(states_[k].rate, utilization_rate(contacts_[c].springs, contacts_[c].strength, options.friction));
+      const ContactStrength& strength = contacts_[c].strength;
+      states_[k].rate = std::max(states_[k].rate, utilization_rate(contacts_[c].springs, strength, options.friction));
+      if (strength.shear > 0) states_[k].pressed = std::max(states_[k].pressed, options.friction / strength.shear);
     }
     for (const std::int32_t child : block.children) states_[k].rate = std::max(states_[k].rate, states_[child].rate);
   }
@@ -188,8 +189,22 @@ void UpdatedState::bring_up_to_date(std::span<const std::int32_t> blocks, const 
 
 void UpdatedState::evaluate_block(std::size_t number) {
   const MotionBlock& block = (*blocks_)[number];
-  states_[number].own = utilization_of(
-      std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin), options.friction);
+  BlockState& state = states_[number];
+  const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
+  // A compression that counts as 0 adds nothing to the strength in shear.
+  state.own =
+      utilization_of(contacts, options.friction, search_.direction)
+          .after(state.pressed * std::max(search_.no_dead, 0.0), state.pressed * std::max(search_.no_live, 0.0));
+}
+
+void UpdatedState::evaluate_blocks() {
+  parallel_ranges(states_.size(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) evaluate_block(k);
+  });
+  for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
+    states_[k].subtree = states_[k].own;
+    for (const std::int32_t child : (*blocks_)[k].children) states_[k].subtree.include(states_[child].subtree);
+  }
 }
 
 void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
@@ -209,6 +224,70 @@ void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> 
     states_[*block].subtree = {0, 0};  // unknown: its children are looked at
   }
   for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
+}
+
+// The sum F_i l_j over contacts is what their forces work on the motion of all discs with the gradient e_i e_j: q.u
+// with the forces q that this motion needs, and what prescribed motions and mean strains add. q.x = (L^-1 q).(L^T x),
+// and behind a change L^T x is not zero on its path alone.
+constexpr std::array<Tensor2, 4> moment_gradients = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
+void UpdatedState::solve_moments() {
+  if (!options.force_moments) return;
+  const std::size_t n = components();
+  std::vector<ContactForce> forces(assembly.contacts.size());
+  std::vector<double> q(n);
+  moments_.resize(moment_gradients.size() * n);
+  for (std::size_t g = 0; g < moment_gradients.size(); ++g) {
+    for (std::size_t c = 0; c < forces.size(); ++c) {
+      forces[c] = linear_spring_force(
+          springs[c],
+          affine_deformation(frame_of(assembly, c), assembly.branch(assembly.contacts[c]), moment_gradients[g]));
+    }
+    internal_force(assembly, graph, unknowns, forces, q);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (unknowns.held[k] != DegreesOfFreedom::free) q[k] = 0;
+    }
+    permute_to_elimination<double>(*symbolic_, q, std::span(moments_).subspan(g * n, n));
+  }
+  factor->forward({moments_.data(), n, moment_gradients.size()});
+}
+
+FactorPath UpdatedState::change_factor(std::size_t number, const SpringConstants& to,
+                                       std::span<const RankOneChange> changes,
+                                       std::span<const UpdatedCholesky::Load> loads, std::span<Tensor2> moments) {
+  if (!options.force_moments) return factor->change(changes, loads);
+  const ContactFrame frame = frame_of(assembly, number);
+  const Vec2 branch = assembly.branch(assembly.contacts[number]);
+  UpdatedCholesky::Followed followed{moments_, {}};
+  for (const Tensor2& gradient : moment_gradients) {
+    const ContactDeformation d = affine_deformation(frame, branch, gradient);
+    followed.by.push_back({to.kN != springs[number].kN ? d.normal : d.tangential, d.tangential});
+  }
+  const FactorPath path = factor->change(changes, loads, followed);
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    std::array<double, moment_gradients.size()> sums{};
+    const double* y = path.values.data();
+    for (const std::int32_t t : path.fronts) {
+      const std::size_t pivots = symbolic_->pivots(t), begin = symbolic_->tree.nodes[t].begin * b;
+      for (std::size_t g = 0; g < sums.size(); ++g) {
+        const double* z = moments_.data() + g * components() + begin;
+        for (std::size_t k = 0; k < pivots; ++k) sums[g] += z[k] * y[p * pivots + k];
+      }
+      y += pivots * cases.size();
+    }
+    moments[p] =
+        Tensor2{sums[0], sums[1], sums[2], sums[3]} + -1.0 * outer(force_on_i(frame, force_of(number, p)), branch);
+  }
+  return path;
+}
+
+ContactDeformation UpdatedState::deformation(std::size_t number, std::size_t of_case) const {
+  // The base is the larger part; the rest is a difference of single doubles.
+  ContactDeformation d = deformation_of(network(), base[of_case], cases[of_case].gradient, number);
+  const BreakingContact& c = contacts_[slot_[number]];
+  const ContactDeformation since = opening_of(c, symbolic_->block, moved_.data() + of_case * components());
+  return {d.normal + since.normal, d.tangential + since.tangential};
 }
 
 void UpdatedState::bring_all_up_to_date() {
@@ -287,7 +366,10 @@ bool UpdatedState::factorize() {
     ++counters.factorizations;
     growth_ = 1;
     const bool first = counters.factorizations == 1;
-    if (factor->factorize({matrix, assembly, graph})) return true;
+    if (factor->factorize({matrix, assembly, graph})) {
+      solve_moments();
+      return true;
+    }
     if (first || factor->report().smallest_component < 0) return false;
     hold(factor->report().smallest_component);
   }
@@ -336,17 +418,13 @@ void UpdatedState::evaluate_contacts() {
   });
   scratch_.resize(thread_count());
   for (auto& x : scratch_) x.resize(moved_.size());
-  for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
-    evaluate_block(k);
-    states_[k].subtree = states_[k].own;
-    for (const std::int32_t child : (*blocks_)[k].children) states_[k].subtree.include(states_[child].subtree);
-  }
+  evaluate_blocks();
 }
 
 double UpdatedState::bytes() const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
   double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(slot_) + of(moved_) +
-                 of(boundary_) + of(path_offset_);
+                 of(boundary_) + of(path_offset_) + of(moments_);
   for (const auto& x : scratch_) bytes += of(x);
   for (const PreciseMotion& motion : base) bytes += of(motion.high) + of(motion.low);
   return bytes;

@@ -46,8 +46,16 @@ class UpdatedState {
   [[nodiscard]] double rounding() const;
   /// Whether motions were refined after the last visit that found any.
   [[nodiscard]] bool is_refined() const { return visits_.fronts == 0; }
-  [[nodiscard]] CriticalContact critical();
+  [[nodiscard]] FirstToBreak critical(const LoadFactorSearch& search);
 
+  /// The factor with other springs of one contact. \param changes of them that there are, normal before tangential
+  /// \param moments get what sum F_i l_j changes by where it is taken out, per right-hand side
+  FactorPath change_factor(std::size_t contact, const SpringConstants& to, std::span<const RankOneChange> changes,
+                           std::span<const UpdatedCholesky::Load> loads, std::span<Tensor2> moments);
+  /// Stretch and slip of the ends of a contact, as of the last visit.
+  [[nodiscard]] ContactDeformation deformation(std::size_t contact, std::size_t of_case) const;
+  /// A contact that does not break.
+  void spare(std::size_t contact) { contacts_[slot_[contact]].strength = {}; }
   void set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces);
   [[nodiscard]] ContactForce force_of(std::size_t contact, std::size_t of_case) const;
   [[nodiscard]] std::span<const Held> holds() const { return holds_; }
@@ -68,7 +76,7 @@ class UpdatedState {
   double residual(LargeVector<double>& left) const;
   /// Add the motions that balance what is left, which is lost.
   void correct_motions(LargeVector<double>& left);
-  /// Forces and load factors of all contacts from their motions.
+  /// Forces of all contacts from their motions.
   void evaluate_contacts();
   [[nodiscard]] double bytes() const;
 
@@ -96,6 +104,7 @@ class UpdatedState {
     Utilization subtree;   ///< at worst, as of its last visit
     Utilization at_worst;  ///< of its subtree now, where its parent is up to date
     double rate = 0;       ///< the largest utilization_rate of its subtree
+    double pressed = 0;    ///< the largest friction / shear of its contacts, m/N
     bool open = false;     ///< of the search at hand: its children are looked at one by one
   };
 
@@ -106,10 +115,18 @@ class UpdatedState {
   bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
   Visit visit(std::size_t block, const FactorPath* path, int worker);
   void account(const Visit& visit);
+  /// The right-hand sides whose products with a motion are sum F_i l_j, solved for with L.
+  void solve_moments();
   void evaluate_block(std::size_t block);
+  void evaluate_blocks();
   void bound_children(std::size_t block);
-  /// The contact with the least load factor among those of open blocks.
-  [[nodiscard]] CriticalContact least_of_open(double least);
+  /// Of the contacts of a block: the least key, and the least that does not tie with it.
+  [[nodiscard]] std::array<double, 2> keys_of(std::size_t block, const LoadFactorSearch& search) const;
+  [[nodiscard]] BreakingMoment moment_of(std::int64_t slot, const LoadFactorSearch& search) const {
+    return breaking_moment(contacts_[slot].force, contacts_[slot].strength, options.friction, search);
+  }
+  /// Among the contacts of open blocks.
+  [[nodiscard]] FirstToBreak first_of_open(const LoadFactorSearch& search, double limit) const;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;
   std::unique_ptr<MotionBlocks> blocks_;
@@ -117,10 +134,12 @@ class UpdatedState {
   std::vector<BreakingContact> contacts_;     // in the order of blocks
   std::vector<std::int32_t> slot_;            // of each contact in contacts_
   LargeVector<double> moved_;                 // since the last refinement, in the order of elimination, case by case
+  LargeVector<double> moments_;               // z of L z = q, xx, xy, yx, yy, in the order of elimination
   std::vector<double> boundary_;              // moved_ of the boundary of each block at its last visit
   std::vector<std::int32_t> path_offset_;     // into FactorPath::values, per front; -1: not on the path
   std::vector<LargeVector<double>> scratch_;  // per worker: motion since the last visit
   std::vector<std::int32_t> open_;            // blocks, parents first
+  LoadFactorSearch search_;                   // of which the utilizations of blocks are
   std::vector<Held> holds_;
   Visit visits_;       // all since the last refinement
   double growth_ = 1;  // of the squares of errors of the factor since it was made

@@ -24,11 +24,15 @@ struct BreakingContact {
   ProportionalForce force;
 };
 
+/// Stretch and slip by the motions of its discs. \param motion per component, `block` of a disc, m
+ContactDeformation opening_of(const BreakingContact& contact, int block, const double* motion);
+
 /// Add to the forces of contacts what motions of their discs do. \param live of the load that grows, `dead` of the
 /// other one, null where there is none: per component, `block` of a disc, m
 void add_forces(std::span<BreakingContact> contacts, int block, const double* live, const double* dead);
 
-/// The least load factor and the largest utilization under the dead load.
-Utilization utilization_of(std::span<const BreakingContact> contacts, double friction);
+/// The least load factor in a direction of lambda, and the largest utilization under the dead load; 0 and infinite
+/// where a contact has no strength.
+Utilization utilization_of(std::span<const BreakingContact> contacts, double friction, double direction);
 
 }  // namespace equidem
