@@ -197,6 +197,7 @@ inline constexpr Quantity quantities[] = {
     {"energy_released", "N", "energy that the break takes"},
     {"loosened", "", "numbers of the discs that carry nothing any more"},
     {"event_count", "", "number of contacts that broke"},
+    {"estimated_events", "", "number of breaks for which the time is estimated"},
     {"broken_in_tension", "", "number of contacts that broke in tension"},
     {"broken_in_shear", "", "number of contacts that broke in shear"},
     {"tied_events", "", "number of contacts that broke at the same lambda as others"},
