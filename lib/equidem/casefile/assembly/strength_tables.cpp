@@ -70,9 +70,6 @@ void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder)
 void check_strength_target(const TomlValue& root) {
   const TomlValue* target = root.find("strength_target");
   if (target == nullptr) return;
-  if (target->find("toughness") != nullptr && target->find("notches") == nullptr)
-    fail_at(*target, "strength_target.notches", "the lengths of the notches are missing",
-            "a toughness is read off notched samples", "Add notches = [...] in m");
   const TomlValue* strength = root.find("strength");
   if (strength == nullptr) return;
   for (const char* name : {"tension", "shear"}) {
