@@ -77,7 +77,13 @@ void add_mean(Results& out, const std::string& key, const std::string& name, con
   } else {
     out.set(place + "_deviation", nullptr);
   }
-  out.add(place + "_off", "off by", mean.mean / wanted - 1, "", {Shown::percent});
+  constexpr double rounding = 1e-12;
+  const double off = mean.mean / wanted - 1;
+  if (std::abs(off) > rounding) {
+    out.add(place + "_off", "off by", off, "", {Shown::percent});
+  } else {
+    out.note(", as wanted").set(place + "_off", off);
+  }
 }
 
 void add_reached_strengths(Results& out, const StrengthTargets& wanted, const StrengthCalibration& found) {
@@ -102,7 +108,7 @@ void add_feasible(Results& out, const StrengthTargetCase& target, const Strength
   const SecondStrength second = second_of(target.wanted);
   const std::string unknown = target.shear_over_tension ? "friction" : "shear_over_tension";
   const auto shown = [](double ratio) {
-    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("infinity");
+    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound");
   };
   out.line("feasible ratio", fmt::format("{} over tensile from {} to {}{}, for {} from {:g} to {:g}", second.name,
                                          shown(found.lowest_ratio()), shown(found.highest_ratio()),

@@ -154,11 +154,15 @@ void Search::refuse() const {
     remedy = finds_friction() ? "Take another strength.shear_over_tension"
                               : "Take another friction, a Weibull modulus, or another assembly";
   }
-  computation_failed(
-      fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit),
-      fmt::format("it has {:.4g} to {:.4g}{}, for {} from {:g} ({:.4g}) to {:g} ({:.4g})", least->ratio, most->ratio,
-                  unit, what, tried_.front().value, tried_.front().ratio, tried_.back().value, tried_.back().ratio),
-      remedy);
+  const auto shown = [](double ratio) {
+    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound, for the load never falls");
+  };
+  if (!std::isfinite(least->ratio)) remedy = "Load the sample along its other axis, or take one without straight rows";
+  computation_failed(fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit),
+                     fmt::format("it has {} to {}{}; at the ends, {} of {:g} and {:g}, {} and {}", shown(least->ratio),
+                                 shown(most->ratio), unit, what, tried_.front().value, tried_.back().value,
+                                 shown(tried_.front().ratio), shown(tried_.back().ratio)),
+                     remedy);
 }
 
 /// Values between the ends, where both lie on one side of the target: the ratio may turn round.

@@ -25,10 +25,10 @@ namespace equidem {
 
 /// The strengths wanted; compressive or toughness.
 struct StrengthTargets {
-  double tensile = 0;                 ///< Pa
-  std::optional<double> compressive;  ///< Pa, unconfined; or
-  std::optional<double> toughness;    ///< Pa sqrt(m), mode I; the mean over notches
-  std::vector<double> notches;        ///< m, lengths 2a; with toughness
+  double tensile = 0;                      ///< Pa
+  std::optional<double> compressive = {};  ///< Pa, unconfined; or
+  std::optional<double> toughness = {};    ///< Pa sqrt(m), mode I; the mean over notches
+  std::vector<double> notches = {};        ///< m, lengths 2a; with toughness
 
   /// The second strength, Pa or Pa sqrt(m).
   [[nodiscard]] double second() const { return compressive ? *compressive : *toughness; }
@@ -36,9 +36,10 @@ struct StrengthTargets {
 
 struct StrengthCalibrationOptions {
   /// Friction, bond length and Weibull modulus; tension and shear are found, each sample has a seed of its own.
-  StrengthOptions strengths;
-  std::optional<double> shear_over_tension;  ///< f_s/f_t: the friction is found; none: f_s is, with the friction given
-  double accuracy = 0.005;                   ///< of the ratio of the two strengths, relative
+  StrengthOptions strengths = {};
+  std::optional<double> shear_over_tension =
+      {};                   ///< f_s/f_t: the friction is found; none: f_s is, with the friction given
+  double accuracy = 0.005;  ///< of the ratio of the two strengths, relative
 };
 
 /// One sample with its seeds.
@@ -82,7 +83,7 @@ struct StrengthCalibration {
 /// The least and largest values that are tried.
 inline constexpr double least_shear_over_tension = 0.05, largest_shear_over_tension = 1e6, most_friction = 10;
 
-/// \param progress called with the number of tests done and the most that may come; may be empty
+/// \param progress called with an estimate of the share that is done; may be empty
 /// \throws Error (bad_input) where targets or options are out of range; (computation_failed) where the ratio lies
 ///         outside the feasible range, which the sentence states; as StrengthSample::strength
 StrengthCalibration calibrate_strength(const std::vector<SeededSample>& samples, const StrengthTargets& wanted,

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/assembly/power_cells.hpp"
 #include "equidem/breakage/notch.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -34,17 +35,6 @@ Support support(LoadAxis axis, const char* name, std::optional<double> along, st
   return axis == LoadAxis::x ? Support{name, along, across_it, {}} : Support{name, across_it, along, {}};
 }
 
-Rectangle extent_of(const Assembly& assembly) {
-  Rectangle extent{assembly.centres.front(), assembly.centres.front()};
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    const Vec2 x = assembly.centres[d];
-    const double r = assembly.radii[d];
-    extent.low = {std::min(extent.low.x, x.x - r), std::min(extent.low.y, x.y - r)};
-    extent.high = {std::max(extent.high.x, x.x + r), std::max(extent.high.y, x.y + r)};
-  }
-  return extent;
-}
-
 /// The disc of a group that is nearest to the middle of it, across the axis.
 std::int32_t middle_disc(const Assembly& assembly, const DiscGroup& of, LoadAxis axis) {
   const auto place = [&](std::int32_t disc) { return across(axis, assembly.centres[static_cast<std::size_t>(disc)]); };
@@ -56,7 +46,7 @@ std::int32_t middle_disc(const Assembly& assembly, const DiscGroup& of, LoadAxis
 /// Through the middle of the sample. It lies a quarter of a radius beside the middle, where lattices have rows of
 /// centres: a line through centres would cut the contacts on both sides of them.
 Notch middle_notch(const Assembly& assembly, LoadAxis axis, double length) {
-  const Rectangle extent = extent_of(assembly);
+  const Rectangle extent = region_of_cells(assembly);
   const double beside = 0.25 * assembly.mean_radius();
   const Vec2 middle = 0.5 * (extent.low + extent.high) + (axis == LoadAxis::x ? Vec2{beside, 0} : Vec2{0, beside});
   const Vec2 half = axis == LoadAxis::x ? Vec2{0, 0.5 * length} : Vec2{0.5 * length, 0};
@@ -79,7 +69,7 @@ StrengthSample::StrengthSample(Assembly assembly, ContactSprings springs, const 
   }
   for (const double length : moves.tributary_lengths) width_ += length;
   if (moves.tributary_lengths.empty()) {
-    const Rectangle extent = extent_of(assembly_);
+    const Rectangle extent = region_of_cells(assembly_);
     width_ = across(options_.axis, extent.high - extent.low);
   }
   assembly_.groups[kept_disc].discs = {middle_disc(assembly_, stays, options_.axis)};
