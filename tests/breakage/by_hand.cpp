@@ -192,7 +192,7 @@ TEST_CASE("hard_strengths_and_paths_have_an_answer_or_a_reason") {
   const Assembly cell = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
   LoadPathOptions strain;
   strain.strain = Voigt{1e-3, 5e-4, 0};
-  for (const double kT : {0.0, 300.0, -20.0}) {
+  for (const double kT : {0.0, 300.0}) {
     CAPTURE(kT);
     const ContactSprings k(SpringConstants{1000, kT});
     Broken zero(cell, k, equal_strengths(cell, 0, 0), strain);
@@ -226,20 +226,6 @@ TEST_CASE("hard_strengths_and_paths_have_an_answer_or_a_reason") {
   LoadPathOptions still = strain;
   still.legs = {1, 1};
   CHECK_THAT(refusal(cell, still), Catch::Contains("nothing happens on it"));
-}
-
-TEST_CASE("negative_tangential_springs_show_their_unstable_states") {
-  // Below the critical ratio of the hexagonal lattice, -1/3, springs of both kinds leave unstable modes.
-  const Assembly cell = hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
-  LoadPathOptions strain;
-  strain.strain = Voigt{1e-3, 0, 0};
-  const auto first = [&](double kT) {
-    Broken b(cell, ContactSprings(SpringConstants{1000, kT}), equal_strengths(cell, 1, 9), strain);
-    REQUIRE(b.run().advance());
-    return b.event(0).unstable_modes;
-  };
-  CHECK(first(-100) == 0);
-  CHECK(first(-500) > 0);
 }
 
 TEST_CASE("a_path_that_goes_on_has_the_events_of_one_that_was_not_stopped") {

@@ -33,7 +33,7 @@ promised, is tested on each.
 
 """
 FLOOR = 2.0**-53
-STATICS = ("solve", "homogenize", "stability")  # first words of tasks
+STATICS = ("solve", "homogenize", "stability", "quasistatic")  # first words of tasks
 ATTACKS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "data", "hard_cases")
 
 

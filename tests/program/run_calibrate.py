@@ -10,6 +10,8 @@ from program import CASES, equidem, parse_json
 
 RANDOM = CASES / "calibrate_random.toml"
 LATTICE = CASES / "calibrate_lattice.toml"
+STRENGTH = CASES / "calibrate_strength.toml"
+SMALL = ("--set", "assembly.discs=120", "--set", "strength_target.samples=2")
 
 
 class Calibrate(program.ProgramTest):
@@ -243,6 +245,70 @@ class Calibrate(program.ProgramTest):
     def test_the_springs_do_not_depend_on_the_number_of_threads(self):
         one, two = (self.calibrated(RANDOM, "--threads", n) for n in (1, 2))
         self.assertEqual((one["kN"], one["kT"]), (two["kN"], two["kT"]))
+
+    def strength_case(self, motion):
+        """The sample of the calibration with its strengths, its ends moved."""
+        text = re.sub(r"\[strength(_target)?\][^\[]*", "", STRENGTH.read_text()).replace("discs  = 600", "discs  = 120")
+        path = self.folder / "sample.toml"
+        path.write_text(text.replace("[assembly]", 'strength = "strength.toml"\n[assembly]', 1) + f"""
+[quasistatic]
+control = "motion"
+[[support]]
+group = "bottom"
+uy = true
+[[support]]
+group = "bottom_left"
+ux = true
+[[support]]
+group = "top"
+uy = {motion}
+""")
+        return path
+
+    def test_quasistatic_bears_the_strengths_that_were_calibrated(self):
+        file = self.folder / "strength.toml"
+        result = parse_json(self.check_done(equidem("calibrate", STRENGTH, *SMALL, "--strength", file, "--json", "-")).stdout)
+        first = result["samples"][0]
+        self.assertEqual(len(result["samples"]), 2)
+        self.check_close(result["achieved"]["tensile"], 5e6, 1e-12)
+        self.check_close(result["achieved"]["compressive"], 25e6, 0.005)
+        for motion, wanted in ((1e-6, first["tensile"]), (-1e-6, first["compressive"])):
+            sample = self.strength_case(motion)
+            found = parse_json(self.check_done(equidem("quasistatic", sample, "--json", "-")).stdout)
+            self.check_close(found["peak"]["load"] / result["width"], wanted, 1e-9)
+        strength = result["contact_strength"]
+        self.assertIn(f"tension = {strength['tension']}", file.read_text())
+        self.assertGreater(strength["shear_error"], 0)
+        self.assertEqual(strength["friction"], 0.5)
+        low, high = result["feasible_strength_ratio"]
+        self.assertTrue(low < 5 < high)
+        self.assertEqual(result["units"]["contact_strength.tension"], "N/m")
+
+    def test_the_friction_or_a_toughness_can_be_asked_for(self):
+        friction = parse_json(self.check_done(equidem("calibrate", STRENGTH, *SMALL, "--set", "strength_target.shear_over_tension=1.0",
+                                                      "--json", "-")).stdout)
+        self.check_close(friction["contact_strength"]["shear_over_tension"], 1, 1e-12)
+        self.check_close(friction["achieved"]["compressive"], 25e6, 0.005)
+        notched = ("--set", "strength_target.compressive=none", "--set", "strength_target.notches=[0.002]")
+        refused = equidem("calibrate", STRENGTH, *SMALL, *notched, "--set", "strength_target.toughness=9e5")
+        self.check_error(refused, 1, "toughness over tensile strength of 0.18 sqrt(m) is not feasible", "times as large have it")
+        low, high = map(float, re.search(r"it has (\S+) to (\S+) sqrt", refused.stderr).groups())
+        tough = parse_json(self.check_done(equidem("calibrate", STRENGTH, *SMALL, *notched, "--set",
+                                                   f"strength_target.toughness={(low + high) / 2 * 5e6}", "--json", "-")).stdout)
+        self.check_close(tough["achieved"]["toughness"], (low + high) / 2 * 5e6, 0.005)
+
+    def test_strengths_that_cannot_be_found_are_refused(self):
+        self.check_error(equidem("calibrate", STRENGTH, *SMALL, "--set", "strength_target.compressive=1e9"), 1,
+                         "compressive over tensile strength of 200 is not feasible", "Take another friction")
+        self.check_error(equidem("calibrate", STRENGTH, "--set", "strength.tension=1e3"), 2, "beside [strength_target]")
+        self.check_error(equidem("calibrate", STRENGTH, "--set", "assembly.periodic=true"), 2, "no ends to pull at or press")
+        self.check_error(equidem("calibrate", STRENGTH, "--set", "strength_target.toughness=1e5"), 2, "strength_target")
+        self.check_error(equidem("calibrate", STRENGTH, "--springs", self.folder / "k.toml"), 2, "the case for strengths")
+        self.check_error(equidem("calibrate", RANDOM, "--strength", self.folder / "k.toml"), 2, "the case for springs")
+        self.check_error(equidem("calibrate", STRENGTH, "--set", "springs.kT=-1e8"), 2, "kT < 0")
+        result = self.calibrated(STRENGTH, "--dry-run")
+        self.assertGreater(result["estimated_seconds"], 0)
+        self.assertEqual(result["estimated_tests"], 64)
 
 
 if __name__ == "__main__":

@@ -95,6 +95,20 @@ class Quasistatic(ProgramTest):
         self.assertNotEqual(text, "")
         self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
 
+    def test_interrupted_it_ends_with_130_and_goes_on_with_the_same_events(self):
+        larger = (*NO_PICTURE, "--set", "assembly.columns=61", "--set", "assembly.rows=61", "--set",
+                  "strength.weibull_modulus=2.0", "--set", "quasistatic.max_events=400", "--threads", 1)
+        whole, part = self.folder / "whole", self.folder / "part"
+        self.check_done(equidem("quasistatic", NOTCH, "--out", whole, *larger))
+        stdout, stderr = self.interrupt("quasistatic", NOTCH, "--out", part, *larger,
+                                        when=lambda: (part / "case.toml").exists(), after=0.1)
+        self.assertIn("not ended: stopped as asked", stdout)
+        self.assertIn("--resume", stderr)
+        result = parse_json((part / "result.json").read_text())
+        self.assertEqual((result["status"], result["complete"]), ("interrupted", False))
+        self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
+        self.assertEqual((whole / "events.csv").read_bytes(), (part / "events.csv").read_bytes())
+
     def test_other_verbs_tell_that_they_take_no_notch(self):
         done = equidem("solve", NOTCH)
         self.check_done(done)
@@ -115,6 +129,11 @@ class Quasistatic(ProgramTest):
         self.assertEqual(result["status"], "dry_run")
         self.assertGreater(result["peak_bytes"], 0)
         self.assertNotIn("events", result)
+        contacts = result["contacts"]
+        self.assertEqual(result["estimated_events"], round(contacts / 10))
+        few = self.run_notch("--dry-run", "--set", "quasistatic.max_events=5")
+        self.assertEqual(few["estimated_events"], 5)
+        self.assertLess(few["estimated_seconds"], result["estimated_seconds"])
 
     def test_what_is_missing_or_contradictory_is_refused(self):
         self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")
@@ -122,6 +141,9 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", NOTCH, "--set", "notch.0.to=[-0.0005,0.0152]"), 2, "crosses no contact")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.tension=-1"), 2, "strength.tension")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strain.xx=1e-3"), 2, "not periodic")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "springs.kT=-1e8"), 2, "kT < 0", "Take kT >= 0")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.weibull_modulus=1e-3"), 2, "scatters them")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=1e300"), 2, "range of numbers")
 
 
 if __name__ == "__main__":

@@ -28,3 +28,15 @@ def test_wrong_strengths_are_refused():
     for wrong in ([(1.0, 1.0)], np.ones((3, 3)), [(1.0, -1.0)] * 3):
         with pytest.raises(eq.BadInput):
             bundle().with_strengths(wrong)
+
+
+def test_strengths_of_contacts_are_calibrated():
+    case = eq.Case(assembly={"kind": "delaunay", "discs": 80, "aspect": 0.6, "radius": 1e-3}, springs=(1e9, 4e8),
+                   strength={"friction": 0.5, "weibull_modulus": 6.0},
+                   strength_target={"tensile": 5e6, "compressive": 30e6, "samples": 2})
+    result = case.calibrate()
+    assert result.achieved.tensile == pytest.approx(5e6, rel=1e-12)
+    assert result.achieved.compressive == pytest.approx(30e6, rel=5e-3)
+    assert result.contact_strength.shear > 0 and result.contact_strength.friction == 0.5
+    with pytest.raises(eq.EquidemError, match="is not feasible"):
+        case.set("strength_target.compressive", 1e10).calibrate()

@@ -29,6 +29,9 @@ equidem::Run declare(CLI::App& command);
 namespace abe1996_random {
 equidem::Run declare(CLI::App& command);
 }
+namespace breakage {
+equidem::Run declare(CLI::App& command);
+}
 namespace fujioka2005 {
 equidem::Run declare(CLI::App& command);
 }

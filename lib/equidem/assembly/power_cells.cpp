@@ -194,7 +194,8 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   return cells;
 }
 
-/// The box of the assembly, else the smallest rectangle that holds all discs.
+}  // namespace
+
 Rectangle region_of_cells(const Assembly& assembly) {
   if (assembly.box) return *assembly.box;
   Rectangle box{.low = {infinity, infinity}, .high = {-infinity, -infinity}};
@@ -206,8 +207,6 @@ Rectangle region_of_cells(const Assembly& assembly) {
   }
   return box;
 }
-
-}  // namespace
 
 PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());

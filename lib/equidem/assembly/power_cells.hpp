@@ -27,6 +27,9 @@ struct PowerCells {
   bool collinear = false;                  ///< all centres lie on one line
 };
 
+/// The box of a free assembly, else the smallest rectangle that holds all discs, m.
+Rectangle region_of_cells(const Assembly& assembly);
+
 /// Cells of a periodic assembly, or of a free one in the given rectangle, which must hold all centres: without one in
 /// that of the assembly, else in the smallest that holds all discs. Facets shorter than 1e-9 of the distance of the
 /// centres are left out: they are corners where more than three cells meet.

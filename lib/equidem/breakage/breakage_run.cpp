@@ -18,6 +18,14 @@ double sign_of(double x) {
   return x < 0 ? -1 : 1;
 }
 
+/// The round-off of forces that motions of this path can leave in contacts of parts that move rigidly, N/m: without it
+/// the round-off itself would break a sample that is in pieces from the start.
+double round_off_of_motions(const BreakageScene& scene) {
+  constexpr double of_stiffest = 1e-14;
+  const double length = scene.path.driven_by == DrivenBy::strain ? 2 * scene.assembly.mean_radius() : 1;
+  return scene.path.driven_by == DrivenBy::loads ? 0 : of_stiffest * scene.springs.largest() * length * scene.path.size;
+}
+
 }  // namespace
 
 BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
@@ -38,7 +46,7 @@ BreakageRun::BreakageRun(BreakageScene scene, BreakableSystem& system) : scene_(
               "Hold that part by a support, or take the load off it");
   }
   response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
-  no_pattern_ = round_off * largest_force(system_.forces(0));
+  no_pattern_ = std::max(round_off * largest_force(system_.forces(0)), round_off_of_motions(scene_));
   no_dead_ = dead ? round_off * largest_force(system_.forces(1)) : 0;
   no_rate_ = round_off * std::abs(scene_.path.control == LoadControl::load ? response_.load[1] : response_.motion[1]);
   work_ = 0.5 * response_.loads_by_motions[0];  // of the dead loads, applied in proportion
@@ -190,6 +198,10 @@ void BreakageRun::break_contact(const NextBreak& next) {
   work_ += work;
   event.energy_released = event.energy_before - event.energy_after + work;
   event.work = work_;
+  if (!std::isfinite(event.load) || !std::isfinite(event.energy_released) || !std::isfinite(event.work)) {
+    computation_failed(fmt::format("the energy of the break of contact {} is not a number", event.contact),
+                       "springs, strengths and loads together leave the range of numbers", "Scale one of them");
+  }
   events_.push_back(std::move(event));
 }
 

@@ -54,10 +54,29 @@ void check_legs(const std::vector<double>& legs) {
             "Add [[load]], a motion in [[support]], or [strain]");
 }
 
+/// Squares of forces and motions must stay within a double.
+void check_size(const char* what, double size) {
+  if (size >= shortest_length && size <= longest_length) return;
+  bad_input(fmt::format("{} are {:g} in all", what, size),
+            fmt::format("their energies would leave the range of numbers: {:g} to {:g} can be followed",
+                        shortest_length, longest_length),
+            "Scale them; lambda multiplies what grows");
+}
+
+/// With kT < 0 every equilibrium is a saddle of the energy (one negative eigenvalue for each rotation): statics solves
+/// for it, but no motion of the discs leads from one to the next, which is what a break asks for.
+void check_springs(const ContactSprings& springs) {
+  if (!springs.any_negative()) return;
+  bad_input("kT < 0 in a network that breaks",
+            "behind a break the discs move to another equilibrium, and with kT < 0 no motion of discs is stable",
+            "Take kT >= 0; solve gives the forces of the unbroken network for any kT");
+}
+
 }  // namespace
 
 LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                         const LoadPathOptions& options) {
+  check_springs(springs);
   check_legs(options.legs);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, options.supports);
   LoadPath path;
@@ -96,11 +115,15 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
               "the load and the motion through which it works are then not one pair of numbers",
               "Keep one; loads that stay are [[dead_load]]");
   }
+  check_size(driving.front().c_str(), path.size);
   if (!options.dead_loads.empty()) {
     RightHandSide dead;
     dead.force = assemble_loads(assembly, unknowns, options.dead_loads);
     check_inert_loads(assembly, unknowns, dead.force);
-    if (any_nonzero(dead.force)) path.dead = std::move(dead);
+    if (any_nonzero(dead.force)) {
+      check_size("dead loads", sum_of_loads(dead.force, static_cast<std::size_t>(unknowns.per_disc)));
+      path.dead = std::move(dead);
+    }
   }
   return path;
 }

@@ -66,8 +66,8 @@ struct LoadPath {
 };
 
 /// \throws Error (bad_input) where nothing, or more than one of loads, motions and strain, grows with lambda, where a
-///         strain is asked of a free assembly, a number is not finite, a leg leads nowhere, or as number_unknowns and
-///         assemble_loads
+///         strain is asked of a free assembly, a number is not finite or out of range, a leg leads nowhere, some kT <
+///         0, or as number_unknowns and assemble_loads
 LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                         const LoadPathOptions& options);
 

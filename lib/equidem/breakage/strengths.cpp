@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
@@ -11,16 +13,43 @@
 namespace equidem {
 namespace {
 
+/// N/m, of strengths that are not 0: energies, which are squares over springs, then stay within a double.
+constexpr double least_strength = 1e-100, largest_strength = 1e100;
+constexpr double largest_friction = 1e6;
+
+bool bearable(double strength) {
+  return strength == 0 || (strength >= least_strength && strength <= largest_strength);
+}
+
 void check_strength(const char* name, double value) {
-  if (value >= 0 && std::isfinite(value)) return;
-  bad_input(fmt::format("the {} is {}", name, value), "it must be finite and not negative",
+  if (bearable(value)) return;
+  bad_input(fmt::format("the {} is {}", name, value),
+            fmt::format("it must be 0, or lie between {:g} and {:g}", least_strength, largest_strength),
             "Correct it; a contact that never breaks has large strengths");
+}
+
+void check_friction(double friction) {
+  if (friction >= 0 && friction <= largest_friction) return;
+  bad_input(fmt::format("the friction is {}", friction),
+            fmt::format("it must be a number from 0 to {:g}", largest_friction), "Correct it");
+}
+
+/// \param why that of a strength which is out of range
+void check_strengths(const ContactStrengths& strengths, const std::string& why, const std::string& what_to_do) {
+  for (const auto* of_mode : {&strengths.tension, &strengths.shear}) {
+    for (std::size_t c = 0; c < of_mode->size(); ++c) {
+      if (bearable((*of_mode)[c])) continue;
+      bad_input(fmt::format("contact {} has the strength {} N/m, which must be 0, or lie between {:g} and {:g}", c,
+                            (*of_mode)[c], least_strength, largest_strength),
+                why, what_to_do);
+    }
+  }
 }
 
 void check_options(const StrengthOptions& options) {
   if (options.tension) check_strength("strength in tension", *options.tension);
   if (options.shear) check_strength("strength in shear", *options.shear);
-  check_strength("friction", options.friction);
+  check_friction(options.friction);
   if (options.weibull_modulus) check_positive(*options.weibull_modulus, "the Weibull modulus");
 }
 
@@ -55,6 +84,7 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
     }
     result.tension = assembly.contact_tension;
     result.shear = assembly.contact_shear;
+    check_strengths(result, "energies of breaks would leave the range of numbers", "Correct it in the assembly");
     return result;
   }
   if (!options.tension || !options.shear) {
@@ -73,6 +103,12 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
     result.tension.push_back(size * *options.tension);
     result.shear.push_back(size * *options.shear);
   }
+  const double modulus = options.weibull_modulus.value_or(std::numeric_limits<double>::infinity());
+  check_strengths(result,
+                  std::isfinite(modulus)
+                      ? fmt::format("a Weibull modulus of {:g} scatters them over that range", modulus)
+                      : "energies of breaks would leave the range of numbers",
+                  "Give a larger modulus, or strengths of a usual size");
   return result;
 }
 

@@ -19,9 +19,10 @@
 namespace equidem {
 namespace {
 
-DegreesOfFreedom unknowns_of(const BreakableNetwork& network) {
+/// \param held_free components that are held because nothing else holds their part
+DegreesOfFreedom unknowns_of(const BreakableNetwork& network, std::vector<std::size_t>& held_free) {
   DegreesOfFreedom unknowns = number_unknowns(network.assembly, network.springs, network.effects, network.supports);
-  hold_free_motions(network.assembly, ContactGraph(network.assembly), network.springs, unknowns);
+  held_free = hold_free_motions(network.assembly, ContactGraph(network.assembly), network.springs, unknowns).components;
   return unknowns;
 }
 
@@ -37,7 +38,7 @@ class UpdatedSystem final : public SolvedStates {
   UpdatedSystem(BreakableNetwork network, std::vector<std::uint8_t> held)
       : SolvedStates(network.cases.size(), network.assembly.size()),
         network_(std::move(network)),
-        unknowns_(unknowns_of(network_)),
+        unknowns_(unknowns_of(network_, held_free_)),
         graph_(network_.assembly),
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
@@ -45,6 +46,7 @@ class UpdatedSystem final : public SolvedStates {
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
                       .force_moments = area_of_stress(network_.assembly) > 0}) {
+    check_held_free();
     energy_ = first_energy_ = energy();
     measured(equilibrium_.estimated_residual());
   }
@@ -123,6 +125,20 @@ class UpdatedSystem final : public SolvedStates {
     }
     if (why_not_.empty()) measured(equilibrium_.estimated_residual());
     return gone;
+  }
+
+  /// Loads that move a part which nothing holds show as forces of the components that are held in place of it.
+  void check_held_free() const {
+    take();
+    constexpr double balanced = 1e-8;  // over the largest load: what rounding leaves where loads balance
+    for (std::size_t p = 0; p < states_.size(); ++p) {
+      double largest = 0;
+      for (const double f : network_.cases[p].force) largest = std::max(largest, std::abs(f));
+      for (const std::size_t k : held_free_) {
+        if (std::abs(states_[p].reactions[k]) <= balanced * largest) continue;
+        computation_failed("a load moves a part that nothing holds", "the updated factor holds it", "Factorize anew");
+      }
+    }
   }
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
@@ -266,6 +282,7 @@ class UpdatedSystem final : public SolvedStates {
   }
 
   BreakableNetwork network_;
+  std::vector<std::size_t> held_free_;
   DegreesOfFreedom unknowns_;
   ContactGraph graph_;
   std::vector<std::uint8_t> held_, broken_;
@@ -291,7 +308,7 @@ std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network)
   if (found.part || found.removed() > 0) return make_refactorized_system(std::move(network));
   try {
     return std::make_unique<UpdatedSystem>(network, std::move(held));
-  } catch (const Error& error) {  // a mechanism that discs take part in which carry load
+  } catch (const Error& error) {  // a mechanism that discs take part in which carry load, or that a load moves
     if (error.kind() != ErrorKind::computation_failed) throw;
   }
   return make_refactorized_system(std::move(network));

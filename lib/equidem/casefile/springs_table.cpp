@@ -2,10 +2,9 @@
 #include "equidem/casefile/springs_table.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/core/file.hpp"
+#include "equidem/casefile/engine/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -40,13 +39,7 @@ std::vector<Key<SpringsTable>> springs_keys() {
 }
 
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder) {
-  TomlValue* named = root.find("springs");
-  if (named == nullptr || named->type != TomlValue::Type::text) return;
-  const std::filesystem::path path = opened(named->text, folder);
-  TomlValue document = with_place(fmt::format("{}: springs", named->where()),
-                                  [&] { return parse_toml(read_file(path), path.string()); });
-  static_cast<void>(springs_file_format().read(document, folder));
-  *named = *document.find("springs");
+  resolve_table_file(root, "springs", springs_file_format(), folder);
 }
 
 std::optional<double> one_density(const TomlValue& root, std::initializer_list<StatedDensity> stated) {
@@ -72,14 +65,7 @@ namespace equidem {
 
 std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
                          const std::string& title, const std::string& comment) {
-  std::string out;
-  std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) {
-    // TOML allows no control characters in a comment.
-    for (char& c : line)
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    out += line.empty() ? "#\n" : fmt::format("# {}\n", line);
-  }
+  std::string out = casefile::comment_lines(comment);
   out += fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
                      casefile::springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
                      toml_number(springs.kT), toml_text(to_string(weighting)));

@@ -31,7 +31,7 @@ void bind_springs_file(File<F>& file) {
 }
 
 /// The table of a springs file takes the place of its name.
-/// \throws Error (bad_input) with file, line and key: a file that cannot be read, or is no springs file
+/// \throws Error (bad_input) as resolve_table_file
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder);
 
 /// Density of the discs as one table states it.

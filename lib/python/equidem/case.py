@@ -208,7 +208,10 @@ class Case:
         return self.run_verb("homogenize", **options)
 
     def calibrate(self, **options: Any) -> Result:
-        """Springs that give the assembly the wanted moduli (table `material`)."""
+        """Springs that give the assembly the wanted moduli (table `material`), or strengths of the contacts for wanted
+        strengths (table `strength_target`): `result.contact_strength`, in N/m (with a bond length Pa), with standard
+        errors, and `result.samples`.
+        """
         return self.run_verb("calibrate", **options)
 
     def stability(self, **options: Any) -> Result:

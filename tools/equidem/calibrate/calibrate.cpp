@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// equidem calibrate: wanted moduli -> springs.
+/// equidem calibrate: wanted moduli -> springs, wanted strengths -> strengths of contacts.
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -18,6 +18,7 @@
 #include "equidem/core/text.hpp"
 
 #include "calibrate/calibrate_results.hpp"
+#include "calibrate/calibrate_strengths.hpp"
 #include "command.hpp"
 #include "option_checks.hpp"
 #include "verbs.hpp"
@@ -27,7 +28,8 @@ namespace {
 
 struct CalibrateVerb {
   CommonOptions common;
-  std::optional<std::filesystem::path> springs;  ///< path of the springs file
+  std::optional<std::filesystem::path> springs;   ///< path of the springs file
+  std::optional<std::filesystem::path> strength;  ///< path of the strength file
 
   /// The path given, else springs.toml in --out.
   [[nodiscard]] std::optional<std::filesystem::path> springs_path() const {
@@ -122,7 +124,7 @@ Problem problem_with_material(Case resolved) {
   if (!resolved.material) {
     bad_input_at(resolved.document.where(), "there is no [material]",
                  "calibration looks for the springs that stand for it",
-                 "Replace the springs by [material] with the moduli wanted");
+                 "Replace the springs by [material] with the moduli wanted, or add [strength_target]");
   }
   require_memory_for(resolved, Purpose::factorize);
   StageTimes times;
@@ -136,6 +138,14 @@ Problem problem_with_material(Case resolved) {
 int calibrate(const CalibrateVerb& options) {
   const CommonOptions& common = options.common;
   Case read = read_case(common);
+  const bool strengths = read.strength_target.has_value();
+  if (options.springs && strengths)
+    bad_input("--springs asks for springs, and the case for strengths", "[strength_target] takes its springs as given",
+              "Leave out --springs; --strength FILE writes the strengths");
+  if (options.strength && !strengths)
+    bad_input("--strength asks for strengths, and the case for springs", "there is no [strength_target]",
+              "Add it, or leave out --strength");
+  if (strengths) return calibrate_strengths(common, options.strength, std::move(read));
   const std::string assembly_name = assembly_file_name("assembly", read.output.assembly.value_or(AssemblyFormat::json));
   check_outputs(options, assembly_name);
   const auto lock = lock_out(common);
@@ -181,8 +191,12 @@ Run declare_calibrate(CLI::App& command) {
   command.add_option("--springs", options->springs, "write the springs to this file, for springs = \"FILE\"")
       ->check(file_name())
       ->type_name("FILE");
+  command.add_option("--strength", options->strength, "write the strengths to this file, for strength = \"FILE\"")
+      ->check(file_name())
+      ->type_name("FILE");
   command.footer(
       "Examples:\n"
+      "  equidem calibrate data/cases/calibrate_strength.toml --strength strength.toml\n"
       "  equidem calibrate data/cases/calibrate_random.toml\n"
       "  equidem calibrate data/cases/calibrate_random.toml --springs springs.toml\n"
       "  equidem calibrate data/cases/calibrate_random.toml --set material.poisson_ratio=0.1 --json -");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem quasistatic: contacts that break one after another under a growing load.
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -75,6 +77,25 @@ struct Sequence {
   }
 };
 
+/// Size, memory and time of a path, of which only the number of events is not known before.
+int dry_run_path(const CommonOptions& options, const Sequence& sequence) {
+  // Measured on lattices of 2e3 to 1e4 discs: s of an event over that of a solution with its error bound. Samples under
+  // tension broke 1 to 10 % of their contacts, those under compression up to half.
+  constexpr double event = 0.13, broken_share = 0.1;
+  const Problem& problem = sequence.problem;
+  const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
+  const std::int64_t guess = std::llround(broken_share * static_cast<double>(contacts));
+  const std::int64_t events = most > 0 ? std::min(most, contacts) : guess;
+  Results further = path_results(sequence.scene(), sequence.cut.size());
+  further.line("events").add("estimated_events", "", events, "event", {Shown::count});
+  further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
+                        : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
+                          "them; tension breaks fewer contacts, compression up to half of them");
+  deliver(options, "dry_run", dry_run_results(problem, 1 + event * static_cast<double>(events), further),
+          problem.times);
+  return 0;
+}
+
 /// The events of an earlier computation of the same case.
 void resume(const CommonOptions& options, Sequence& sequence) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
@@ -136,12 +157,7 @@ int quasistatic(const QuasistaticOptions& given) {
   expect_quasistatic(plan, resolved.output);
   const auto lock = lock_out(options);
   Sequence sequence(build(resolved));
-  if (options.dry_run) {
-    Results further = path_results(sequence.scene(), sequence.cut.size());
-    further.line("", "sizes and time below are those of one event; there are at most as many events as contacts");
-    deliver(options, "dry_run", dry_run_results(sequence.problem, 1, further), sequence.problem.times);
-    return 0;
-  }
+  if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
   // Frames are not kept in the table of events: with them every event is computed again.
   if (given.resume && resolved.quasistatic.frame_every == 0) resume(options, sequence);

@@ -38,7 +38,7 @@ void add_events(Results& out, const BreakageScene& scene, const BreakageRun& run
   out.note(fmt::format(" of {} broken, {} in tension, {} in shear", scene.assembly.contacts.size(),
                        std::ssize(events) - sheared, sheared));
   out.set("broken_in_tension", std::ssize(events) - sheared).set("broken_in_shear", sheared);
-  out.line("", "ended: " + run.why());
+  out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended: " + run.why());
   out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
   if (events.empty()) return;
   const auto ties = std::ranges::count_if(events, [](const BreakEvent& event) { return event.ties > 0; });

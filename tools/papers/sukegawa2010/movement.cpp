@@ -10,7 +10,7 @@ namespace equidem::sukegawa2010 {
 namespace {
 
 constexpr double first_part = 0.1;  // s
-constexpr std::size_t layers = 10;
+constexpr std::size_t profile_layers = 10;
 
 /// Grains in the order of their height, by number.
 std::vector<std::size_t> by_height(const std::vector<Grain>& grains) {
@@ -51,7 +51,7 @@ void GrainMovement::tell(Outcome& outcome, double width) const {
     outcome.turn += way.turned / number;
   }
   double squares = 0, inward = 0, outer = 0, sunk = 0;
-  std::array<double, layers> sums{}, members{};
+  std::array<double, profile_layers> sums{}, members{};
   const std::vector<std::size_t> order = by_height(start_);
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::size_t g = order[k];
@@ -63,11 +63,11 @@ void GrainMovement::tell(Outcome& outcome, double width) const {
     }
     squares += squared(moved.x);
     sunk -= moved.y;
-    sums[k * layers / order.size()] += moved.x;
-    members[k * layers / order.size()] += 1;
+    sums[k * profile_layers / order.size()] += moved.x;
+    members[k * profile_layers / order.size()] += 1;
   }
   double in_common = 0;
-  for (std::size_t layer = 0; layer < layers; ++layer)
+  for (std::size_t layer = 0; layer < profile_layers; ++layer)
     in_common += squared(sums[layer]) / std::max(1.0, members[layer]);
   outcome.displaced_x = std::sqrt(squares / number);
   outcome.inward = outer > 0 ? inward / outer : 0;

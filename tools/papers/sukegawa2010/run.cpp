@@ -20,7 +20,7 @@
 namespace equidem::sukegawa2010 {
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double sample_interval = 0.01, frame_interval = 0.04;  // s
 /// Kinetic energy of bodies at rest, over the energy of a fall by the smallest radius; bonded pairs keep creeping.
 constexpr double resting = 1e-6, creeping = 3e-4;
@@ -34,7 +34,7 @@ std::mutex& drawing() {
 
 /// Measures of a box at a moment; positions relative to the box.
 struct Moment {
-  double void_ratio = unknown, whole = unknown;
+  double void_ratio = not_measured, whole = not_measured;
   SurfaceShape surface;
   Vec2 centre;
   std::vector<char> heap;
@@ -168,13 +168,13 @@ class BoxRun {
     }
     o.coordination = ends / static_cast<double>(scene_.grains.size() - scene_.bonds.size());
     const BondReport bonds = moved_.bonds();
-    o.creep = bonds.number > 0 ? bonds.distance.mean : unknown;
-    o.roll = bonds.number > 0 ? bonds.roll.mean : unknown;
+    o.creep = bonds.number > 0 ? bonds.distance.mean : not_measured;
+    o.roll = bonds.number > 0 ? bonds.roll.mean : not_measured;
     o.steps = static_cast<double>(simulation_.step());
     o.time = simulation_.time() - zero_;
     o.time_step = step_of(scene_, run_.fill);
     const EnergyLedger energy = simulation_.energy();
-    o.energy_error = run_.fill.printed ? unknown : energy.error() / std::abs(energy.potential);
+    o.energy_error = run_.fill.printed ? not_measured : energy.error() / std::abs(energy.potential);
     movement_.tell(o, run_.fill.grid.width());
     o.seconds = computing_.lap();
     return o;
@@ -198,7 +198,7 @@ class BoxRun {
       times.push_back(all_times[k]);
       centres.push_back(all_centres[k]);
     }
-    return times.size() < 8 ? unknown : amplitude_spectrum(times, centres, std::array{shaking.frequency}).front();
+    return times.size() < 8 ? not_measured : amplitude_spectrum(times, centres, std::array{shaking.frequency}).front();
   }
 
   /// The bodies now. \param when part of the title
@@ -312,7 +312,8 @@ FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std
   box.until_rest(0.5, longest_fall, tick);
   FilledBox filled{.state = box.simulation().save(), .outcome = box.outcome()};
   Outcome& o = filled.outcome;  // the box was empty before
-  o.void_ratio_before = o.whole_before = o.height_before = o.roughness_before = o.slope = o.swing = o.thrown = unknown;
+  o.void_ratio_before = o.whole_before = o.height_before = o.roughness_before = o.slope = o.swing = o.thrown =
+      not_measured;
   box.write(run.name());
   box.draw(run.name() + "_filled", "filled, at rest" + density_of(o));
   return filled;

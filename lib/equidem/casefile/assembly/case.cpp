@@ -186,6 +186,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
                  "Use 'equidem pack', or add [assembly] with kind = \"packing\"");
   check_one_source_of_springs(root);
   resolve_springs_file(root, folder);
+  resolve_strength_file(root, folder);
   CaseTables tables = case_file().read(root, folder);
 
   const std::optional<SpringsTable>& springs = tables.springs_table;
@@ -200,6 +201,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   if (tables.assembly.kind == AssemblyKind::packing) complete_packing(root, tables);
   if (tables.assembly.kind == AssemblyKind::delaunay) complete_delaunay(root, tables.assembly.delaunay);
   check_contradictions(root, tables.assembly);
+  check_strength_target(root);
   if (tables.material)
     tables.material->moduli =
         at_key(*root.find("material"), "material", [&] { return moduli_of(tables.material->given); });

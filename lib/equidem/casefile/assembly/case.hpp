@@ -17,6 +17,7 @@
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/casefile/assembly/strength_tables.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
@@ -143,6 +144,7 @@ struct Case : CaseDocument {
   std::vector<NamedSchedule> schedules;  ///< for a run; statics takes the factor 1
   std::optional<RunCase> run;
   std::optional<StrengthOptions> strength;
+  std::optional<StrengthTargetCase> strength_target;
   std::optional<Voigt> strain;  ///< mean strain of a periodic cell, xy engineering
   LoadCase dead_loads;
   std::vector<Notch> notches;

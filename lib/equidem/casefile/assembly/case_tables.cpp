@@ -202,20 +202,13 @@ void bind_run(File<CaseTables>& file) {
 }
 
 void bind_breakage(File<CaseTables>& file) {
-  using S = StrengthOptions;
+  file.table("").keys({unbound_key<CaseTables>(
+      "strength", KeyType::path, "a strength file, as calibrate writes it, in place of the table [strength]")});
   file.table("strength", &CaseTables::strength, "strengths of the contacts, for the verb quasistatic")
-      .keys({key("tension", &S::tension, unit("N/m (with bond_length: Pa)"), not_negative,
-                 "a contact breaks where its normal force reaches it; left out: the assembly gives strengths"),
-             key("shear", &S::shear, unit("N/m (with bond_length: Pa)"), not_negative,
-                 "a contact breaks where |T| reaches shear - friction N, N positive in tension"),
-             key("friction", &S::friction, not_negative, "by how much compression adds to the strength in shear"),
-             key("bond_length", &S::bond_length,
-                 "the length by which strengths in Pa are multiplied: the edge that the cells of both discs share, or "
-                 "the diameter of the smaller disc; none: strengths are forces"),
-             key("weibull_modulus", &S::weibull_modulus, positive,
-                 "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
-                 "equal"),
-             key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths")});
+      .keys(strength_keys());
+  file.table("strength_target", &CaseTables::strength_target,
+             "strengths of the material, for which calibrate finds those of the contacts")
+      .keys(strength_target_keys());
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
       .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
              key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});

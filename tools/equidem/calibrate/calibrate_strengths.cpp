@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/calibrate_strengths.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/breakage/calibrate/calibrate_strength.hpp"
+#include "equidem/casefile/assembly/build.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+
+#include "calibrate/calibrate_strengths_results.hpp"
+#include "problem.hpp"
+
+namespace equidem {
+namespace {
+
+/// Of one sample where neither the assembly nor the strengths are random.
+std::int64_t number_of_samples(const Case& resolved) {
+  const bool scattered = resolved.strength && resolved.strength->weibull_modulus;
+  return resolved.assembly.random() || scattered ? resolved.strength_target->samples : 1;
+}
+
+/// The assembly of the k-th sample.
+Assembly sample_assembly(Case resolved, std::uint64_t k) {
+  resolved.assembly.delaunay.seed += k;
+  if (resolved.assembly.packing) resolved.assembly.packing->seed += k;
+  return build_assembly(resolved);
+}
+
+std::vector<SeededSample> build_samples(const Problem& first) {
+  const Case& resolved = first.resolved;
+  StrengthTestOptions test = resolved.strength_target->test;
+  test.rotation = resolved.rotation;
+  test.solver = resolved.solver;
+  const std::uint64_t seed = resolved.strength.value_or(StrengthOptions{}).seed;
+  std::vector<SeededSample> samples;
+  for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(number_of_samples(resolved)); ++k) {
+    Assembly assembly = k == 0 || !resolved.assembly.random() ? first.assembly : sample_assembly(first.resolved, k);
+    ContactSprings springs = k == 0 ? first.springs.springs : build_springs(resolved, assembly).springs;
+    samples.push_back({StrengthSample(std::move(assembly), std::move(springs), test), seed + k});
+  }
+  return samples;
+}
+
+int dry_run_strengths(const CommonOptions& options, const Problem& problem) {
+  // As for a path of quasistatic, with a tenth of the contacts; calibrations took eight values of the unknown.
+  constexpr double event = 0.13, broken_share = 0.1, values = 8;
+  const StrengthTargetCase& target = *problem.resolved.strength_target;
+  const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
+  const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
+  const double solutions = 1 + event * std::round(broken_share * static_cast<double>(problem.assembly.contacts.size()));
+  Results results;
+  results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});
+  results.note(", in each of which a tenth of the contacts breaks");
+  deliver(options, "dry_run", dry_run_results(problem, tests * solutions, results, AssemblyKeys::size), problem.times);
+  return 0;
+}
+
+std::string text_of_strengths(const Case& resolved, const StrengthCalibration& found,
+                              const StrengthOptions& strengths) {
+  const StrengthTargets& wanted = resolved.strength_target->wanted;
+  const std::string second = wanted.compressive ? fmt::format("compressive {:.6g} Pa", *wanted.compressive)
+                                                : fmt::format("toughness {:.6g} Pa sqrt(m)", *wanted.toughness);
+  return strength_file(
+      strengths, resolved.title,
+      fmt::format("Strengths of contacts for the strengths tensile {:.6g} Pa and {},\n{} of {}, along {}, {} ends. By "
+                  "equidem calibrate.",
+                  wanted.tensile, second, found.samples.size() > 1 ? "the means" : "those",
+                  counted(std::ssize(found.samples), "sample"), to_string(resolved.strength_target->test.axis),
+                  to_string(resolved.strength_target->test.ends)));
+}
+
+void check_alone(const Case& resolved) {
+  if (resolved.material)
+    bad_input_at(resolved.where("strength_target"), "[material] and [strength_target] are both given",
+                 "strengths are calibrated for springs that are known",
+                 "Calibrate the springs first, with --springs FILE, and take springs = \"FILE\" here");
+}
+
+}  // namespace
+
+int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
+  check_alone(read);
+  const OutputPlan plan(options);
+  plan.expect_results();
+  std::optional<std::filesystem::path> path = file;
+  if (path) {
+    plan.expect_file(*path);
+  } else if (options.out) {
+    plan.expect("strength.toml");
+    path = *options.out / "strength.toml";
+  }
+  const auto lock = lock_out(options);
+  Problem problem = problem_of(std::move(read));
+  const Case& resolved = problem.resolved;
+  if (options.dry_run) return dry_run_strengths(options, problem);
+
+  Stopwatch watch;
+  const std::vector<SeededSample> samples = build_samples(problem);
+  problem.times.add("samples", watch.lap());
+  const StrengthTargetCase& target = *resolved.strength_target;
+  StrengthOptions strengths = resolved.strength.value_or(StrengthOptions{});
+  Progress progress("testing");
+  const StrengthCalibration found = calibrate_strength(
+      samples, target.wanted, {.strengths = strengths, .shear_over_tension = target.shear_over_tension},
+      [&](double share) { progress.update(share); });
+  problem.times.add("tests", watch.lap());
+  strengths.tension = found.tension;
+  strengths.shear = found.shear;
+  strengths.friction = found.friction;
+  const std::string text = text_of_strengths(resolved, found, strengths);
+  Results results = strength_results(problem, samples.front().sample, found);
+  if (path) {
+    results.line("strength file").add("strength_file", "", path->string());
+  } else {
+    results.block("\nstrength file (--strength FILE writes it):\n" + text + "\n").set("strength_file", nullptr);
+  }
+  deliver(options, "calibrated", std::move(results), problem.times, [&](Results&) {
+    if (path) write_file(*path, text, options.overwrite);
+    write_case(options, resolved);
+  });
+  if (path) say(options, fmt::format("strengths written to {}", path->string()));
+  return 0;
+}
+
+}  // namespace equidem

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Report and JSON of strengths that were calibrated.
+#pragma once
+
+#include "equidem/breakage/calibrate/calibrate_strength.hpp"
+
+#include "problem.hpp"
+
+namespace equidem {
+
+/// \param first of the samples
+Results strength_results(const Problem& problem, const StrengthSample& first, const StrengthCalibration& found);
+
+}  // namespace equidem

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Curves of breakage beside theory: strength against the length of a notch, scatter and size by Weibull.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "equidem/core/statistics.hpp"
+
+#include "papers.hpp"
+
+namespace equidem::breakage {
+
+/// The share of the peak to which the load falls, at which tests of this program are over.
+inline constexpr double test_over = 0.9;
+
+/// A plate of equal strengths with a notch 2a in its middle.
+struct NotchedPlate {
+  std::int64_t columns = 0, discs = 0;
+  double ratio = 0;      ///< kT/kN
+  double notch = 0;      ///< 2a over the width
+  double length = 0;     ///< 2a over the distance of neighbours
+  double strength = 0;   ///< stress times this distance over f_t
+  double toughness = 0;  ///< K_Ic times the root of this distance over f_t
+  double energy_error = 0;
+};
+
+/// The exponent of sigma sqrt(sec(pi a/W)) against a, and the toughness, over the plates of one lattice and size.
+struct NotchFit {
+  std::int64_t columns = 0;
+  double ratio = 0;
+  double exponent = 0, exponent_error = 0;  ///< standard error from the scatter about the line
+  MeanEstimate toughness;
+};
+
+struct Notches {
+  std::vector<NotchedPlate> plates;
+  std::vector<NotchFit> fits;
+  double seconds = 0;
+};
+Notches notched_plates(bool quick);
+
+/// Samples of one size whose contacts scatter by Weibull's law.
+struct WeibullSize {
+  double modulus = 0;
+  std::int64_t contacts = 0;
+  MeanEstimate strength;  ///< over f_t of a chain; stress times the distance of neighbours over f_t of a plate
+  double theory = 0;      ///< of a chain: Gamma(1 + 1/m) n^(-1/m)
+  double energy_error = 0;
+};
+
+struct Weibull {
+  std::vector<WeibullSize> chains, plates;
+  std::int64_t seeds = 0;
+  double seconds_of_chains = 0, seconds_of_plates = 0;
+};
+Weibull weibull_samples(bool quick);
+
+}  // namespace equidem::breakage
