@@ -140,6 +140,14 @@ TEST_CASE("lattices_have_the_complex_moduli_of_their_relation") {
       CHECK(std::abs(m.poisson_strain - nu) < 1e-12 * std::max(1.0, std::abs(nu)));
       CHECK(std::abs(m.shear_modulus - Amplitude{storage.shear, loss.shear}) < 1e-12 * std::abs(m.shear_modulus));
       CHECK(c.relative_residual < 1e-14);
+      // Eqs. (20) and (21) with the solid fraction and the contact density of this lattice.
+      const IsotropicMeasures measures{std::numbers::pi / (2 * std::numbers::sqrt3), 3 / std::numbers::pi};
+      const SheetModuli mean_storage = isotropic_relation.moduli({kN.real(), kT.real()}, measures);
+      const SheetModuli mean_loss = isotropic_relation.moduli({kN.imag(), kT.imag()}, measures);
+      CHECK(std::abs(m.bulk_modulus_2d - Amplitude{mean_storage.bulk, mean_loss.bulk}) <
+            1e-12 * std::abs(m.bulk_modulus_2d));
+      CHECK(std::abs(m.shear_modulus - Amplitude{mean_storage.shear, mean_loss.shear}) <
+            1e-12 * std::abs(m.shear_modulus));
     }
   }
 }

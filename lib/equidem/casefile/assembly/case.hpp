@@ -17,6 +17,7 @@
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/casefile/assembly/viscoelastic_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
@@ -132,6 +133,7 @@ struct Case : CaseDocument {
   AssemblyCase assembly;
   std::optional<SpringConstants> springs;  ///< or
   std::optional<MaterialCase> material;
+  std::optional<ViscoelasticCase> viscoelastic;
   SpringWeighting weighting = SpringWeighting::uniform;
   Rotation rotation = Rotation::from_scene;
   std::optional<TensionTest> test;     ///< or
