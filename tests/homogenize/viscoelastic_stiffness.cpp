@@ -137,17 +137,17 @@ TEST_CASE("lattices_have_the_complex_moduli_of_their_relation") {
       const HarmonicModuli m = harmonic_moduli(c);
       const Amplitude nu = (1.0 - kT / kN) / 4.0;  // eq. (22) with the complex ratio
       CAPTURE(nu, m.poisson_strain, c.error_bound);
-      CHECK(std::abs(m.poisson_strain - nu) < 1e-12 * std::max(1.0, std::abs(nu)));
-      CHECK(std::abs(m.shear_modulus - Amplitude{storage.shear, loss.shear}) < 1e-12 * std::abs(m.shear_modulus));
+      // Entries are right relative to the largest: the smaller modulus has fewer digits, and their ratio too.
+      const double size = std::max(std::abs(m.bulk_modulus_2d), std::abs(m.shear_modulus));
+      CHECK(std::abs(m.poisson_strain - nu) < 1e-12 * std::max(1.0, std::norm(kT / kN)));
+      CHECK(std::abs(m.shear_modulus - Amplitude{storage.shear, loss.shear}) < 1e-12 * size);
       CHECK(c.relative_residual < 1e-14);
       // Eqs. (20) and (21) with the solid fraction and the contact density of this lattice.
       const IsotropicMeasures measures{std::numbers::pi / (2 * std::numbers::sqrt3), 3 / std::numbers::pi};
       const SheetModuli mean_storage = isotropic_relation.moduli({kN.real(), kT.real()}, measures);
       const SheetModuli mean_loss = isotropic_relation.moduli({kN.imag(), kT.imag()}, measures);
-      CHECK(std::abs(m.bulk_modulus_2d - Amplitude{mean_storage.bulk, mean_loss.bulk}) <
-            1e-12 * std::abs(m.bulk_modulus_2d));
-      CHECK(std::abs(m.shear_modulus - Amplitude{mean_storage.shear, mean_loss.shear}) <
-            1e-12 * std::abs(m.shear_modulus));
+      CHECK(std::abs(m.bulk_modulus_2d - Amplitude{mean_storage.bulk, mean_loss.bulk}) < 1e-12 * size);
+      CHECK(std::abs(m.shear_modulus - Amplitude{mean_storage.shear, mean_loss.shear}) < 1e-12 * size);
     }
   }
 }
@@ -253,6 +253,7 @@ TEST_CASE("storage_follows_from_loss_by_causality") {
 TEST_CASE("motions_without_energy_are_held_at_every_frequency") {
   // A disc of the hexagonal lattice that keeps two contacts in line can leave it at no cost where kT = 0.
   Assembly cell = hexagonal_lattice({.columns = 6, .rows = 6, .radius = 0.005, .periodic = true});
+  cell.facet_lengths.clear();
   std::erase_if(cell.contacts,
                 [&](const Contact& c) { return (c.i == 14 || c.j == 14) && std::abs(cell.branch(c).y) > 1e-6; });
   const ContactSprings springs(SpringConstants{1e9, 0});

@@ -34,8 +34,8 @@ struct ViscoelasticCase {
 
 /// The springs over the elastic ones, checked.
 /// \param constants of the case before weighting; none where each contact has springs of its own
-/// \throws Error (bad_input), with the line of the case file: as check(ViscoelasticSpring), a table in Pa beside springs
-///         of their own, or of a kT where the case has none
+/// \throws Error (bad_input), with the line of the case file: as check(ViscoelasticSpring), a table in Pa beside
+///         springs of their own, or of a kT where the case has none
 Viscoelasticity build_viscoelasticity(const Case& resolved, const std::optional<SpringConstants>& constants);
 
 /// Frequencies of [viscoelastic], Hz.
@@ -51,8 +51,8 @@ std::vector<Key<ViscoelasticCase>> viscoelastic_keys();
 
 /// Reads the table, if there is one.
 /// \param root the document
-/// \throws Error (bad_input) with line and key: both springs elastic, a table without a path or the reverse, a file that
-///         is no such table, an end of the frequencies without the other
+/// \throws Error (bad_input) with line and key: both springs elastic, a table without a path or the reverse, a file
+///         that is no such table
 void complete_viscoelastic(const TomlValue& root, ViscoelasticCase& viscoelastic);
 
 }  // namespace casefile
