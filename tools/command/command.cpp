@@ -82,7 +82,9 @@ std::vector<std::string> overrides_of(const CommonOptions& options) {
 
 Case read_case(const CommonOptions& options) {
   prepare(options);
-  return read_case(options.case_file, overrides_of(options));
+  Case resolved = read_case(options.case_file, overrides_of(options));
+  check_viscoelastic(resolved, options.verb);
+  return resolved;
 }
 
 void OutputPlan::expect(const std::string& name) const {

@@ -3,6 +3,7 @@
 /// Options and output that all verbs share: the case file, overrides, threads, files of the results.
 #pragma once
 
+#include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -104,8 +105,9 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
 struct ResultArray {
   std::string name;  ///< "displacements", with '/' between the names of parts
   std::string unit;
-  std::shared_ptr<const void> owner;                           ///< keeps the numbers
-  std::variant<const double*, const std::int32_t*> numbers{};  ///< the first of them
+  std::shared_ptr<const void> owner;  ///< keeps the numbers
+  /// The first of them.
+  std::variant<const double*, const std::int32_t*, const std::complex<double>*> numbers{};
   std::size_t rows = 0;
   std::size_t columns = 1;
   std::size_t stride = 1;  ///< numbers from one row to the next

@@ -102,7 +102,7 @@ std::string deciding_tables(const Case& resolved) {
     const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, entry.name) != names.end();
     };
-    return is_one_of({"title", "effects", "solver", "homogenize", "ensemble", "run", "output"}) ||
+    return is_one_of({"title", "viscoelastic", "effects", "solver", "homogenize", "ensemble", "run", "output"}) ||
            (!falls && is_one_of({"springs", "material"}));
   });
   return to_toml(document, {});
@@ -306,6 +306,8 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
                                          notched && dead ? " and " : "", dead ? "[[dead_load]]" : ""));
   }
   results.line("springs", problem.springs.report);
+  if (problem.resolved.viscoelastic)
+    results.line("viscoelastic", describe(build_viscoelasticity(problem.resolved, problem.springs.constants)));
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

@@ -161,7 +161,9 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
     if (options.dry_run)
       bad_input("equidem-mpi has no --dry-run", "what it takes is planned by hand",
                 "See data/petsc.md, or leave it out");
-    made = std::make_unique<PartProblem>(read_case(options));
+    Case resolved = read_case(options);
+    check_viscoelastic(resolved, "equidem-mpi");
+    made = std::make_unique<PartProblem>(std::move(resolved));
     check_case(made->problem.resolved, homogenize);
   });
   PartProblem& p = *made;

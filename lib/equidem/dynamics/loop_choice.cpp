@@ -23,8 +23,12 @@ void check_inertia(const Scene& scene) {
 
 void check_damping(const SimulationOptions& options) {
   const Damping& damping = options.damping;
-  const std::pair<const char*, double> values[] = {
-      {"mass", damping.mass}, {"stiffness", damping.stiffness}, {"contact", damping.contact}, {"local", damping.local}};
+  const std::pair<const char*, double> values[] = {{"mass", damping.mass},
+                                                   {"stiffness", damping.stiffness},
+                                                   {"contact", damping.contact},
+                                                   {"local", damping.local},
+                                                   {"viscoelastic normal", damping.normal_time},
+                                                   {"viscoelastic tangential", damping.tangential_time}};
   for (const auto& [name, value] : values) {
     if (value >= 0 && std::isfinite(value)) continue;
     bad_input(fmt::format("{} damping is {}", name, value), "negative damping would feed the motion", "Give 0 or more");
@@ -33,10 +37,12 @@ void check_damping(const SimulationOptions& options) {
     bad_input(fmt::format("local damping is {}", damping.local), "at 1 and more nothing would start to move",
               "Give a share below 1, such as 0.7");
   }
-  const bool dashpots = damping.stiffness > 0 || damping.contact > 0;
-  if ((damping.stiffness > 0 && damping.contact > 0) || (dashpots && damping.local > 0)) {
+  const bool dashpots = damping.dashpots(), viscoelastic = damping.normal_time > 0 || damping.tangential_time > 0;
+  const bool kinds[] = {damping.stiffness > 0, damping.contact > 0, damping.local > 0, viscoelastic};
+  if (std::ranges::count(kinds, true) > 1) {
     bad_input("several kinds of damping at contacts are asked for",
-              "stiffness, contact and local damping are three ways to the same end", "Keep one of them");
+              "stiffness, contact and local damping and viscoelastic springs each say which dampers there are",
+              "Keep one of them");
   }
   if (!scheme_of(options.integrator).takes_dashpots && (dashpots || damping.local > 0)) {
     bad_input(
@@ -88,7 +94,7 @@ Effects effects_of(const Scene& scene, const SimulationOptions& options) {
     if (!contacts && entry.active && entry.name != "rotation") entry = {entry.name, false, no_contacts};
   }
   add("mass-proportional damping", damping.mass > 0, "none is asked for");
-  add("dashpots at contacts", contacts && (damping.stiffness > 0 || damping.contact > 0),
+  add("dashpots at contacts", contacts && damping.dashpots(),
       contacts ? "no damping at contacts is asked for" : no_contacts);
   add("local damping", damping.local > 0, "none is asked for");
   add("gravity", scene.weighs(), "it is zero");
@@ -113,10 +119,10 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
       scene.springs.uniform() && std::all_of(scene.assembly.contacts.begin(), scene.assembly.contacts.end(),
                                              [&](const Contact& c) { return in_the_middle(scene.assembly, c); });
   const Damping& damping = options.damping;
-  kind.resistance = damping.stiffness > 0 || damping.contact > 0 ? LoopKind::Resistance::dashpot
-                    : damping.local > 0                          ? LoopKind::Resistance::local
-                    : damping.mass > 0 || scene.weighs()         ? LoopKind::Resistance::body
-                                                                 : LoopKind::Resistance::none;
+  kind.resistance = damping.dashpots()                   ? LoopKind::Resistance::dashpot
+                    : damping.local > 0                  ? LoopKind::Resistance::local
+                    : damping.mass > 0 || scene.weighs() ? LoopKind::Resistance::body
+                                                         : LoopKind::Resistance::none;
   const auto same = [&](const Inertia& a) {
     return a.mass == scene.inertia[0].mass && a.moment == scene.inertia[0].moment;
   };
@@ -129,7 +135,9 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
 }
 
 SpringConstants dashpots_of(const Damping& damping, const SpringConstants& k, double mass_i, double mass_j) {
-  if (damping.stiffness > 0) return {damping.stiffness * k.kN, damping.stiffness * k.kT};
+  if (damping.contact == 0) {
+    return {(damping.stiffness + damping.normal_time) * k.kN, (damping.stiffness + damping.tangential_time) * k.kT};
+  }
   const double reduced = mass_i * mass_j / (mass_i + mass_j);
   return {2 * damping.contact * std::sqrt(reduced * k.kN), 2 * damping.contact * std::sqrt(reduced * std::abs(k.kT))};
 }

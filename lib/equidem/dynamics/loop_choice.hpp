@@ -22,7 +22,7 @@ Effects effects_of(const Scene& scene, const SimulationOptions& options);
 /// The simplest loop that contains every active effect.
 LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Effects& effects);
 
-/// Dashpots of a contact, N s/m per m: beta k, or 2 zeta sqrt(m k) with the reduced mass m.
+/// Dashpots of a contact, N s/m per m: beta k, tau k, or 2 zeta sqrt(m k) with the reduced mass m.
 SpringConstants dashpots_of(const Damping& damping, const SpringConstants& k, double mass_i, double mass_j);
 
 }  // namespace equidem

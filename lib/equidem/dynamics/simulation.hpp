@@ -56,6 +56,11 @@ struct Damping {
   double contact =
       0;  ///< zeta: dashpots c_N = 2 zeta sqrt(m kN), c_T = 2 zeta sqrt(m |kT|) at contacts, m the reduced mass
   double local = 0;  ///< in [0, 1): share of the resultant force that acts against the velocity (Cundall)
+  /// tau_N, tau_T, s: dashpots c_N = tau_N kN, c_T = tau_T kT at contacts, Kelvin-Voigt springs of different times.
+  double normal_time = 0, tangential_time = 0;
+
+  /// Whether contacts have dashpots.
+  [[nodiscard]] bool dashpots() const { return stiffness > 0 || contact > 0 || normal_time > 0 || tangential_time > 0; }
 };
 
 struct SimulationOptions {

@@ -49,7 +49,7 @@ struct Vibration {
     walls = (0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy)) / lightest;
   }
 
-  [[nodiscard]] bool dashpots() const { return options.damping.stiffness > 0 || options.damping.contact > 0; }
+  [[nodiscard]] bool dashpots() const { return options.damping.dashpots(); }
   [[nodiscard]] SpringConstants dashpots(std::size_t c) const {
     const Contact& contact = scene.assembly.contacts[c];
     return dashpots_of(options.damping, scene.springs[c], scene.inertia[contact.i].mass, scene.inertia[contact.j].mass);
@@ -255,7 +255,8 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
                     : result.omega_max > 0 ? critical_step(vibration, exact, result.omega_max)
                                            : infinite;
   result.exact = !use_bound && scene.walls.empty() &&
-                 !(scheme_of(options.integrator).limit == StabilityLimit::thesis && options.damping.contact > 0);
+                 !(scheme_of(options.integrator).limit == StabilityLimit::thesis &&
+                   (options.damping.contact > 0 || options.damping.normal_time != options.damping.tangential_time));
   result.growth_rate = growth_rate(vibration, result.omega_max);
 
   if (wanted.step) {

@@ -50,7 +50,6 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   result.boundary = options.boundary;
   result.effects = derive_effects(assembly, springs, options.rotation);
   result.area = assembly.area();
-  check_levers(assembly, springs, result.effects);
   if (options.boundary == Boundary::traction) {
     solve_tractions(assembly, scaled, options, result);
   } else {
@@ -119,8 +118,7 @@ void EffectiveStiffness::scale(double factor) {
   error_bound *= factor;
 }
 
-EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
-                                       const HomogenizeOptions& options) {
+void check_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
   check(assembly);
   check(options.solver);
   if (assembly.contacts.empty()) {
@@ -130,6 +128,12 @@ EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSp
     bad_input("the boundary is periodic but the assembly is not", "it has no images to be joined to",
               "Use boundary = \"displacement\" or \"traction\", or a periodic assembly");
   }
+  check_levers(assembly, springs, derive_effects(assembly, springs, options.rotation));
+}
+
+EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSprings& springs,
+                                       const HomogenizeOptions& options) {
+  check_sample(assembly, springs, options);
   EffectiveStiffness result = solve(assembly, springs, options);
   if (const auto weak = judge(result)) refuse(*weak, assembly, springs, options);
   return result;

@@ -59,14 +59,17 @@ void annihilate(Matrix3& k, Matrix3& vectors, std::size_t p, std::size_t q) {
 
 }  // namespace
 
+SheetModuli isotropic_part(const Matrix3& c) {
+  const double trace = c[0][0] + c[1][1], coupling = c[0][1] + c[1][0];
+  return {.bulk = (trace + coupling) / 4, .shear = (trace - coupling + 4 * c[2][2]) / 8};
+}
+
 EffectiveModuli effective_moduli(const Matrix3& stiffness) {
   const double unit = std::ldexp(1.0, std::ilogb(largest_entry(stiffness)));  // products stay within a double
   Matrix3 c = stiffness;
   for (auto& row : c)
     for (double& entry : row) entry /= unit;
-  const double trace = c[0][0] + c[1][1], coupling = c[0][1] + c[1][0];
-  const double K = (trace + coupling) / 4;
-  const double G = (trace - coupling + 4 * c[2][2]) / 8;
+  const auto [K, G] = isotropic_part(c);
   const Matrix3 nearest = isotropic_stiffness(K, G);
   const double size = tensor_norm(nearest);
   assert(size > 0);

@@ -8,6 +8,7 @@
 
 #include "equidem/core/matrix.hpp"
 #include "equidem/material/elastic_moduli.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 
@@ -25,6 +26,8 @@ struct EffectiveModuli {
   double anisotropy = 0;
 };
 
+/// K and G of the nearest isotropic tensor, Pa: linear in the stiffness.
+SheetModuli isotropic_part(const Matrix3& stiffness);
 /// A sheet with G >= 3K gets its plane-strain numbers, too, although no solid has nu <= -1.
 /// \param stiffness other than zero
 EffectiveModuli effective_moduli(const Matrix3& stiffness);

@@ -83,6 +83,15 @@ double power_difference(const std::vector<Tensor2>& stresses, const Matrix3& sti
 /// strains and, where there is a fourth one, of the unit rotation.
 void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStiffness& result);
 
+/// \throws Error (bad_input) where the boundary does not suit the assembly, it has no contacts, or levers do not add up
+///         to their branch where they matter
+void check_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options);
+
+/// The sample of a periodic cell, or of one whose boundary is displaced.
+/// \throws Error as SampleSolver
+SampleSolver strain_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                           EffectiveStiffness& result);
+
 /// Unit mean strains, and the unit mean rotation where discs cannot turn. Fills the stiffness, its parts, the
 /// unsymmetric tensor, the fluctuations and the error bound (without rounding) of `result`.
 /// \throws Error as effective_stiffness

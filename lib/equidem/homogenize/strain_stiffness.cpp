@@ -90,11 +90,16 @@ void keep_gradient_stiffness(const std::vector<Tensor2>& stresses, EffectiveStif
   result.stress_asymmetry = asymmetric / largest_entry(result.gradient_stiffness);
 }
 
+SampleSolver strain_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
+                           EffectiveStiffness& result) {
+  const bool displaced = options.boundary == Boundary::displacement;
+  return {assembly,  springs, options, displaced ? boundary_discs(assembly) : std::vector<std::uint8_t>{},
+          displaced, result};
+}
+
 void solve_strains(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options,
                    EffectiveStiffness& result) {
-  const bool displaced = options.boundary == Boundary::displacement;
-  SampleSolver solver(assembly, springs, options, displaced ? boundary_discs(assembly) : std::vector<std::uint8_t>{},
-                      displaced, result);
+  SampleSolver solver = strain_sample(assembly, springs, options, result);
   const bool turned = result.effects.restrained;
   std::vector<RightHandSide> cases(turned ? 4 : 3);
   for (std::size_t k = 0; k < cases.size(); ++k) {

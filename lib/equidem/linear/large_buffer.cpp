@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <complex>
 #include <cstdint>
 #include <cstdlib>
 
@@ -92,5 +93,6 @@ void BufferPool<Real>::clear() {
 
 template class BufferPool<float>;
 template class BufferPool<double>;
+template class BufferPool<std::complex<double>>;
 
 }  // namespace equidem

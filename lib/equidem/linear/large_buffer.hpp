@@ -45,7 +45,7 @@ template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
-/// There for float and double.
+/// There for float, double and std::complex<double>.
 template <typename Real>
 class BufferPool {
  public:

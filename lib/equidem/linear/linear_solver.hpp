@@ -13,7 +13,9 @@
 namespace equidem {
 
 struct DegreesOfFreedom;
-struct MatrixOnGraph;
+template <typename Number>
+struct MatrixOnGraphOf;
+using MatrixOnGraph = MatrixOnGraphOf<double>;
 struct SolverOptions;
 struct SymbolicFactor;
 

@@ -8,12 +8,14 @@
 namespace equidem {
 
 /// Normal and tangential contact spring, N/m per metre of depth = Pa.
-struct SpringConstants {
-  double kN = 0;  ///< > 0
-  double kT = 0;  ///< any sign; negative is static-only
+template <typename Number>
+struct SpringConstantsOf {
+  Number kN = 0;  ///< > 0
+  Number kT = 0;  ///< any sign; negative is static-only
 
-  [[nodiscard]] double ratio() const { return kT / kN; }
+  [[nodiscard]] Number ratio() const { return kT / kN; }
 };
+using SpringConstants = SpringConstantsOf<double>;
 
 /// \param of "of contact 7" for the message, or empty
 /// \throws Error (bad_input) where kN is not positive and finite, or kT not finite

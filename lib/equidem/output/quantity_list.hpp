@@ -134,6 +134,10 @@ inline constexpr Quantity quantities[] = {
     {"local_mechanisms", "", "number of other motions without energy"},
     {"self_stresses", "", "number of independent states of self-stress"},
     {"strain_of_states", "", "strain of the states that are written"},
+    // Viscoelastic springs
+    {"frequency", "Hz", "frequency of a harmonic strain"},
+    {"normal_factor", "", "normal springs over the elastic ones: real (storage) or imaginary (loss) part"},
+    {"tangential_factor", "", "tangential springs over the elastic ones: real (storage) or imaginary (loss) part"},
     // Ensembles
     {"samples", "", "number of cells of each size"},
     {"mean_discs", "", "mean number of discs of the cells"},

@@ -101,6 +101,8 @@ class StiffnessSolver {
   [[nodiscard]] const ContactGraph& graph() const { return graph_; }
   [[nodiscard]] const DegreesOfFreedom& unknowns() const { return unknowns_; }
   [[nodiscard]] const Factorization& factor() const { return *factor_; }
+  /// The fronts of the factor; null where the method is iterative.
+  [[nodiscard]] const std::shared_ptr<const SymbolicFactor>& symbolic() const { return symbolic_; }
   /// Name of the method, with the reason for double precision where single precision did not serve, and for the choice
   /// of "auto" between elimination and iterations.
   [[nodiscard]] std::string solver_name() const;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include <pybind11/complex.h>
 #include <pybind11/stl.h>
 
 #include "equidem/core/given.hpp"

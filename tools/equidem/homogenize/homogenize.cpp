@@ -17,6 +17,7 @@
 #include "command.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
+#include "homogenize/viscoelastic_results.hpp"
 #include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
 #include "state_files.hpp"
@@ -40,9 +41,14 @@ struct WrittenState {
 constexpr std::array written_states{WrittenState{"_strain_xx", "strain xx"}, WrittenState{"_strain_yy", "strain yy"},
                                     WrittenState{"_strain_xy", "shear strain"}};
 
-void check_outputs(const CommonOptions& options, const OutputCase& wanted) {
+void check_outputs(const CommonOptions& options, const Case& resolved) {
   const OutputPlan plan(options);
+  const OutputCase& wanted = resolved.output;
   plan.expect_results();
+  if (resolved.viscoelastic) {
+    plan.expect(viscoelastic_table_name);
+    plan.expect_plot(moduli_over_frequency);
+  }
   expect_assembly(plan, wanted);
   for (const WrittenState& state : written_states) expect_state(plan, wanted, state.suffix);
 }
@@ -91,6 +97,40 @@ void write_states(const CommonOptions& options, const OutputCase& wanted, const 
   }
 }
 
+/// Complex moduli over frequency, where the case has [viscoelastic].
+struct Harmonic {
+  Viscoelasticity springs;
+  ViscoelasticStiffness stiffness;
+};
+
+std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
+  const Case& resolved = problem.resolved;
+  if (!resolved.viscoelastic) return {};
+  Harmonic result{build_viscoelasticity(resolved, problem.springs.constants), {}};
+  const std::vector<double> frequencies = frequencies_of(resolved, result.springs);
+  try {
+    result.stiffness =
+        viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
+                               {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
+  } catch (const Error& error) {
+    throw error.kind() == ErrorKind::interrupted ? error : error.at(resolved.where("viscoelastic"));
+  }
+  return result;
+}
+
+/// Table and plot. Returns a line for the report.
+std::string write_harmonic(const CommonOptions& into, const std::string& title, const ViscoelasticStiffness& result) {
+  write_csv(*into.out / viscoelastic_table_name, viscoelastic_table(result), true);
+  return write_plot(*into.out, moduli_over_frequency, viscoelastic_plot(title, result), true).message + "\n";
+}
+
+void refuse_viscoelastic_samples(const Case& resolved, bool accuracy) {
+  if (!resolved.viscoelastic || !(resolved.ensemble || accuracy)) return;
+  bad_input_at(resolved.where("viscoelastic"), "[viscoelastic] is given beside [ensemble] or --accuracy",
+               "both are about the elastic moduli of random cells",
+               "Homogenize one large cell, or use 'equidem sweep' over its seeds");
+}
+
 int dry_run_homogenization(const CommonOptions& options, const Problem& problem) {
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -100,6 +140,12 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
                                           "about as large as this",
                                           names));
   results.set("factorizations", boundaries.size());
+  if (problem.resolved.viscoelastic) {
+    const Viscoelasticity springs = build_viscoelasticity(problem.resolved, problem.springs.constants);
+    const std::vector<double> frequencies = frequencies_of(problem.resolved, springs);
+    results.line("viscoelastic", fmt::format("{} more, each of complex numbers: about four times the work",
+                                             counted(std::ssize(frequencies), "factorization")));
+  }
   deliver(options, "dry_run", dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results),
           problem.times);
   return 0;
@@ -109,6 +155,7 @@ int homogenize(const HomogenizeVerb& options) {
   const CommonOptions& common = options.common;
   Case resolved = read_case(common);
   refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
+  refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
   if (options.accuracy && resolved.assembly.random()) {
     if (options.resume)
       bad_input("--resume and --accuracy exclude each other", "what is sampled follows from the samples",
@@ -118,7 +165,7 @@ int homogenize(const HomogenizeVerb& options) {
   if (resolved.ensemble) return homogenize_ensemble(common, resolved, options.resume);
   if (options.resume)
     bad_input("--resume has nothing to continue", "the case has no [ensemble]", "Leave it out, or add [ensemble]");
-  check_outputs(common, resolved.output);
+  check_outputs(common, resolved);
   const auto lock = lock_out(common);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const auto shared_problem = std::make_shared<const Problem>(problem_of(std::move(resolved)));
@@ -128,8 +175,10 @@ int homogenize(const HomogenizeVerb& options) {
   const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem));
   const BoundedStiffness& homogenized = *shared_stiffness;
   const EffectiveStiffness& result = homogenized.result;
+  const std::optional<Harmonic> harmonic = harmonic_of(problem, result.boundary);
   StageTimes times = problem.times;
   times.add(result.times);
+  if (harmonic) times.add(harmonic->stiffness.times);
   std::optional<ReachedAccuracy> reached;
   if (options.accuracy)
     reached = solver_accuracy(*options.accuracy, result.error_bound / largest_entry(result.stiffness), result.condition,
@@ -137,6 +186,7 @@ int homogenize(const HomogenizeVerb& options) {
   Results results = homogenized_results(problem, homogenized, relation_of(problem));
   results.set("strain_of_states", written_strain);
   if (reached) results.append(accuracy_results(*reached));
+  if (harmonic) results.append(viscoelastic_results(harmonic->springs, harmonic->stiffness));
   if (common.out && result.fluctuations.empty())
     results.line("files", "without states: those are of prescribed strains");
   else if (common.out)
@@ -145,8 +195,9 @@ int homogenize(const HomogenizeVerb& options) {
           result.unstable_modes > 0   ? "unstable"
           : result.unstable_modes < 0 ? "unjudged"
                                       : "solved",
-          std::move(results), std::move(times), [&](Results&) {
+          std::move(results), std::move(times), [&](Results& out) {
             if (!common.out) return;
+            if (harmonic) out.block(write_harmonic(common, problem.resolved.title, harmonic->stiffness));
             write_assembly(common, problem.resolved.output, problem.assembly);
             write_states(common, problem.resolved.output, problem, result);
             write_case(common, problem.resolved);
@@ -154,8 +205,10 @@ int homogenize(const HomogenizeVerb& options) {
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));
+  if (arrays_wanted() && harmonic) hand_over(viscoelastic_arrays(harmonic->stiffness));
   hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
-  hand_over([shared_problem, shared_stiffness](const CommonOptions& into) {
+  hand_over([shared_problem, shared_stiffness, harmonic](const CommonOptions& into) {
+    if (harmonic) write_harmonic(into, shared_problem->resolved.title, harmonic->stiffness);
     write_states(into, pictures_of(shared_problem->resolved.output), *shared_problem, shared_stiffness->result);
     write_case(into, shared_problem->resolved);
   });

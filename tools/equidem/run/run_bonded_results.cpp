@@ -12,7 +12,7 @@ namespace {
 constexpr double balance_to_mention = 1e-3;  // of the largest energy
 
 bool has_late_dampers(const Damping& damping) {
-  return damping.stiffness > 0 || damping.contact > 0 || damping.local > 0;
+  return damping.dashpots() || damping.local > 0;
 }
 
 /// Keys of the case that have no effect on a run to rest.

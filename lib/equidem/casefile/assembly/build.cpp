@@ -202,10 +202,16 @@ std::vector<Probe> build_probes(const Case& resolved, const Assembly& assembly) 
 SimulationOptions simulation_options(const Case& resolved, double time_step) {
   assert(resolved.run && time_step > 0);
   const RunCase& run = *resolved.run;
+  Damping damping = run.damping;
+  if (resolved.viscoelastic) {
+    const Viscoelasticity& springs = resolved.viscoelastic->springs;  // check_viscoelastic admits Kelvin-Voigt alone
+    damping.normal_time = springs.normal.time;
+    damping.tangential_time = springs.tangential.time;
+  }
   return {.motion = run.motion,
           .integrator = run.integrator,
           .rotation = resolved.rotation,
-          .damping = run.damping,
+          .damping = damping,
           .time_step = time_step};
 }
 

@@ -194,6 +194,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
     tables.springs = springs->constants;
     tables.weighting = springs->weighting;
   }
+  if (tables.viscoelastic) complete_viscoelastic(root, *tables.viscoelastic);
   tables.assembly.density = one_density(root, {{"assembly", tables.assembly.density},
                                                {"springs", springs ? springs->density : std::nullopt},
                                                {"packing", tables.packing_tables.density}});

@@ -18,6 +18,7 @@
 #include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/casefile/assembly/strength_tables.hpp"
+#include "equidem/casefile/assembly/viscoelastic_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
@@ -133,6 +134,7 @@ struct Case : CaseDocument {
   AssemblyCase assembly;
   std::optional<SpringConstants> springs;  ///< or
   std::optional<MaterialCase> material;
+  std::optional<ViscoelasticCase> viscoelastic;
   SpringWeighting weighting = SpringWeighting::uniform;
   Rotation rotation = Rotation::from_scene;
   std::optional<TensionTest> test;     ///< or

@@ -290,6 +290,9 @@ const File<CaseTables>& case_file() {
     bind_springs_file(made);
     bind_assembly(made);
     made.table("springs", &CaseTables::springs_table, "the two springs of a contact").keys(springs_keys());
+    made.table("viscoelastic", &CaseTables::viscoelastic,
+               "dashpots at the springs: complex moduli over frequency (homogenize), motion (run)")
+        .keys(viscoelastic_keys());
     bind_material(made);
     bind_supports_and_loads(made);
     bind_run(made);

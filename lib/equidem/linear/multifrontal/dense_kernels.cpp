@@ -42,6 +42,29 @@ struct Blas<float> {
   static constexpr auto potrf = spotrf_;
 };
 
+/// CBLAS takes complex factors by address.
+template <>
+struct Blas<std::complex<double>> {
+  using Number = std::complex<double>;
+  static void gemm(CBLAS_ORDER order, CBLAS_TRANSPOSE op_a, CBLAS_TRANSPOSE op_b, int m, int n, int k, Number alpha,
+                   const Number* a, int lda, const Number* b, int ldb, Number beta, Number* c, int ldc) {
+    cblas_zgemm(order, op_a, op_b, m, n, k, &alpha, a, lda, b, ldb, &beta, c, ldc);
+  }
+  static void gemv(CBLAS_ORDER order, CBLAS_TRANSPOSE op, int m, int n, Number alpha, const Number* a, int lda,
+                   const Number* x, int step_x, Number beta, Number* y, int step_y) {
+    cblas_zgemv(order, op, m, n, &alpha, a, lda, x, step_x, &beta, y, step_y);
+  }
+  static void syrk(CBLAS_ORDER order, CBLAS_UPLO triangle, CBLAS_TRANSPOSE op, int n, int k, Number alpha,
+                   const Number* a, int lda, Number beta, Number* c, int ldc) {
+    cblas_zsyrk(order, triangle, op, n, k, &alpha, a, lda, &beta, c, ldc);
+  }
+  static void trsm(CBLAS_ORDER order, CBLAS_SIDE side, CBLAS_UPLO triangle, CBLAS_TRANSPOSE op, CBLAS_DIAG diagonal,
+                   int m, int n, Number alpha, const Number* a, int lda, Number* b, int ldb) {
+    cblas_ztrsm(order, side, triangle, op, diagonal, m, n, &alpha, a, lda, b, ldb);
+  }
+  static constexpr auto trsv = cblas_ztrsv;
+};
+
 int as_int(std::size_t n) {
   return static_cast<int>(n);
 }
@@ -138,18 +161,23 @@ void solve_lower_transposed(std::size_t n, std::size_t columns, const Real* l, s
   solve_triangular(CblasTrans, n, columns, l, ldl, x, ldx, unit);
 }
 
-#define EQUIDEM_INSTANTIATE(Real)                                                                               \
-  template int cholesky(std::size_t, Real*, std::size_t);                                                       \
-  template void solve_right_transposed(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t); \
-  template void subtract_square(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t);        \
-  template void subtract_product_transposed(std::size_t, std::size_t, std::size_t, const Real*, std::size_t,    \
-                                            const Real*, std::size_t, Real*, std::size_t);                      \
-  template void subtract_product(std::size_t, std::size_t, std::size_t, const Real*, std::size_t, const Real*,  \
-                                 std::size_t, Real*, std::size_t);                                              \
-  template void subtract_transposed_product(std::size_t, std::size_t, std::size_t, const Real*, std::size_t,    \
-                                            const Real*, std::size_t, Real*, std::size_t);                      \
-  template void solve_lower(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t, bool);      \
+#define EQUIDEM_INSTANTIATE(Real)                                                                              \
+  template void subtract_square(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t);       \
+  template void subtract_product_transposed(std::size_t, std::size_t, std::size_t, const Real*, std::size_t,   \
+                                            const Real*, std::size_t, Real*, std::size_t);                     \
+  template void subtract_product(std::size_t, std::size_t, std::size_t, const Real*, std::size_t, const Real*, \
+                                 std::size_t, Real*, std::size_t);                                             \
+  template void subtract_transposed_product(std::size_t, std::size_t, std::size_t, const Real*, std::size_t,   \
+                                            const Real*, std::size_t, Real*, std::size_t);                     \
+  template void solve_lower(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t, bool);     \
   template void solve_lower_transposed(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t, bool)
+EQUIDEM_INSTANTIATE(float);
+EQUIDEM_INSTANTIATE(double);
+EQUIDEM_INSTANTIATE(std::complex<double>);
+#undef EQUIDEM_INSTANTIATE
+#define EQUIDEM_INSTANTIATE(Real)                         \
+  template int cholesky(std::size_t, Real*, std::size_t); \
+  template void solve_right_transposed(std::size_t, std::size_t, const Real*, std::size_t, Real*, std::size_t)
 EQUIDEM_INSTANTIATE(float);
 EQUIDEM_INSTANTIATE(double);
 #undef EQUIDEM_INSTANTIATE

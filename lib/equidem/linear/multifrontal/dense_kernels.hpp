@@ -12,7 +12,8 @@ namespace equidem::dense {
 /// Keep BLAS from starting threads of its own; every user of these kernels calls it once.
 void use_one_thread_per_call();
 
-/// The following are there for float and double.
+/// The following are there for float and double, products and solutions also for std::complex<double>, of which
+/// nothing is conjugated.
 /// A = L L^T in the lower triangle of the n x n matrix a. Returns 0, or the 1-based index of the first pivot that is
 /// not positive.
 template <typename Real>

@@ -91,21 +91,21 @@ int factorize_front(std::size_t k, std::size_t m, Real* panel, Real* update) {
   return 0;
 }
 
-template <typename Real>
-void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, std::size_t t,
+template <typename Real, typename Entry>
+void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraphOf<Entry>& k, std::size_t t,
                         std::span<const double> scale, Real* panel, std::size_t ld) {
   const auto b = static_cast<std::size_t>(symbolic.block);
   const auto& node = symbolic.tree.nodes[t];
   const auto& rows = symbolic.rows[t];
   const std::int32_t own = node.end - node.begin;
-  const auto scaled = [&](double entry, std::size_t row, std::size_t column) {
+  const auto scaled = [&](const Entry& entry, std::size_t row, std::size_t column) {
     return static_cast<Real>(scale.empty() ? entry : entry * scale[row] * scale[column]);
   };
   for (std::int32_t p = node.begin; p < node.end; ++p) {
     const std::int32_t disc = symbolic.tree.order[p];
     const std::size_t here = disc * b;
     Real* column = panel + static_cast<std::size_t>(p - node.begin) * b * ld;
-    const double* diagonal = k.matrix.diagonal_block(disc);
+    const Entry* diagonal = k.matrix.diagonal_block(disc);
     Real* at = column + static_cast<std::size_t>(p - node.begin) * b;
     for (std::size_t c = 0; c < b; ++c) {
       for (std::size_t r = c; r < b; ++r) at[c * ld + r] += scaled(diagonal[r * b + c], here + r, here + c);
@@ -116,7 +116,7 @@ void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, 
       const std::int32_t row =
           q < node.end ? q - node.begin
                        : own + static_cast<std::int32_t>(std::lower_bound(rows.begin(), rows.end(), q) - rows.begin());
-      const double* block = k.matrix.coupling_block(edge.contact);
+      const Entry* block = k.matrix.coupling_block(edge.contact);
       const bool transposed = k.assembly.contacts[edge.contact].i == disc;  // wanted: K_qp
       const std::size_t there = edge.other * b;
       at = column + static_cast<std::size_t>(row) * b;
@@ -153,11 +153,16 @@ void extend_add(const std::vector<RowRun>& runs, int block, const Real* child, s
   }
 }
 
-#define EQUIDEM_INSTANTIATE(Real)                                                                                     \
-  template void add_matrix_columns(const SymbolicFactor&, const MatrixOnGraph&, std::size_t, std::span<const double>, \
-                                   Real*, std::size_t);                                                               \
-  template int factorize_front(std::size_t, std::size_t, Real*, Real*);                                               \
-  template void subtract_in_tiles(std::size_t, std::size_t, Strided<const Real>, Strided<const Real>, Strided<Real>); \
+#define EQUIDEM_INSTANTIATE(Real, Entry)                                                              \
+  template void add_matrix_columns(const SymbolicFactor&, const MatrixOnGraphOf<Entry>&, std::size_t, \
+                                   std::span<const double>, Real*, std::size_t);                      \
+  template void subtract_in_tiles(std::size_t, std::size_t, Strided<const Real>, Strided<const Real>, Strided<Real>)
+EQUIDEM_INSTANTIATE(float, double);
+EQUIDEM_INSTANTIATE(double, double);
+EQUIDEM_INSTANTIATE(std::complex<double>, std::complex<double>);
+#undef EQUIDEM_INSTANTIATE
+#define EQUIDEM_INSTANTIATE(Real)                                       \
+  template int factorize_front(std::size_t, std::size_t, Real*, Real*); \
   template void extend_add(const std::vector<RowRun>&, int, const Real*, std::size_t, const ParentFront<Real>&)
 EQUIDEM_INSTANTIATE(float);
 EQUIDEM_INSTANTIATE(double);

@@ -3,6 +3,7 @@
 /// Steps on one front of a multifrontal factorization, shared by Cholesky and L D L^T.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -14,13 +15,14 @@
 
 namespace equidem {
 
-// The templates below are there for float and double.
+// The templates below are there for float and double; the columns of K and products in tiles also for
+// std::complex<double>.
 
 /// Add the columns of K that front t eliminates to its panel: own unknowns first, then those of its rows,
 /// column-major with leading dimension `ld`; only entries on and below the diagonal.
 /// \param scale per component: row and column are multiplied by it; empty: 1
-template <typename Real>
-void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, std::size_t t,
+template <typename Real, typename Entry>
+void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraphOf<Entry>& k, std::size_t t,
                         std::span<const double> scale, Real* panel, std::size_t ld);
 
 /// Factorize a front: panel (k + m rows, k columns) and update matrix (m x m, leading dimension m, lower triangle).

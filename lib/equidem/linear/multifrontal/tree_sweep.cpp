@@ -2,6 +2,7 @@
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -140,5 +141,6 @@ void TreeSweep<Real>::down(const std::function<void(std::size_t)>& visit) const 
 
 template class TreeSweep<float>;
 template class TreeSweep<double>;
+template class TreeSweep<std::complex<double>>;
 
 }  // namespace equidem

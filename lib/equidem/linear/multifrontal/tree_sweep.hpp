@@ -13,7 +13,7 @@
 namespace equidem {
 
 /// Visits every front, children before parents or parents before children; subtrees run on separate threads. Updates
-/// consist of floats or of doubles.
+/// consist of floats, of doubles or of complex doubles.
 template <typename Real>
 class TreeSweep {
  public:

@@ -248,7 +248,7 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
   model.period = assembly.period;
   model.local_damping = options.damping.local;
   if (options.damping.mass != 0) add(model.found, mass_damping, "");
-  if (options.damping.stiffness != 0 || options.damping.contact != 0) add(model.found, bond_dashpots, "");
+  if (options.damping.dashpots()) add(model.found, bond_dashpots, "");
   if (!on_lines_of_centres(assembly)) add(model.found, off_line_contacts, "");
   if (!assembly.sections.empty()) add(model.found, sections, "");
   const bool restrained = options.rotation == Rotation::restrained;
