@@ -80,6 +80,8 @@ void require_same(const Assembly& a, const Assembly& b) {
   CHECK(a.contact_kT == b.contact_kT);
   CHECK(a.contact_normal_force == b.contact_normal_force);
   CHECK(a.contact_tangential_force == b.contact_tangential_force);
+  CHECK(a.contact_curvature_i == b.contact_curvature_i);
+  CHECK(a.contact_curvature_j == b.contact_curvature_j);
   REQUIRE(a.groups.size() == b.groups.size());
   for (const auto& [name, discs] : a.groups) {
     CAPTURE(name);
@@ -102,6 +104,8 @@ TEST_CASE("files_read_back_to_the_same_bits") {
     a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
     a.contact_normal_force.push_back(-1.0 / (3.0 + static_cast<double>(k)));
     a.contact_tangential_force.push_back(1e-7 / (7.0 + static_cast<double>(k)));
+    a.contact_curvature_i.push_back(1 / (0.3 + static_cast<double>(k)));
+    a.contact_curvature_j.push_back(k % 2 == 0 ? 0 : 1e3);
   }
   a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
   a.groups["loaded"] = {.discs = {2, 5}, .tributary_lengths = {1e-3 / 3, 0.1}};

@@ -38,7 +38,8 @@ struct Problem {
   std::vector<NamedLoads> load_cases;
   StageTimes times;  ///< of building it
   LeftOut left_out = {};
-  bool breaks = false;  ///< contacts break: notches and dead loads are used
+  std::optional<PrestressedSprings> prestress = {};  ///< what prestressed() decided
+  bool breaks = false;                               ///< contacts break: notches and dead loads are used
 
   /// Networks of chance may have mechanisms that no load moves; of lattices and triangulations one is a mistake.
   [[nodiscard]] EquilibriumOptions options() const {
@@ -91,6 +92,11 @@ bool acts(const Case& resolved);
 /// Sets supports and loads: those of the case, or of its tension test.
 /// \throws Error (bad_input) as tension_setup does
 void add_actions(Problem& problem);
+
+/// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
+/// their geometric stiffness.
+/// \throws Error (bad_input) as choose_prestress
+Problem prestressed(Problem problem);
 
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
 Problem build_problem(Case resolved);

@@ -204,6 +204,15 @@ void check_forces_at_rest(const Assembly& assembly) {
               });
 }
 
+void check_curvatures(const Assembly& assembly) {
+  check_pairs(assembly, "curvatures of i", assembly.contact_curvature_i, "curvatures of j",
+              assembly.contact_curvature_j, [&](std::size_t c, double i, double j) {
+                if (i >= 0 && j >= 0 && i + j > 0 && std::isfinite(i + j)) return;
+                bad_input(fmt::format("{}, has the curvatures {} and {} 1/m", described(assembly.contacts[c], c), i, j),
+                          "they must be finite and not negative, and one of them not 0", "Correct them");
+              });
+}
+
 void check_springs(const Assembly& assembly) {
   check_pairs(assembly, "normal springs", assembly.contact_kN, "tangential springs", assembly.contact_kT,
               [&](std::size_t c, double kN, double kT) {
@@ -237,6 +246,7 @@ void check_contacts(const Assembly& assembly) {
   }
   check_strengths(assembly);
   check_forces_at_rest(assembly);
+  check_curvatures(assembly);
   check_springs(assembly);
 }
 

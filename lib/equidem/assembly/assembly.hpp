@@ -78,6 +78,9 @@ struct Assembly {
   /// N/m, per contact: the force that it carries at rest, before any motion, on i along n (tension positive) and along
   /// s = (-n_y, n_x); empty: contacts are unstressed
   std::vector<double> contact_normal_force, contact_tangential_force;
+  /// 1/m, per contact: curvature of the surfaces of i and j, the inverse of the distance from the contact point to the
+  /// centre of curvature (0: flat); empty: discs about their centres. It counts with forces at rest only.
+  std::vector<double> contact_curvature_i, contact_curvature_j;
   std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
 
   [[nodiscard]] std::size_t size() const { return centres.size(); }
@@ -120,7 +123,7 @@ std::string length_limits();
 /// Check everything that later parts rely on: counts agree, radii, periods and distances of discs in contact are
 /// measurable, contacts join two existing discs (or a disc and another image of itself) with lever arms that are not
 /// negative; where contacts have arms of their own: unit normals, and arms that meet in one point to 1e-9 of the
-/// distance; forces at rest are finite.
+/// distance; forces at rest and curvatures are finite.
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 

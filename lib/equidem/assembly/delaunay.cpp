@@ -114,6 +114,8 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.contact_shear.clear();
   assembly.contact_normal_force.clear();
   assembly.contact_tangential_force.clear();
+  assembly.contact_curvature_i.clear();
+  assembly.contact_curvature_j.clear();
   set_midpoints(assembly);
   take_sides(assembly, cells);
 }

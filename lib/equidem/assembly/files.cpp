@@ -30,9 +30,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",     "discs",
-                                             "sections", "contacts",  "levers", "normals", "offsets",
-                                             "springs",  "strengths", "forces", "groups"};
+const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",        "discs",
+                                             "sections", "contacts",  "levers", "normals",    "offsets",
+                                             "springs",  "strengths", "forces", "curvatures", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -218,6 +218,10 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
   read_pairs(file, "forces", "N, T", "contact", contacts, [&](std::size_t, double normal, double tangential) {
     assembly.contact_normal_force.push_back(normal);
     assembly.contact_tangential_force.push_back(tangential);
+  });
+  read_pairs(file, "curvatures", "kappa_i, kappa_j", "contact", contacts, [&](std::size_t, double i, double j) {
+    assembly.contact_curvature_i.push_back(i);
+    assembly.contact_curvature_j.push_back(j);
   });
   refuse_repeated_contacts(assembly);
 }

@@ -112,6 +112,8 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   opened.contact_shear.clear();
   opened.contact_normal_force.clear();
   opened.contact_tangential_force.clear();
+  opened.contact_curvature_i.clear();
+  opened.contact_curvature_j.clear();
   std::vector<Vec2> a, steps;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];

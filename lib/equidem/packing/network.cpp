@@ -105,7 +105,8 @@ BodyContacts contacts_of_bodies(const GrainPacking& packing, const NetworkOption
 
 /// \param found between bodies of the assembly
 /// \param force that it carries at rest; null: not known
-void add_contact(PackingShape::Kind shape, const PackingContact& found, const ContactForce* force,
+/// \param has_walls whether some contacts of the assembly are with walls, which are flat
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const ContactForce* force, bool has_walls,
                  const std::optional<SpringConstants>& springs, Assembly& assembly) {
   Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
   const Vec2 branch = assembly.branch(contact);
@@ -125,6 +126,10 @@ void add_contact(PackingShape::Kind shape, const PackingContact& found, const Co
   if (force != nullptr) {
     assembly.contact_normal_force.push_back(force->normal);
     assembly.contact_tangential_force.push_back(force->tangential);
+    if (!assembly.contact_arms.empty() || has_walls) {
+      assembly.contact_curvature_i.push_back(found.curvature_i);
+      assembly.contact_curvature_j.push_back(found.curvature_j);
+    }
   }
   if (!springs) return;
   assembly.contact_kN.push_back(springs->kN);
@@ -182,7 +187,7 @@ Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) 
   const BodyContacts contacts = contacts_of_bodies(packing, options);
   for (std::size_t c = 0; c < contacts.places.size(); ++c) {
     if (contacts.places[c].j < 0) continue;
-    add_contact(packing.shape, contacts.places[c], contacts.force(c), options.springs, assembly);
+    add_contact(packing.shape, contacts.places[c], contacts.force(c), false, options.springs, assembly);
   }
   return assembly;
 }
@@ -218,7 +223,7 @@ HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& o
       found.j = mirror->second;
     }
     found.i = number[i];
-    add_contact(packing.shape, found, contacts.force(c), options.springs, assembly);
+    add_contact(packing.shape, found, contacts.force(c), true, options.springs, assembly);
   }
   if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;

@@ -346,7 +346,8 @@ class Pruning {
     take(whole.sections, result.discs, rest.sections);
     for (const auto numbers :
          {&Assembly::facet_lengths, &Assembly::contact_kN, &Assembly::contact_kT, &Assembly::contact_tension,
-          &Assembly::contact_shear, &Assembly::contact_normal_force, &Assembly::contact_tangential_force}) {
+          &Assembly::contact_shear, &Assembly::contact_normal_force, &Assembly::contact_tangential_force,
+          &Assembly::contact_curvature_i, &Assembly::contact_curvature_j}) {
       take(whole.*numbers, result.contacts, rest.*numbers);
     }
     for (const auto& [name, group] : whole.groups) {
@@ -361,6 +362,12 @@ class Pruning {
       std::vector<SpringConstants> springs;
       for (const std::int32_t k : result.contacts) springs.push_back(springs_[k]);
       result.springs = ContactSprings(std::move(springs));
+    }
+    if (springs_.prestressed()) {
+      std::vector<ContactPrestress> prestress;
+      for (const std::int32_t k : result.contacts)
+        prestress.push_back(*springs_.prestress(static_cast<std::size_t>(k)));
+      result.springs = result.springs.with_prestress(std::move(prestress));
     }
     return result;
   }

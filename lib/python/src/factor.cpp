@@ -25,7 +25,7 @@ class Factor {
          std::vector<std::string> overrides, bool error_bound) {
     const CaseInputs inputs(case_text, case_file, assembly, std::move(overrides));
     const LongWork working;
-    problem_.emplace(problem_of(read_case(inputs.case_file(), inputs.overrides())));
+    problem_.emplace(prestressed(problem_of(read_case(inputs.case_file(), inputs.overrides()))));
     EquilibriumOptions options = problem_->options();
     options.error_bound = error_bound;
     solver_.emplace(problem_->assembly, problem_->springs.springs, problem_->resolved.supports, options);

@@ -121,7 +121,7 @@ int homogenize(const HomogenizeVerb& options) {
   check_outputs(common, resolved.output);
   const auto lock = lock_out(common);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
-  const auto shared_problem = std::make_shared<const Problem>(problem_of(std::move(resolved)));
+  const auto shared_problem = std::make_shared<const Problem>(prestressed(problem_of(std::move(resolved))));
   const Problem& problem = *shared_problem;
   if (common.dry_run) return dry_run_homogenization(common, problem);
 

@@ -97,8 +97,9 @@ void add_forces_at_rest(Results& out, const Assembly& network) {
   out.line("forces at rest")
       .add("", "of", balance.loaded, "contact", {Shown::count})
       .add("forces_at_rest/mean", "", balance.mean_force, "N/m in the mean", {.digits = 3})
-      .add("forces_at_rest/imbalance", "; contacts of one body lack", balance.relative,
-           "of it at most without walls and weight", {.digits = 2});
+      .note("; ")
+      .add("forces_at_rest/imbalance", "on one body they lack up to", balance.relative,
+           "of it, without walls and weight", {.digits = 2});
 }
 
 /// \param density kg/m³, of the bodies

@@ -74,6 +74,11 @@ std::string json_of(const Assembly& assembly) {
       return pair_of(assembly.contact_normal_force[k], assembly.contact_tangential_force[k]);
     });
   }
+  if (!assembly.contact_curvature_i.empty()) {
+    append_list(text, "curvatures", contacts.size(), [&](std::size_t k) {
+      return pair_of(assembly.contact_curvature_i[k], assembly.contact_curvature_j[k]);
+    });
+  }
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {

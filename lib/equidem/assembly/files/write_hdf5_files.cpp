@@ -129,6 +129,10 @@ class Writing {
         set(to, a.contact_normal_force[k], a.contact_tangential_force[k]);
       });
     }
+    if (!a.contact_curvature_i.empty()) {
+      add<double>(curvatures, count,
+                  [&a](std::size_t k, double* to) { set(to, a.contact_curvature_i[k], a.contact_curvature_j[k]); });
+    }
     if (!a.facet_lengths.empty() || (count == 0 && !a.cell_areas.empty()))
       add<double>(facet_lengths, count, [&a](std::size_t k, double* to) { *to = a.facet_lengths[k]; });
   }
