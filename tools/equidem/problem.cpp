@@ -20,6 +20,7 @@
 #include "equidem/statics/choice/solver_choice.hpp"
 
 #include "left_out.hpp"
+#include "prestressed.hpp"
 
 namespace equidem {
 namespace {
@@ -180,16 +181,6 @@ void add_actions(Problem& problem) {
   }
 }
 
-Problem prestressed(Problem problem) {
-  try {
-    problem.prestress = choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where("effects.prestress"));
-  }
-  if (problem.prestress) problem.springs.springs = problem.prestress->springs;
-  return problem;
-}
-
 Problem build_problem(Case resolved) {
   if (!acts(resolved)) {
     bad_input_at(resolved.document.where(), "nothing pulls or holds the assembly", "it would stay as it is",
@@ -316,14 +307,7 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
                                          notched && dead ? " and " : "", dead ? "[[dead_load]]" : ""));
   }
   results.line("springs", problem.springs.report);
-  if (problem.prestress) {
-    results.line("forces at rest", problem.prestress->sentence);
-    results.set("prestress/counts", problem.prestress->springs.prestressed())
-        .set("prestress/largest", problem.prestress->largest)
-        .set("prestress/imbalance", problem.prestress->balance.relative);
-  } else if (carries_forces(problem.assembly)) {
-    results.line("not used", "forces at rest: solve, homogenize and stability take them");
-  }
+  add_forces_at_rest(results, problem);
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

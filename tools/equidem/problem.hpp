@@ -93,11 +93,6 @@ bool acts(const Case& resolved);
 /// \throws Error (bad_input) as tension_setup does
 void add_actions(Problem& problem);
 
-/// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
-/// their geometric stiffness.
-/// \throws Error (bad_input) as choose_prestress
-Problem prestressed(Problem problem);
-
 /// \throws Error (bad_input) as build_assembly and build_springs do; neither [test] nor anything that acts
 Problem build_problem(Case resolved);
 

@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/files/hdf5_files.hpp"
@@ -207,22 +208,10 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
     assembly.contact_arms[k].offset_i = o_i;
     assembly.contact_arms[k].offset_j = o_j;
   });
-  read_pairs(file, "springs", "kN, kT", "contact", contacts, [&](std::size_t, double kN, double kT) {
-    assembly.contact_kN.push_back(kN);
-    assembly.contact_kT.push_back(kT);
-  });
-  read_pairs(file, "strengths", "f_t, f_s", "contact", contacts, [&](std::size_t, double tension, double shear) {
-    assembly.contact_tension.push_back(tension);
-    assembly.contact_shear.push_back(shear);
-  });
-  read_pairs(file, "forces", "N, T", "contact", contacts, [&](std::size_t, double normal, double tangential) {
-    assembly.contact_normal_force.push_back(normal);
-    assembly.contact_tangential_force.push_back(tangential);
-  });
-  read_pairs(file, "curvatures", "kappa_i, kappa_j", "contact", contacts, [&](std::size_t, double i, double j) {
-    assembly.contact_curvature_i.push_back(i);
-    assembly.contact_curvature_j.push_back(j);
-  });
+  for (const ContactNumbers& numbers : contact_numbers) {
+    read_pairs(file, numbers.key, numbers.symbols, "contact", contacts,
+               [&](std::size_t, double first, double second) { numbers.add(first, second, assembly); });
+  }
   refuse_repeated_contacts(assembly);
 }
 

@@ -161,6 +161,13 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
   }
   if (effects.restrained) {
     result.rotation_moments = contact_moments(assembly, result.contact_forces);
+    for (std::size_t c = 0; springs.prestressed() && c < assembly.contacts.size(); ++c) {
+      const ContactMotion by = motion_of(network, motion, {}, c);
+      ContactResponse<double> response;
+      add_prestress(*springs.prestress(c), by.deformation, by.theta_i, by.theta_j, response);
+      result.rotation_moments[assembly.contacts[c].i] += response.moment_i;
+      result.rotation_moments[assembly.contacts[c].j] += response.moment_j;
+    }
     for (double& moment : result.rotation_moments) moment = -moment;
   }
   if (springs.prestressed()) {

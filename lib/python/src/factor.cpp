@@ -11,6 +11,7 @@
 #include "equidem/statics/equilibrium.hpp"
 
 #include "case_inputs.hpp"
+#include "prestressed.hpp"
 #include "problem.hpp"
 #include "result.hpp"
 #include "result_arrays.hpp"

@@ -17,6 +17,7 @@
 #include "command.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
+#include "prestressed.hpp"
 #include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
 #include "state_files.hpp"

@@ -11,6 +11,7 @@
 #include "equidem/homogenize/stress.hpp"
 
 #include "command.hpp"
+#include "prestressed.hpp"
 #include "problem.hpp"
 #include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"

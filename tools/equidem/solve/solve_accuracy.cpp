@@ -7,6 +7,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
+#include "prestressed.hpp"
+
 namespace equidem {
 namespace {
 

@@ -14,6 +14,7 @@
 
 #include "command.hpp"
 #include "option_checks.hpp"
+#include "prestressed.hpp"
 #include "result_arrays.hpp"
 #include "stability/stability_results.hpp"
 #include "state_files.hpp"
