@@ -10,6 +10,7 @@
 
 #include <unistd.h>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
@@ -76,8 +77,10 @@ void require_same(const Assembly& a, const Assembly& b) {
   REQUIRE(a.sections.size() == b.sections.size());
   for (std::size_t d = 0; d < a.sections.size(); ++d)
     CHECK((a.sections[d].area == b.sections[d].area && a.sections[d].polar_moment == b.sections[d].polar_moment));
-  CHECK(a.contact_kN == b.contact_kN);
-  CHECK(a.contact_kT == b.contact_kT);
+  for (const ContactNumbers& numbers : contact_numbers) {
+    CHECK(a.*numbers.first == b.*numbers.first);
+    CHECK(a.*numbers.second == b.*numbers.second);
+  }
   REQUIRE(a.groups.size() == b.groups.size());
   for (const auto& [name, discs] : a.groups) {
     CAPTURE(name);
@@ -95,10 +98,8 @@ TEST_CASE("files_read_back_to_the_same_bits") {
                                   .radii = {.smallest = 0.003, .largest = 0.007},
                                   .periodic = periodic});
   if (!periodic) a.centres[0].x = -0.0;
-  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
-    a.contact_kN.push_back(1e9 / (1.0 + static_cast<double>(k)));
-    a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
-  }
+  for (double n = 3; n < 3 + static_cast<double>(a.contacts.size()); ++n)
+    for (const ContactNumbers& numbers : contact_numbers) numbers.add(1e9 / n, 1e-300 * n, a);
   a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
   a.groups["loaded"] = {.discs = {2, 5}, .tributary_lengths = {1e-3 / 3, 0.1}};
   if (GENERATE(true, false)) {  // bodies that are no discs, with contacts off the lines of centres

@@ -20,6 +20,7 @@
 #include "equidem/statics/choice/solver_choice.hpp"
 
 #include "left_out.hpp"
+#include "prestressed.hpp"
 
 namespace equidem {
 namespace {
@@ -308,6 +309,7 @@ Results problem_results(const Problem& problem, const AssemblySummary& a, const 
   results.line("springs", problem.springs.report);
   if (problem.resolved.viscoelastic)
     results.line("viscoelastic", describe(build_viscoelasticity(problem.resolved, problem.springs.constants)));
+  add_forces_at_rest(results, problem);
   question_springs(results, a.mean_radius, a.stiffest);
   if (problem.springs.constants && keys == AssemblyKeys::all)
     results.set("kN", problem.springs.constants->kN).set("kT", problem.springs.constants->kT);

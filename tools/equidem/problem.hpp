@@ -38,7 +38,8 @@ struct Problem {
   std::vector<NamedLoads> load_cases;
   StageTimes times;  ///< of building it
   LeftOut left_out = {};
-  bool breaks = false;  ///< contacts break: notches and dead loads are used
+  std::optional<PrestressedSprings> prestress = {};  ///< what prestressed() decided
+  bool breaks = false;                               ///< contacts break: notches and dead loads are used
 
   /// Networks of chance may have mechanisms that no load moves; of lattices and triangulations one is a mistake.
   [[nodiscard]] EquilibriumOptions options() const {

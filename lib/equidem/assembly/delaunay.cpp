@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/core/error.hpp"
@@ -108,10 +109,7 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.facet_lengths = std::move(cells.facet_lengths);
   assembly.cell_areas = std::move(cells.areas);
   assembly.contact_arms.clear();
-  assembly.contact_kN.clear();
-  assembly.contact_kT.clear();
-  assembly.contact_tension.clear();
-  assembly.contact_shear.clear();
+  for (const ContactNumbers& numbers : contact_numbers) numbers.clear(assembly);
   set_midpoints(assembly);
   take_sides(assembly, cells);
 }

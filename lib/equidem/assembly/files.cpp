@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/files/hdf5_files.hpp"
@@ -30,9 +31,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",     "discs",
-                                             "sections", "contacts",  "levers", "normals", "offsets",
-                                             "springs",  "strengths", "groups"};
+const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",        "discs",
+                                             "sections", "contacts",  "levers", "normals",    "offsets",
+                                             "springs",  "strengths", "forces", "curvatures", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -207,14 +208,10 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
     assembly.contact_arms[k].offset_i = o_i;
     assembly.contact_arms[k].offset_j = o_j;
   });
-  read_pairs(file, "springs", "kN, kT", "contact", contacts, [&](std::size_t, double kN, double kT) {
-    assembly.contact_kN.push_back(kN);
-    assembly.contact_kT.push_back(kT);
-  });
-  read_pairs(file, "strengths", "f_t, f_s", "contact", contacts, [&](std::size_t, double tension, double shear) {
-    assembly.contact_tension.push_back(tension);
-    assembly.contact_shear.push_back(shear);
-  });
+  for (const ContactNumbers& numbers : contact_numbers) {
+    read_pairs(file, numbers.key, numbers.symbols, "contact", contacts,
+               [&](std::size_t, double first, double second) { numbers.add(first, second, assembly); });
+  }
   refuse_repeated_contacts(assembly);
 }
 

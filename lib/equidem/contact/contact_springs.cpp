@@ -73,6 +73,14 @@ std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting)
 
 }  // namespace
 
+std::vector<ContactPrestress> ContactSprings::scaled_prestress(double factor) const {
+  std::vector<ContactPrestress> result = prestress_;
+  for (ContactPrestress& g : result) {
+    for (double* entry : {&g.ns, &g.ni, &g.nj, &g.ss, &g.si, &g.sj, &g.ii, &g.ij, &g.jj}) *entry *= factor;
+  }
+  return result;
+}
+
 double ContactSprings::largest() const {
   const auto larger = [](const SpringConstants& k) { return std::max(std::abs(k.kN), std::abs(k.kT)); };
   double result = uniform() ? larger(uniform_) : 0;
@@ -158,13 +166,18 @@ std::vector<double> local_contact_density(const Assembly& assembly) {
 }
 
 ContactSprings equal_springs(const ContactSprings& springs) {
-  return springs.changed([](SpringConstants k) {
-    return SpringConstants{k.kN != 0 ? 1.0 : 0.0, k.kT != 0 ? 1.0 : 0.0};
-  });
+  return springs
+      .changed([](SpringConstants k) {
+        return SpringConstants{k.kN != 0 ? 1.0 : 0.0, k.kT != 0 ? 1.0 : 0.0};
+      })
+      .with_prestress({});
 }
 
 ContactSprings scaled_springs(const ContactSprings& springs, double factor) {
-  return springs.changed([factor](SpringConstants k) { return SpringConstants{factor * k.kN, factor * k.kT}; });
+  return springs.changed([factor](SpringConstants k) {
+                  return SpringConstants{factor * k.kN, factor * k.kT};
+                })
+      .with_prestress(springs.scaled_prestress(factor));
 }
 
 double spring_unit(const ContactSprings& springs) {

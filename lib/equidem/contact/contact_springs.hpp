@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/prestress.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/material/spring_constants.hpp"
 
@@ -33,7 +34,8 @@ struct EnumNames<SpringWeighting> {
       {SpringWeighting::voronoi, "voronoi"}};
 };
 
-/// One pair of springs for all contacts, or one for each; the first stores two numbers.
+/// One pair of springs for all contacts, or one for each; the first stores two numbers. Where the forces that contacts
+/// carry at rest count, each contact has its geometric stiffness beside its springs.
 class ContactSprings {
  public:
   explicit ContactSprings(SpringConstants uniform) : uniform_(uniform) {}
@@ -56,6 +58,21 @@ class ContactSprings {
     if (per_contact_.empty()) per_contact_.assign(contacts, uniform_);
     per_contact_[contact] = k;
   }
+  /// The same springs with the geometric stiffness of each contact; empty: without.
+  [[nodiscard]] ContactSprings with_prestress(std::vector<ContactPrestress> per_contact) const {
+    ContactSprings result = *this;
+    result.prestress_ = std::move(per_contact);
+    return result;
+  }
+  [[nodiscard]] bool prestressed() const { return !prestress_.empty(); }
+  /// Of one contact; null where forces at rest do not count.
+  [[nodiscard]] const ContactPrestress* prestress(std::size_t contact) const {
+    return prestress_.empty() ? nullptr : &prestress_[contact];
+  }
+  /// That of forces at rest `factor` times as large.
+  [[nodiscard]] std::vector<ContactPrestress> scaled_prestress(double factor) const;
+  /// Whether K may be indefinite.
+  [[nodiscard]] bool may_be_indefinite() const { return prestressed() || any_negative(); }
   /// Whether some contact has a tangential spring.
   [[nodiscard]] bool any_tangential() const {
     return any([](const SpringConstants& k) { return k.kT != 0; });
@@ -75,6 +92,7 @@ class ContactSprings {
 
   SpringConstants uniform_;
   std::vector<SpringConstants> per_contact_;
+  std::vector<ContactPrestress> prestress_;
 };
 
 /// The springs of every contact: the assembly's own where it gives some, else `springs` weighted as asked.
@@ -99,10 +117,11 @@ std::vector<double> contact_density(const Assembly& assembly);
 /// contact beside it counts its other side twice. A single contact has the full turn.
 std::vector<double> local_contact_density(const Assembly& assembly);
 
-/// Every spring replaced by one of 1 Pa, which keeps the zero-energy modes but not the energies of the other modes.
+/// Every spring replaced by one of 1 Pa, without prestress: the zero-energy modes of the springs stay, but not the
+/// energies of the other modes.
 ContactSprings equal_springs(const ContactSprings& springs);
 
-/// All springs times a factor.
+/// All springs, and forces at rest, times a factor.
 ContactSprings scaled_springs(const ContactSprings& springs, double factor);
 
 /// The power of two at or below the largest spring, Pa, or 1: dividing by it rounds nothing.

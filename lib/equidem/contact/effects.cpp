@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/effects.hpp"
 
+#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -43,7 +45,23 @@ Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool of
 }
 
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {
-  return derive_effects(springs, rotation, !on_lines_of_centres(assembly));
+  const auto turns = [&] {
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+      const ContactFrame frame = frame_of(assembly, c);
+      if (turns_i(*springs.prestress(c), frame) || turns_j(*springs.prestress(c), frame)) return true;
+    }
+    return false;
+  };
+  Effects effects =
+      derive_effects(springs, rotation,
+                     !on_lines_of_centres(assembly) || (springs.prestressed() && !springs.any_tangential() && turns()));
+  effects.prestress = springs.prestressed();
+  if (carries_forces(assembly)) {
+    effects.entries.push_back({"prestress", effects.prestress,
+                               effects.prestress ? "contacts carry forces at rest, which turn with them"
+                                                 : "the forces at rest do not count"});
+  }
+  return effects;
 }
 
 }  // namespace equidem

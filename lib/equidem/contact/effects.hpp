@@ -35,6 +35,7 @@ struct Effects {
   std::vector<Entry> entries;
   bool tangential_springs = false;
   bool rotation = false;    ///< rotations are unknowns
+  bool prestress = false;   ///< forces at rest count
   bool restrained = false;  ///< rotations are fixed although contacts would resist them
 
   [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
@@ -44,7 +45,8 @@ struct Effects {
 
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
 /// rotation with kT = 0 would leave rotations without stiffness: they are not unknowns, unless contacts lie off the
-/// lines of centres, where normal springs resist them.
+/// lines of centres, where normal springs resist them, or forces at rest turn bodies that are no discs. Of an assembly
+/// that carries forces at rest, whether they count.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
 /// \param off_lines whether some contact lies off the lines of centres
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);

@@ -13,6 +13,7 @@
 #include <array>
 
 #include "equidem/contact/frame.hpp"
+#include "equidem/contact/prestress.hpp"
 #include "equidem/material/spring_constants.hpp"
 
 namespace equidem {
@@ -59,6 +60,23 @@ void add_linear_spring_tangent(const SpringConstants& k, const std::array<double
   for (int r = 0; r < B; ++r) {
     for (int c = 0; c < B; ++c) {
       block[r * B + c] += k.kN * normal_p[r] * normal_q[c] + k.kT * tangential_p[r] * tangential_q[c];
+    }
+  }
+}
+
+/// block += the prestress of a contact between its ends p and q, as add_linear_spring_tangent.
+/// \param turns_p, turns_q derivatives of (theta_i, theta_j) by a theta of each end: (1/a, 0) of i, (0, 1/a) of j
+template <int B>
+void add_prestress_tangent(const ContactPrestress& g, const std::array<double, 3>& normal_p,
+                           const std::array<double, 3>& normal_q, const std::array<double, 3>& tangential_p,
+                           const std::array<double, 3>& tangential_q, const std::array<double, 2>& turns_p,
+                           const std::array<double, 2>& turns_q, double* block) {
+  for (int r = 0; r < B; ++r) {
+    for (int c = 0; c < B; ++c) {
+      const double r_i = r == 2 ? turns_p[0] : 0, r_j = r == 2 ? turns_p[1] : 0;
+      const double c_i = c == 2 ? turns_q[0] : 0, c_j = c == 2 ? turns_q[1] : 0;
+      block[r * B + c] +=
+          prestress_form(g, {normal_p[r], tangential_p[r]}, r_i, r_j, {normal_q[c], tangential_q[c]}, c_i, c_j);
     }
   }
 }

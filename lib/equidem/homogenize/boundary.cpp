@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -106,10 +107,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   opened.contacts.clear();
   const std::vector<ContactArms> arms = std::exchange(opened.contact_arms, {});
   opened.facet_lengths.clear();
-  opened.contact_kN.clear();
-  opened.contact_kT.clear();
-  opened.contact_tension.clear();
-  opened.contact_shear.clear();
+  for (const ContactNumbers& numbers : contact_numbers) numbers.clear(opened);
   std::vector<Vec2> a, steps;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];

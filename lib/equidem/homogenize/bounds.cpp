@@ -144,7 +144,7 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
 
 std::vector<StiffnessBeside> BoundedStiffness::ordered(const ContactSprings& springs) const {
   std::vector<StiffnessBeside> order;
-  if (springs.any_negative()) return order;
+  if (springs.may_be_indefinite()) return order;
   for (const std::string key : {"traction", "periodic", "displacement", "voigt"}) {
     if (key == to_string(result.boundary)) order.push_back({key, result.stiffness, {}});
     std::ranges::copy_if(beside, std::back_inserter(order),
@@ -157,7 +157,7 @@ std::vector<Boundary> boundaries_of(const Assembly& assembly, const ContactSprin
                                     const BoundsOptions& options) {
   const bool periodic = assembly.periodic();
   std::vector<Boundary> chosen = {options.boundary.value_or(periodic ? Boundary::periodic : Boundary::displacement)};
-  const bool few = assembly.size() <= most_discs_of_bounds && !springs.any_negative();
+  const bool few = assembly.size() <= most_discs_of_bounds && !springs.may_be_indefinite();
   const bool side_by_side = !periodic && !options.boundary;
   if (side_by_side || options.bounds == BoundsWanted::all || (options.bounds == BoundsWanted::automatic && few)) {
     for (const Boundary other : {Boundary::displacement, Boundary::traction})
@@ -186,6 +186,7 @@ BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSpring
   Stopwatch watch;
   for (std::size_t k = 1; k < boundaries.size(); ++k)
     add(to_string(boundaries[k]), [&] { return solve(boundaries[k]).stiffness; });
+  if (springs.prestressed()) return all;  // those below are of springs alone
   add("voigt", [&] { return voigt_stiffness(assembly, springs); });
   add("uniform_stress_estimate", [&] { return uniform_stress_estimate(assembly, springs); });
   all.result.times.add("bounds", watch.lap());

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "equidem/assembly/touching.hpp"
+#include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -42,6 +43,50 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
   }
 }
 
+Tensor2 transposed(const Tensor2& t) {
+  return {t.xx, t.yx, t.xy, t.yy};
+}
+
+/// a b^T
+Tensor2 product_with_transposed(const Tensor2& a, const Tensor2& b) {
+  return {a.xx * b.xx + a.xy * b.xy, a.xx * b.yx + a.xy * b.yy, a.yx * b.xx + a.yy * b.xy, a.yx * b.yx + a.yy * b.yy};
+}
+
+/// From the change of the nominal stress P = J sigma F^-T to that of the Cauchy stress: at the strain h
+/// d sigma = dP + sigma_0 h^T - tr(h) sigma_0. The turning of the whole, dP = h sigma_0 of a rotation h, needs no
+/// solution where discs turn along.
+void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
+  result.stress_at_rest = at_rest;
+  Matrix3 change{};
+  for (int k = 0; k < 3; ++k) {
+    const Tensor2& h = unit_gradients[k];
+    const Tensor2 sigma = product_with_transposed(at_rest, h) + (-(h.xx + h.yy)) * at_rest;
+    const Voigt s = voigt_stress(sigma);
+    change[0][k] = s.xx, change[1][k] = s.yy, change[2][k] = s.xy;
+  }
+  result.cauchy = result.stiffness + change;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      result.prestress_part[a][b] += 0.5 * (change[a][b] + change[b][a]);
+      result.stiffness[a][b] = 0.5 * (result.cauchy[a][b] + result.cauchy[b][a]);
+    }
+  }
+  Matrix4& g = result.gradient_stiffness;
+  if (!result.effects.restrained) {
+    const Tensor2 turned = product_with_transposed(unit_gradients[3], transposed(at_rest));
+    const double column[] = {turned.xx, turned.yy, turned.xy, turned.yx};
+    for (int r = 0; r < 4; ++r) g[r][2] -= 0.5 * column[r], g[r][3] += 0.5 * column[r];
+  }
+  const Tensor2 gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  double asymmetric = 0;
+  for (int c = 0; c < 4; ++c) {
+    const Tensor2 kirchhoff =
+        Tensor2{g[0][c], g[2][c], g[3][c], g[1][c]} + product_with_transposed(at_rest, gradients[c]);
+    asymmetric = std::max(asymmetric, std::abs(asymmetry(kirchhoff)));
+  }
+  result.stress_asymmetry = asymmetric / largest_entry(g);
+}
+
 /// Solve with springs of sizes near 1, so that no sum of squares leaves the range of a double.
 EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
   const double unit = spring_unit(springs);
@@ -58,6 +103,12 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   result.error_bound += rounding * largest_entry(result.stiffness);
   result.scale(unit);
+  result.cauchy = result.stiffness;
+  if (springs.prestressed()) {
+    std::vector<ContactForce> at_rest(assembly.contacts.size());
+    for (std::size_t c = 0; c < at_rest.size(); ++c) at_rest[c] = force_at_rest(assembly, c);
+    add_stress_at_rest(macroscopic_stress(assembly, at_rest), result);
+  }
   if (!std::isfinite(largest_entry(result.stiffness))) {
     bad_input("the stiffness overflows a double", "the largest is 1.8e308", "Check the units of sizes and springs");
   }
@@ -114,6 +165,7 @@ void EffectiveStiffness::scale(double factor) {
   stiffness = factor * stiffness;
   tangential_part = factor * tangential_part;
   normal_part = factor * normal_part;
+  prestress_part = factor * prestress_part;
   gradient_stiffness = factor * gradient_stiffness;
   error_bound *= factor;
 }
@@ -127,6 +179,11 @@ void check_sample(const Assembly& assembly, const ContactSprings& springs, const
   if (options.boundary == Boundary::periodic && !assembly.periodic()) {
     bad_input("the boundary is periodic but the assembly is not", "it has no images to be joined to",
               "Use boundary = \"displacement\" or \"traction\", or a periodic assembly");
+  }
+  if (springs.prestressed() && options.boundary == Boundary::traction) {
+    bad_input("boundary = \"traction\" with forces at rest that count",
+              "contacts across the cut would have to carry them as loads that turn with the sample",
+              "Use boundary = \"periodic\" or \"displacement\", or effects.prestress = \"off\"");
   }
   check_levers(assembly, springs, derive_effects(assembly, springs, options.rotation));
 }
@@ -159,8 +216,8 @@ std::vector<StrainedState> strained_states(const Assembly& assembly, const Conta
     for (DiscMotion& motion : state.fluctuations) motion = {strain * motion.u, strain * motion.theta};
     for (std::size_t c = 0; c < state.forces.size(); ++c) {
       const Contact& contact = assembly.contacts[c];
-      const ContactForce f = linear_spring_force(
-          springs[c], deformation(frame_of(assembly, c), state.fluctuations[contact.i], state.fluctuations[contact.j]));
+      const DiscMotion &i = state.fluctuations[contact.i], &j = state.fluctuations[contact.j];
+      const ContactForce f = force_of(springs, c, {deformation(frame_of(assembly, c), i, j), i.theta, j.theta});
       state.forces[c].normal += f.normal;
       state.forces[c].tangential += f.tangential;
     }

@@ -41,7 +41,16 @@ struct EffectiveStiffness {
   /// springs. Exact derivatives for springs scaled by a common factor, since the motion is stationary.
   Matrix3 tangential_part{};
   Matrix3 normal_part{};
-  /// Pa, Love-Weber stress (1/A) sum F_i l_j by displacement gradient. With free rotation columns xy and yx agree, and
+  /// Pa, what the forces at rest add: their part of the energies and the change of the stress by the change of shape
+  /// (`stiffness` is the symmetric part of `cauchy`); 0 without prestress.
+  Matrix3 prestress_part{};
+  /// Pa, derivative of the Cauchy stress by the mean strain (Voigt, engineering shear), no mean rotation: the
+  /// stress-strain coefficients of Barron & Klein 1965 (Proc. Phys. Soc. 85, 523). Under a stress at rest that is not
+  /// isotropic it is not symmetric. Where nothing is prestressed it is `stiffness`.
+  Matrix3 cauchy{};
+  Tensor2 stress_at_rest;  ///< Pa, of the forces at rest where they count
+  /// Pa, Love-Weber stress (1/A) sum F_i l_j by displacement gradient, with A and l of before the strain (the nominal
+  /// stress where there are forces at rest). Without them and with free rotation columns xy and yx agree, and
   /// so do the rows; with rotation restrained neither need (Abe 1996, eq. 55). Only for Boundary::periodic and
   /// displacement.
   Matrix4 gradient_stiffness{};

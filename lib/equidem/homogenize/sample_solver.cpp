@@ -180,7 +180,7 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   std::vector<Solution> solutions = solver_->solve(cases, result.times);
   Stopwatch watch;
   // Without negative springs a motion without energy deforms no contact: mean strains do no work on it.
-  const bool may_react = options_.boundary == Boundary::traction || springs().any_negative();
+  const bool may_react = options_.boundary == Boundary::traction || springs().may_be_indefinite();
   for (std::size_t k = 0; may_react && k < cases.size(); ++k) check_reactions(cases[k], solutions[k]);
   const bool estimated = solver_->iterative();
   if (!estimated) result.condition = solver_->scaled_inverse_norm(solutions[0].motion.high);
@@ -204,14 +204,13 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
 
 void SampleSolver::check_reactions(const RightHandSide& given, const Solution& solution) const {
   if (held_motions_.components.empty()) return;
-  std::vector<ContactForce> forces(assembly().contacts.size());
   double size = 0;
-  for (std::size_t c = 0; c < forces.size(); ++c) {
-    forces[c] = linear_spring_force(springs()[c], solver_->deformation(given, solution.motion, c));
-    size = std::max({size, std::abs(forces[c].normal), std::abs(forces[c].tangential)});
+  for (std::size_t c = 0; c < assembly().contacts.size(); ++c) {
+    const ContactForce force = linear_spring_force(springs()[c], solver_->deformation(given, solution.motion, c));
+    size = std::max({size, std::abs(force.normal), std::abs(force.tangential)});
   }
   std::vector<double> internal(unknowns().held.size());
-  internal_force(assembly(), solver_->graph(), unknowns(), forces, internal);
+  internal_force({assembly(), solver_->graph(), springs(), unknowns()}, solution.motion, given.gradient, internal);
   for (const std::size_t k : held_motions_.components) {
     const double load = given.force.empty() ? 0.0 : given.force[k];
     if (std::abs(internal[k] - load) <= negligible * std::max(size, std::abs(load))) continue;

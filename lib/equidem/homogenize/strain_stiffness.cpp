@@ -17,11 +17,29 @@ namespace {
 /// Sums over the contacts of the part that carries load.
 struct StrainSums {
   PairEnergies energies;
+  Matrix3 of_prestress{};
   std::vector<Tensor2> stresses;  ///< of each case, times the area
   /// Bound, N, on the error of an energy of two cases by rounding of normals and lever arms: the motion is stationary,
   /// so that the change of sum kN dn_a dn_b + kT ds_a ds_b is that of the deformations of given motions.
   double rounding = 0;
 };
+
+/// Energies of pairs of mean strains in the prestress, N. \param motion_of of a contact by a case
+template <typename MotionOf>
+Matrix3 prestress_energies(const SampleSolver& solver, const MotionOf& motion_of) {
+  constexpr std::size_t entries = 6;
+  const auto sums = contact_sums<entries>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
+    const ContactMotion m[] = {motion_of(c, 0), motion_of(c, 1), motion_of(c, 2)};
+    std::size_t entry = 0;
+    for (const auto& a : m) {
+      for (const ContactMotion* b = &a; b != std::end(m); ++b, ++entry) {
+        total[entry] += prestress_form(*solver.springs().prestress(c), a.deformation, a.theta_i, a.theta_j,
+                                       b->deformation, b->theta_i, b->theta_j);
+      }
+    }
+  });
+  return {{{sums[0], sums[1], sums[2]}, {sums[1], sums[3], sums[4]}, {sums[2], sums[4], sums[5]}}};
+}
 
 StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
                   const std::vector<Solution>& solutions) {
@@ -30,6 +48,10 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
   const auto b = static_cast<std::size_t>(solver.unknowns().per_disc);
   const double scale = solver.unknowns().rotation_scale;
   const auto reach = [](double lever, double offset) { return std::abs(lever) + std::abs(offset); };
+  const bool prestressed = solver.springs().prestressed();
+  const auto motion_of_case = [&](std::size_t c, std::size_t k) {
+    return solver.solver().contact_motion(cases[k], solutions[k].motion, c);
+  };
   using Sums = std::array<double, first_stress + 4 * most_cases + 1>;
   const Sums sums = contact_sums<std::tuple_size_v<Sums>>(assembly.contacts.size(), [&](std::size_t c, Sums& total) {
     const Contact& contact = assembly.contacts[c];
@@ -38,7 +60,8 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
     double largest_force = 0, distance = 0;
     for (std::size_t k = 0; k < cases.size(); ++k) {
       deformations[k] = solver.solver().deformation(cases[k], solutions[k].motion, c);
-      const ContactForce force = linear_spring_force(solver.springs()[c], deformations[k]);
+      ContactForce force = linear_spring_force(solver.springs()[c], deformations[k]);
+      if (prestressed) force = force_of(solver.springs(), c, motion_of_case(c, k));
       const Tensor2 work = force_by_branch(frame, force);
       const double entries[] = {work.xx, work.xy, work.yx, work.yy};
       for (std::size_t e = 0; e < 4; ++e) total[first_stress + 4 * k + e] += entries[e];
@@ -56,6 +79,7 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
     total.back() += normal_rounding(assembly, contact) * largest_force * distance;
   });
   StrainSums result{.energies = pair_energies(sums.data()),
+                    .of_prestress = prestressed ? prestress_energies(solver, motion_of_case) : Matrix3{},
                     .stresses = {},
                     .rounding = 2 * std::numeric_limits<double>::epsilon() * sums.back()};
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -112,7 +136,9 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   for (Tensor2& stress : sums.stresses) stress *= 1 / result.area;
   result.normal_part = (1 / result.area) * sums.energies.normal;
   result.tangential_part = (1 / result.area) * sums.energies.tangential;
+  result.prestress_part = (1 / result.area) * sums.of_prestress;
   result.stiffness = result.normal_part + result.tangential_part;
+  if (springs.prestressed()) result.stiffness = result.stiffness + result.prestress_part;
   result.error_bound = (solver.energy_error() + sums.rounding) / result.area;
   result.hill_mandel = power_difference(sums.stresses, result.stiffness);
   keep_gradient_stiffness(sums.stresses, result);

@@ -129,7 +129,8 @@ std::vector<ContactForce> affine_contact_forces(const Assembly& assembly, const 
                                                 const Tensor2& gradient, double rotation) {
   const std::vector<ContactDeformation> deformations = affine_deformations(assembly, gradient, rotation);
   std::vector<ContactForce> forces(deformations.size());
-  for (std::size_t c = 0; c < forces.size(); ++c) forces[c] = linear_spring_force(springs[c], deformations[c]);
+  for (std::size_t c = 0; c < forces.size(); ++c)
+    forces[c] = force_of(springs, c, {deformations[c], rotation, rotation});
   return forces;
 }
 

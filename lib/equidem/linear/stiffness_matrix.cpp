@@ -38,6 +38,16 @@ std::array<double, B * B> visit_row(const SpringNetwork& network, double held_st
     const bool first = static_cast<std::size_t>(contact.i) == d;
     const auto &normal = first ? g.normal_i : g.normal_j, &tangential = first ? g.tangential_i : g.tangential_j;
     add_linear_spring_tangent<B>(k, normal, normal, tangential, tangential, diagonal.data());
+    if (const ContactPrestress* const prestress = springs.prestress(static_cast<std::size_t>(edge.contact))) {
+      const double turn = 1 / unknowns.rotation_scale;
+      const bool own_image = contact.i == contact.j;
+      const std::array<double, 2> turns_i{turn, own_image ? turn : 0}, turns_j{own_image ? turn : 0, turn};
+      const auto& turns = first ? turns_i : turns_j;
+      add_prestress_tangent<B>(*prestress, normal, normal, tangential, tangential, turns, turns, diagonal.data());
+      if (!own_image)
+        add_prestress_tangent<B>(*prestress, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, turns_i, turns_j,
+                                 coupling.data());
+    }
     for (int r = 0; r < B; ++r) {
       for (int c = 0; c < B; ++c) {
         if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;

@@ -33,6 +33,12 @@ double lowest_surface(const GrainPacking& packing) {
   return *std::min_element(tops.begin(), tops.end());
 }
 
+/// Inverse of the distance from a point that lies `sunk` below the surface to the centre of curvature of the place that
+/// reaches farthest along n.
+double curvature(const Ellipse& part, Vec2 n, double sunk) {
+  return 1 / (support(part, n).radius - sunk);
+}
+
 double radius_of(const GrainPacking& packing, std::int32_t grain) {
   return packing.radii[packing.body_of(static_cast<std::size_t>(grain))];
 }
@@ -85,9 +91,12 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_
     for_touches(outlines[i], outlines[j], branch, gap, [&](const Touch& touch) {
       // Midway between the points of the two surfaces, then nearer to the smaller one.
       const Vec2 middle = 0.5 * (touch.arm_i + touch.arm_j + branch);
+      const double sunk_i = touch.share * touch.overlap, sunk_j = touch.overlap - sunk_i;
       contacts.push_back({pair.i, pair.j, whole(pair.shift.x, packing.box.size.x),
                           whole(pair.shift.y, packing.box.size.y), touch.overlap, touch.normal,
-                          middle + (0.5 - touch.share) * touch.overlap * touch.normal});
+                          middle + (0.5 - touch.share) * touch.overlap * touch.normal,
+                          curvature(outlines[i].part(touch.part_i), touch.normal, sunk_i),
+                          curvature(outlines[j].part(touch.part_j), -touch.normal, sunk_j)});
     });
   }
   for (std::size_t k = 0; k < circles.size(); ++k) {
@@ -96,7 +105,8 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_
                      std::max(touching_gap, gap_tolerance) * radius_of(packing, grain),
                      [&](int wall, const Touch& touch) {
                        contacts.push_back({grain, ~wall, 0, 0, touch.overlap, touch.normal,
-                                           touch.arm_i - touch.overlap * touch.normal});
+                                           touch.arm_i - touch.overlap * touch.normal,
+                                           curvature(outlines[k].part(touch.part_i), touch.normal, touch.overlap), 0});
                      });
   }
   return contacts;

@@ -23,6 +23,8 @@ struct PackingContact {
   /// From the centre of grain i to the contact point, m: between the surfaces in proportion to the radii of the parts
   /// that touch, on the wall.
   Vec2 arm_i;
+  /// Curvatures of both surfaces, 1/m, about their centres as seen from the contact point; of a wall 0.
+  double curvature_i = 0, curvature_j = 0;
 };
 
 /// All pairs that overlap, or whose gap is at most `gap_tolerance` times the sum of the radii of the two bodies, of the

@@ -73,6 +73,7 @@ struct Touch {
   Vec2 normal;         ///< unit, from i
   Vec2 arm_i, arm_j;   ///< from the centres to the contact point
   double share = 1;  ///< of the overlap that lies in i, in proportion to the radii of (discs of the area of) the parts
+  std::size_t part_i = 0, part_j = 0;
 };
 
 /// Call body(touch) for all contacts of two bodies whose gap is smaller than `gap` >= 0.
@@ -91,14 +92,14 @@ void for_touches(const Outline& i, const Outline& j, Vec2 branch, double gap, co
         const double distance = std::sqrt(square), overlap = one.a + other.a - distance;
         const Vec2 normal = distance > 0 ? way / distance : Vec2{1, 0};
         body(Touch{overlap, normal, from + (one.a - overlap / 2) * normal, to - (other.a - overlap / 2) * normal,
-                   one.a / (one.a + other.a)});
+                   one.a / (one.a + other.a), p, q});
         continue;
       }
       const EllipseContact found =
           contact_of_ellipses(one, other, way, {}, gap > 0 ? WhenApart::distance : WhenApart::only_that_it_is);
       if (!(found.gap < gap)) continue;
       const double size = std::sqrt(one.a * one.b), other_size = std::sqrt(other.a * other.b);
-      body(Touch{-found.gap, found.normal, from + found.arm_i, to + found.arm_j, size / (size + other_size)});
+      body(Touch{-found.gap, found.normal, from + found.arm_i, to + found.arm_j, size / (size + other_size), p, q});
     }
   }
 }
@@ -127,7 +128,7 @@ void for_wall_touches(const Outline& i, Vec2 place, const PackingBox& box, doubl
       const EllipseSupport far = support(i.part(p), out);
       const Vec2 arm = i.offset(p) + support_point(far, out);
       const double overlap = dot(arm, out) - distance;
-      if (overlap > -gap) body(static_cast<int>(w), Touch{overlap, out, arm, {}});
+      if (overlap > -gap) body(static_cast<int>(w), Touch{overlap, out, arm, {}, 1, p});
     }
   }
 }

@@ -9,12 +9,12 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
-#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/pencil/matrix_pencil.hpp"
 
 namespace equidem {
 namespace {
@@ -58,39 +58,25 @@ class RatioPencil {
   }
 
   /// The eigenvalue r < 0 of K_N x = -r K_T x nearest to `shift`, by inverse iteration from x; NaN where it does not
-  /// settle. The Rayleigh quotient errs by the square of the error of x.
-  double nearest_eigenvalue(double shift, std::vector<double>& x) {
+  /// settle.
+  double nearest(double shift, std::vector<double>& x) {
     const auto factor = factorize(shift);
     const StiffnessMatrix normal = stiffness(0), tangential = difference(stiffness(1), normal);
-    std::vector<double> n(x.size()), t(x.size());
-    double before = std::numeric_limits<double>::quiet_NaN();
-    constexpr int most = 60;
-    for (int k = 0; k < most; ++k) {
-      apply(tangential, x, t);
-      factor->solve(t, 1);
-      clear_held(t);
-      const double size = std::sqrt(product(t, t));
-      if (!is_positive(size)) break;
-      for (std::size_t c = 0; c < x.size(); ++c) x[c] = t[c] / size;
-      apply(normal, x, n);
-      apply(tangential, x, t);
-      const double ratio = -product(x, n) / product(x, t);
-      if (std::abs(ratio - before) <= 0.01 * options_.tolerance) return ratio;
-      before = ratio;
-    }
-    return std::numeric_limits<double>::quiet_NaN();
+    const InverseIteration iteration{
+        assembly_,
+        graph_,
+        unknowns_,
+        tangential,
+        *factor,
+        [&](const auto& y) { return rayleigh_quotient(assembly_, graph_, unknowns_, normal, tangential, y); },
+        [&](double value, double before) { return std::abs(value - before) <= 0.01 * options_.tolerance; }};
+    return iteration.run(x);
   }
 
   [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
     return disc_motions(unknowns_, x);
   }
-  [[nodiscard]] std::vector<double> random_motion() const {
-    Random random(1);
-    std::vector<double> x(unknowns_.held.size());
-    for (double& value : x) value = random.uniform(-1, 1);
-    clear_held(x);
-    return x;
-  }
+  [[nodiscard]] std::vector<double> first_motion() const { return random_motion(unknowns_); }
 
  private:
   [[nodiscard]] StiffnessMatrix stiffness(double ratio) const {
@@ -155,20 +141,6 @@ class RatioPencil {
                        "Hold the rotation of one disc of each such group, or restrain rotation");
   }
 
-  void apply(const StiffnessMatrix& matrix, const std::vector<double>& x, std::vector<double>& y) const {
-    multiply(matrix, assembly_, graph_, x, y);
-    clear_held(y);
-  }
-  void clear_held(std::vector<double>& x) const {
-    for (std::size_t k = 0; k < x.size(); ++k)
-      if (unknowns_.held[k] != 0) x[k] = 0;
-  }
-  static double product(const std::vector<double>& x, const std::vector<double>& y) {
-    double sum = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
-    return sum;
-  }
-
   const Assembly& assembly_;
   const ContactSprings& springs_;
   const CriticalRatioOptions& options_;
@@ -189,12 +161,12 @@ double search(RatioPencil& pencil, const CriticalRatioOptions& options, std::vec
     if (at <= unstable || at >= safe) return;
     (pencil.stable(at) ? safe : unstable) = at;
   };
-  x = pencil.random_motion();
+  x = pencil.first_motion();
   constexpr double try_below = 0.1;  // bracket over distance from 0: from here on inverse iteration may get there
   for (int attempts = 0; safe - unstable > options.tolerance;) {
     if (pencil.mechanisms() == 0 && attempts < 4 && safe - unstable < try_below * std::abs(safe)) {
       ++attempts;
-      const double value = pencil.nearest_eigenvalue(safe, x);
+      const double value = pencil.nearest(safe, x);
       if (value < safe && value > unstable) {
         const double before = safe - unstable;
         shrink(value + 0.4 * options.tolerance);

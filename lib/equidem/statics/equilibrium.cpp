@@ -145,8 +145,13 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
   const DegreesOfFreedom& unknowns = solver.unknowns();
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   result.motions = disc_motions(unknowns, motion.high);
+  const SpringNetwork network{assembly, solver.graph(), springs, unknowns};
   std::vector<double> internal(f.size());
-  internal_force(assembly, solver.graph(), unknowns, result.contact_forces, internal);
+  if (springs.prestressed()) {
+    internal_force(network, motion, {}, internal);
+  } else {
+    internal_force(assembly, solver.graph(), unknowns, result.contact_forces, internal);
+  }
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const auto held = [&](std::size_t k) { return unknowns.held[d * b + k] != 0; };
     const auto reaction = [&](std::size_t k) { return held(k) ? internal[d * b + k] - f[d * b + k] : 0.0; };
@@ -156,7 +161,18 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
   }
   if (effects.restrained) {
     result.rotation_moments = contact_moments(assembly, result.contact_forces);
+    for (std::size_t c = 0; springs.prestressed() && c < assembly.contacts.size(); ++c) {
+      const ContactMotion by = motion_of(network, motion, {}, c);
+      ContactResponse<double> response;
+      add_prestress(*springs.prestress(c), by.deformation, by.theta_i, by.theta_j, response);
+      result.rotation_moments[assembly.contacts[c].i] += response.moment_i;
+      result.rotation_moments[assembly.contacts[c].j] += response.moment_j;
+    }
     for (double& moment : result.rotation_moments) moment = -moment;
+  }
+  if (springs.prestressed()) {
+    result.energy = elastic_energy(assembly, springs, result.motions);
+    return;
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     result.energy += linear_spring_energy_of(springs[c], result.contact_forces[c]);
@@ -208,8 +224,8 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
     result = estimate_iterations(assembly, unknowns);
   } else {
     const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
-    result =
-        estimate(symbolic, unknowns, springs.any_negative(), tries_single_precision(options.solver, springs, symbolic));
+    result = estimate(symbolic, unknowns, springs.may_be_indefinite(),
+                      tries_single_precision(options.solver, springs, symbolic));
     result.peak_bytes *= memory_factor(choice.method, options.solver.ordering);
   }
   result.method = choice.method;

@@ -29,7 +29,7 @@ struct Reaction {
 /// The state of rest of one load case, with measures of its accuracy.
 struct Equilibrium {
   std::vector<DiscMotion> motions;           ///< per disc
-  std::vector<ContactForce> contact_forces;  ///< per contact
+  std::vector<ContactForce> contact_forces;  ///< per contact; beside those at rest, along n and s of before the motion
   std::vector<Reaction> reactions;           ///< discs with a held component
   std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
   /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement
@@ -60,7 +60,7 @@ struct Equilibrium {
   std::string solver;             ///< the back end and factorization used; why double precision where single was tried
   StageTimes times;               ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
 
-  /// Total elastic energy, N (J/m per m).
+  /// Total elastic energy, N (J/m per m); of prestressed contacts its part of second order in the motion.
   double energy = 0;
   /// A report of a few lines.
   [[nodiscard]] std::string report() const;

@@ -12,9 +12,15 @@ constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
 
-/// Stretch and slip of a contact by the motion and by the mean displacement gradient.
-DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
-                                 const PreciseMotion& motion, const ContactDeformation& affine = {}) {
+/// Stretch and slip of a contact, and the rotations of its discs, rad.
+struct Evaluated {
+  DeformationOf<Extended> deformation;
+  Extended theta_i = 0, theta_j = 0;
+};
+
+/// By the motion and by the mean displacement gradient.
+Evaluated evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
+                   const PreciseMotion& motion, const ContactDeformation& affine = {}) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
@@ -25,15 +31,26 @@ DeformationOf<Extended> evaluate(const Contact& contact, const ContactFrame& fra
     const Extended high = motion.high[disc + 2];
     return motion.low.empty() ? high : high + motion.low[disc + 2];
   };
+  Evaluated result;
   Extended turn = 0, opening = 0;
   if (b == 3) {
     const Extended turn_i = rotation_of(i), turn_j = rotation_of(j);
     turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
     if (frame.offset_i != 0 || frame.offset_j != 0)
       opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;
+    result.theta_i = turn_i / unknowns.rotation_scale;
+    result.theta_j = turn_j / unknowns.rotation_scale;
   }
   const auto d = deformation(frame, difference(0), difference(1), turn, opening);
-  return {d.normal + affine.normal, d.tangential + affine.tangential};
+  result.deformation = {d.normal + affine.normal, d.tangential + affine.tangential};
+  return result;
+}
+
+ContactResponse<Extended> response_of(const ContactSprings& springs, std::size_t contact, const Evaluated& by) {
+  ContactResponse<Extended> response{.force = linear_spring_force(springs[contact], by.deformation)};
+  if (const ContactPrestress* const prestress = springs.prestress(contact))
+    add_prestress(*prestress, by.deformation, by.theta_i, by.theta_j, response);
+  return response;
 }
 
 ContactDeformation affine_part(const Assembly& assembly, const Contact& contact, const ContactFrame& frame,
@@ -68,49 +85,77 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
   parallel_ranges(assembly.contacts.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = assembly.contacts[c];
-      const auto f = linear_spring_force(springs[c], evaluate(contact, frame_of(assembly, c), unknowns, motion));
+      const auto f = response_of(springs, c, evaluate(contact, frame_of(assembly, c), unknowns, motion)).force;
       forces[c] = {static_cast<double>(f.normal), static_cast<double>(f.tangential)};
     }
   });
 }
 
-ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
-                                  const std::optional<Tensor2>& gradient, std::size_t number) {
+ContactMotion motion_of(const SpringNetwork& network, const PreciseMotion& motion,
+                        const std::optional<Tensor2>& gradient, std::size_t number) {
   const Contact& contact = network.assembly.contacts[number];
   const ContactFrame frame = frame_of(network.assembly, number);
-  const auto d =
+  const auto [d, theta_i, theta_j] =
       evaluate(contact, frame, network.unknowns, motion, affine_part(network.assembly, contact, frame, gradient));
-  return {static_cast<double>(d.normal), static_cast<double>(d.tangential)};
+  return {{static_cast<double>(d.normal), static_cast<double>(d.tangential)},
+          static_cast<double>(theta_i),
+          static_cast<double>(theta_j)};
 }
+
+ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
+                                  const std::optional<Tensor2>& gradient, std::size_t number) {
+  return motion_of(network, motion, gradient, number).deformation;
+}
+
+ContactForce force_of(const ContactSprings& springs, std::size_t contact, const ContactMotion& motion) {
+  ContactResponse<double> response{.force = linear_spring_force(springs[contact], motion.deformation)};
+  if (const ContactPrestress* const prestress = springs.prestress(contact))
+    add_prestress(*prestress, motion.deformation, motion.theta_i, motion.theta_j, response);
+  return response.force;
+}
+
+namespace {
+
+/// What the contacts of a disc exert on it.
+struct Pull {
+  Extended x = 0, y = 0, moment = 0;
+};
+
+Pull pull_on(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
+             std::size_t d) {
+  const auto& [assembly, graph, springs, unknowns] = network;
+  Pull sum;
+  for (const auto& edge : graph.of(d)) {
+    const Contact& contact = assembly.contacts[edge.contact];
+    const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
+    const auto response =
+        response_of(springs, static_cast<std::size_t>(edge.contact),
+                    evaluate(contact, frame, unknowns, motion, affine_part(assembly, contact, frame, gradient)));
+    const ForceOf<Extended>& force = response.force;
+    const Vec2 n = frame.normal;
+    const Extended fx = force.normal * n.x - force.tangential * n.y;
+    const Extended fy = force.normal * n.y + force.tangential * n.x;
+    if (static_cast<std::size_t>(contact.i) == d) {
+      sum.x += fx, sum.y += fy;
+      sum.moment += moment_on_i(frame, force) + response.moment_i;
+    }
+    if (static_cast<std::size_t>(contact.j) == d) {
+      sum.x -= fx, sum.y -= fy;
+      sum.moment += moment_on_j(frame, force) + response.moment_j;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
 
 void residual_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
                     std::span<const double> f, std::span<double> residual) {
-  const auto& assembly = network.assembly;
-  const auto& graph = network.graph;
-  const auto& springs = network.springs;
   const auto& unknowns = network.unknowns;
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  parallel_ranges(assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(network.assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t d = begin; d < end; ++d) {
-      Extended x = 0, y = 0, moment = 0;
-      for (const auto& edge : graph.of(d)) {
-        const Contact& contact = assembly.contacts[edge.contact];
-        const ContactFrame frame = frame_of(assembly, static_cast<std::size_t>(edge.contact));
-        const auto force = linear_spring_force(
-            springs[edge.contact],
-            evaluate(contact, frame, unknowns, motion, affine_part(assembly, contact, frame, gradient)));
-        const Vec2 n = frame.normal;
-        const Extended fx = force.normal * n.x - force.tangential * n.y;
-        const Extended fy = force.normal * n.y + force.tangential * n.x;
-        if (static_cast<std::size_t>(contact.i) == d) {
-          x += fx, y += fy;
-          moment += moment_on_i(frame, force);
-        }
-        if (static_cast<std::size_t>(contact.j) == d) {
-          x -= fx, y -= fy;
-          moment += moment_on_j(frame, force);
-        }
-      }
+      const auto [x, y, moment] = pull_on(network, motion, gradient, d);
       const auto keep = [&](std::size_t k, Extended value) {
         if (!f.empty()) value += f[d * b + k];
         residual[d * b + k] = unknowns.held[d * b + k] != 0 ? 0.0 : static_cast<double>(value);
@@ -118,6 +163,19 @@ void residual_force(const SpringNetwork& network, const PreciseMotion& motion, c
       keep(0, x);
       keep(1, y);
       if (b == 3) keep(2, moment / unknowns.rotation_scale);
+    }
+  });
+}
+
+void internal_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
+                    std::span<double> result) {
+  const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
+  parallel_ranges(network.assembly.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t d = begin; d < end; ++d) {
+      const auto [x, y, moment] = pull_on(network, motion, gradient, d);
+      result[d * b] = -static_cast<double>(x);
+      result[d * b + 1] = -static_cast<double>(y);
+      if (b == 3) result[d * b + 2] = -static_cast<double>(moment / network.unknowns.rotation_scale);
     }
   });
 }

@@ -28,6 +28,17 @@ struct PreciseMotion {
   void add(std::span<const double> correction);
 };
 
+/// Stretch and slip of a contact, and the rotations of its discs beside the mean strain, rad.
+struct ContactMotion {
+  ContactDeformation deformation;
+  double theta_i = 0, theta_j = 0;
+};
+ContactMotion motion_of(const SpringNetwork& network, const PreciseMotion& motion,
+                        const std::optional<Tensor2>& gradient, std::size_t contact);
+
+/// The change of the force of a contact along the normal and tangent of before the motion, prestress included.
+ContactForce force_of(const ContactSprings& springs, std::size_t contact, const ContactMotion& motion);
+
 /// Stretch and slip of a contact by the motion, from differences in extended precision, and by a mean strain.
 /// \param gradient of the mean displacement (affine_deformation); none: 0
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
@@ -41,6 +52,10 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
 /// Internal force f_int = K u per component (N/m; moments over a): the negative of what contacts exert on the discs.
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
+
+/// The same from the motion, with the moments that prestress adds.
+void internal_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
+                    std::span<double> result);
 
 /// Residual force f - f_int(motion) on free components, 0 on held ones.
 /// Stretch, slip, forces and their sums are all evaluated in extended precision.

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/contact/chosen_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"
@@ -344,9 +346,10 @@ class Pruning {
     take(whole.cell_areas, result.discs, rest.cell_areas);
     take(whole.contact_arms, result.contacts, rest.contact_arms);
     take(whole.sections, result.discs, rest.sections);
-    for (const auto numbers : {&Assembly::facet_lengths, &Assembly::contact_kN, &Assembly::contact_kT,
-                               &Assembly::contact_tension, &Assembly::contact_shear}) {
-      take(whole.*numbers, result.contacts, rest.*numbers);
+    take(whole.facet_lengths, result.contacts, rest.facet_lengths);
+    for (const ContactNumbers& numbers : contact_numbers) {
+      take(whole.*numbers.first, result.contacts, rest.*numbers.first);
+      take(whole.*numbers.second, result.contacts, rest.*numbers.second);
     }
     for (const auto& [name, group] : whole.groups) {
       DiscGroup& kept = rest.groups[name];
@@ -356,11 +359,7 @@ class Pruning {
         if (!group.tributary_lengths.empty()) kept.tributary_lengths.push_back(group.tributary_lengths[k]);
       }
     }
-    if (!springs_.uniform() && !result.contacts.empty()) {
-      std::vector<SpringConstants> springs;
-      for (const std::int32_t k : result.contacts) springs.push_back(springs_[k]);
-      result.springs = ContactSprings(std::move(springs));
-    }
+    result.springs = chosen_springs(springs_, result.contacts);
     return result;
   }
 

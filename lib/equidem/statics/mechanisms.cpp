@@ -54,8 +54,9 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   if (!grows_rigid(assembly, system.graph, positive, system.unknowns.per_disc)) system.factorize(assembly, positive);
   MechanismReport report;
   report.gears = static_cast<std::int64_t>(system.held.gears.size());
-  // No spring is negative: a negative pivot is the round-off of a zero.
-  if (system.factor) report.others = system.factor->report().zero_pivots + system.factor->report().negative_pivots;
+  // No spring is negative: without prestress a negative pivot is the round-off of a zero.
+  if (system.factor) report.others = system.factor->report().zero_pivots;
+  if (system.factor && !springs.prestressed()) report.others += system.factor->report().negative_pivots;
   const std::int64_t of_the_whole = !supports.empty() ? 0 : assembly.periodic() ? 2 : 3;
   report.rigid_motions = std::min(of_the_whole, system.held.rigid);
   report.free_pieces = system.held.rigid - report.rigid_motions;
@@ -95,7 +96,7 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
 
 InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                            std::span<const Support> supports) {
-  if (!springs.any_negative()) return {};
+  if (!springs.may_be_indefinite()) return {};
   HeldSystem system(assembly, springs, rotation, supports);
   system.factorize(assembly, springs);
   InertiaReport report;

@@ -15,8 +15,9 @@
 
 namespace equidem {
 
-/// Motions that neither stretch nor slip, kT of either sign counted by its size. The rigid motions of an assembly in
-/// one piece that no support is given for (a free body 3, a periodic cell 2 translations) are no mechanisms.
+/// Motions that neither stretch nor slip, and that forces at rest do not resist where they count; kT of either sign
+/// counted by its size. The rigid motions of an assembly in one piece that no support is given for (a free body 3, a
+/// periodic cell 2 translations) are no mechanisms.
 struct MechanismReport {
   std::int64_t rigid_motions = 0;  ///< of the whole, allowed
   std::int64_t free_pieces = 0;    ///< rigid motions of pieces or discs that should be held but are not

@@ -320,7 +320,12 @@ double elastic_energy(const Assembly& assembly, const ContactSprings& springs, s
   double energy = 0;
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
-    energy += linear_spring_energy(springs[k], deformation(frame_of(assembly, k), motions[c.i], motions[c.j]));
+    const ContactDeformation d = deformation(frame_of(assembly, k), motions[c.i], motions[c.j]);
+    energy += linear_spring_energy(springs[k], d);
+    if (const ContactPrestress* const prestress = springs.prestress(k)) {
+      const double theta_i = motions[c.i].theta, theta_j = motions[c.j].theta;
+      energy += 0.5 * prestress_form(*prestress, d, theta_i, theta_j, d, theta_i, theta_j);
+    }
   }
   return energy;
 }

@@ -77,7 +77,7 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
   const bool single = tries_single_precision(options_, springs_, *symbolic_);
-  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.any_negative(), single);
+  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite(), single);
   size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
@@ -107,7 +107,7 @@ System StiffnessSolver::system() const {
 void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {
   why_double_ = std::move(reason);
   factor_.reset();
-  check_memory(estimate(*symbolic_, unknowns_, springs_.any_negative()), options_.memory_limit);
+  check_memory(estimate(*symbolic_, unknowns_, springs_.may_be_indefinite()), options_.memory_limit);
   factor_ = factorize(system(), method_, mechanisms_, times);
 }
 
@@ -132,7 +132,7 @@ std::string StiffnessSolver::solver_name() const {
 
 void StiffnessSolver::judge_inertia() {
   const std::int64_t negative = factor_->report().negative_pivots;
-  if (!springs_.any_negative()) {
+  if (!springs_.may_be_indefinite()) {
     unstable_modes_ = 0;
   } else if (negative < 0) {
     unstable_modes_ = -1;
@@ -244,6 +244,11 @@ double StiffnessSolver::rounded_residual(const RightHandSide& given, const Preci
   return norm_of_free(residual);
 }
 
+ContactMotion StiffnessSolver::contact_motion(const RightHandSide& given, const PreciseMotion& motion,
+                                              std::size_t contact) const {
+  return motion_of({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, contact);
+}
+
 ContactDeformation StiffnessSolver::deformation(const RightHandSide& given, const PreciseMotion& motion,
                                                 std::size_t contact) const {
   return deformation_of({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, contact);
@@ -294,7 +299,7 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
   // Round-off of the factor may make the motion stiffer than it is, and in single precision, or where the solutions are
   // rough, softer, too. The quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth
   // of the last pass.
-  const double stiffness = springs_.any_negative() ? 0 : twice_energy(x);
+  const double stiffness = springs_.may_be_indefinite() ? 0 : twice_energy(x);
   const bool rough = factor_->report().single_precision || iterative();
   if (stiffness > 0) result.inverse_norm = std::max(rough ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);

@@ -73,6 +73,9 @@ class StiffnessSolver {
 
   /// Residual of the motion rounded to doubles, N/m.
   [[nodiscard]] double rounded_residual(const RightHandSide& given, const PreciseMotion& motion) const;
+  /// Deformation of a contact, that by the mean strain included, and the rotations of its discs.
+  [[nodiscard]] ContactMotion contact_motion(const RightHandSide& given, const PreciseMotion& motion,
+                                             std::size_t contact) const;
   /// Deformation of a contact, that by the mean strain included.
   [[nodiscard]] ContactDeformation deformation(const RightHandSide& given, const PreciseMotion& motion,
                                                std::size_t contact) const;

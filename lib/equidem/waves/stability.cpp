@@ -147,6 +147,16 @@ void add_continuum(const Assembly& assembly, const ContactSprings& springs, cons
     s.sound.push_back(plane_waves(homogenized.gradient_stiffness, s.mass_per_area, {std::cos(angle), std::sin(angle)}));
 }
 
+/// Time steps of the springs: forces at rest change the highest frequency by a share of |N0|/(kN l). Lower frequencies,
+/// waves and the critical kT/kN may depend on them, and are left out.
+void add_without_prestress(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+                           const std::vector<Inertia>& inertia, StabilityOptions options, Stability& s) {
+  options.natural_frequencies = 0;
+  add_frequencies(assembly, springs, supports, inertia, options, s);
+  s.natural.why_none = "forces at rest count, and frequencies are those of springs alone";
+  s.critical = {.sought = false, .searched = "forces at rest count, and do not change with kT/kN"};
+}
+
 }  // namespace
 
 std::string Stability::status() const {
@@ -175,6 +185,12 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
   s.mechanisms = find_mechanisms(assembly, springs, options.rotation, supports);
   s.inertia = find_inertia(assembly, springs, options.rotation, supports);
   s.times.add("inertia", watch.lap());
+  if (springs.prestressed()) {
+    s.critical_load = find_critical_load(assembly, springs, supports, {.rotation = options.rotation});
+    s.times.add("critical load", watch.lap());
+    add_without_prestress(assembly, springs.with_prestress({}), supports, inertia, options, s);
+    return s;
+  }
   add_frequencies(assembly, springs, supports, inertia, options, s);
   watch.lap();
   if (assembly.periodic()) {

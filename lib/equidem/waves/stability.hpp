@@ -17,6 +17,7 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"
+#include "equidem/statics/prestress/critical_load.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 #include "equidem/waves/vibration.hpp"
 #include "equidem/waves/wave_survey.hpp"
@@ -48,6 +49,7 @@ struct Stability {
   MechanismReport mechanisms;
   InertiaReport inertia;
   CriticalMotion critical;
+  std::optional<CriticalLoad> critical_load;  ///< where forces at rest count
 
   ExtremeEigenvalue highest;  ///< omega², (rad/s)², of the assembly as it is given; 0: nothing in it vibrates
   std::optional<ExtremeEigenvalue> lowest;  ///< likewise, where some kT < 0

@@ -221,7 +221,8 @@ class Case:
         """Mechanisms, waves, the critical kT/kN, natural frequencies and time steps.
 
         Arrays: modes["0"].displacements, modes["0"].rotations, ... of the lowest natural frequencies; of small periodic
-        cells dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies.
+        cells dispersion.along, dispersion.wave_vectors and dispersion.squared_frequencies; where forces at rest count,
+        buckling.displacements and buckling.rotations of the mode that is lost at the critical load.
         """
         return self.run_verb("stability", **options)
 

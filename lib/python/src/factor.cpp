@@ -11,6 +11,7 @@
 #include "equidem/statics/equilibrium.hpp"
 
 #include "case_inputs.hpp"
+#include "prestressed.hpp"
 #include "problem.hpp"
 #include "result.hpp"
 #include "result_arrays.hpp"
@@ -27,7 +28,7 @@ class Factor {
     const LongWork working;
     Case resolved = read_case(inputs.case_file(), inputs.overrides());
     check_viscoelastic(resolved, "solve");
-    problem_.emplace(problem_of(std::move(resolved)));
+    problem_.emplace(prestressed(problem_of(std::move(resolved))));
     EquilibriumOptions options = problem_->options();
     options.error_bound = error_bound;
     solver_.emplace(problem_->assembly, problem_->springs.springs, problem_->resolved.supports, options);

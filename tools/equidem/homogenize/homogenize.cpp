@@ -18,6 +18,7 @@
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
 #include "homogenize/viscoelastic_results.hpp"
+#include "prestressed.hpp"
 #include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
 #include "state_files.hpp"
@@ -168,7 +169,7 @@ int homogenize(const HomogenizeVerb& options) {
   check_outputs(common, resolved);
   const auto lock = lock_out(common);
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
-  const auto shared_problem = std::make_shared<const Problem>(problem_of(std::move(resolved)));
+  const auto shared_problem = std::make_shared<const Problem>(prestressed(problem_of(std::move(resolved))));
   const Problem& problem = *shared_problem;
   if (common.dry_run) return dry_run_homogenization(common, problem);
 

@@ -110,6 +110,23 @@ void add_stiffness(Results& out, const EffectiveStiffness& r) {
   out.set("tangential_part", r.tangential_part).set("normal_part", r.normal_part);
 }
 
+/// The stress that the forces at rest make, and the derivative of the Cauchy stress where it is not symmetric.
+void add_prestress(Results& out, const EffectiveStiffness& r) {
+  const Tensor2& s = r.stress_at_rest;
+  out.line("stress at rest")
+      .add("stress_at_rest/xx", "xx", s.xx, "Pa", {.digits = 6})
+      .add("stress_at_rest/yy", "yy", s.yy, "Pa", {.digits = 6})
+      .add("stress_at_rest/xy", "xy", s.xy, "Pa", {.digits = 6});
+  double asymmetric = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < a; ++b) asymmetric = std::max(asymmetric, std::abs(r.cauchy[a][b] - r.cauchy[b][a]));
+  out.line("",
+           "the stiffness is the derivative of the Cauchy stress by the strain, of which the symmetric part is shown: ")
+      .add("cauchy_asymmetry", "", asymmetric / largest_entry(r.cauchy), "of the largest entry is not symmetric",
+           {Shown::power, 1});
+  out.set("cauchy_stiffness", r.cauchy).set("prestress_part", r.prestress_part);
+}
+
 void add_anisotropy(Results& out, const Matrix3& stiffness, double anisotropy) {
   const StiffnessAxes axes = stiffness_axes(stiffness);
   out.line("anisotropy")
@@ -176,6 +193,8 @@ void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& sp
                          joined(names, " <= "), holds ? "holds" : "BROKEN, do not trust this result", joined(margins)));
   } else if (springs.any_negative()) {
     out.line("order", "kT < 0: energies are no minima, and nothing above is a bound");
+  } else if (springs.prestressed()) {
+    out.line("order", "prestress: bounds of springs alone do not hold, and are left out");
   }
   out.set("order", steps);
 }
@@ -267,6 +286,7 @@ Results homogenized_results(const Problem& problem, Results out, bool periodic, 
   add_mean_strain(out, problem, periodic, r.boundary);
   add_rigidity(out, r);
   add_stiffness(out, r);
+  if (r.effects.prestress) add_prestress(out, r);
   out.append(moduli_results(moduli));
   add_anisotropy(out, r.stiffness, moduli.anisotropy);
   if (fabric) add_fabric(out, *fabric);

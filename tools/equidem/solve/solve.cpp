@@ -11,6 +11,7 @@
 #include "equidem/homogenize/stress.hpp"
 
 #include "command.hpp"
+#include "prestressed.hpp"
 #include "problem.hpp"
 #include "result_arrays.hpp"
 #include "solve/solve_accuracy.hpp"
@@ -125,11 +126,12 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   const auto lock = lock_out(options);
   if (accuracy && BlockSearch::serves(resolved)) {
     BlockSearch search(options, resolved, *accuracy);
-    while (!solve_once(options, std::make_shared<const Problem>(build_problem(search.propose())), accuracy, &search)) {
+    while (!solve_once(options, std::make_shared<const Problem>(prestressed(build_problem(search.propose()))), accuracy,
+                       &search)) {
     }
     return 0;
   }
-  const auto problem = std::make_shared<const Problem>(build_problem(std::move(resolved)));
+  const auto problem = std::make_shared<const Problem>(prestressed(build_problem(std::move(resolved))));
   if (options.dry_run) {
     deliver(options, "dry_run", dry_run_results(*problem, 1), problem->times);
     return 0;

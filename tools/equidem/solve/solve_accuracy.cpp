@@ -7,6 +7,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
+#include "prestressed.hpp"
+
 namespace equidem {
 namespace {
 
@@ -38,7 +40,7 @@ AccuracySetting setting_of(double aspect, std::int64_t rows) {
 }
 
 std::vector<double> solve_block(Case resolved) {
-  const Problem problem = build_problem(std::move(resolved));
+  const Problem problem = prestressed(build_problem(std::move(resolved)));
   const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
   return BlockSearch::values_of(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }

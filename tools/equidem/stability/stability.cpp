@@ -8,13 +8,16 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
+#include "prestressed.hpp"
 #include "result_arrays.hpp"
 #include "stability/stability_results.hpp"
+#include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -34,6 +37,39 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
           .solver = resolved.solver,
           .natural_frequencies = command.frequencies,
           .critical_ratio = !command.without_critical_ratio};
+}
+
+/// Where prestress is asked for, the contacts also carry what the loads of the case cause: to first order, as in
+/// Euler's load, that is at the places of before the loads.
+Problem under_loads(Problem problem) {
+  const bool asked = problem.resolved.prestress == PrestressChoice::on;
+  if (!asked || problem.load_cases.empty() || problem.load_cases.front().loads.empty()) return problem;
+  if (problem.load_cases.size() > 1)
+    bad_input_at(problem.resolved.where("load"), "there are several load cases, and prestress is asked for",
+                 "stability is that of one state", "Keep the loads of one");
+  Assembly& assembly = problem.assembly;
+  const Equilibrium loaded = solve_equilibrium(assembly, problem.springs.springs, problem.supports,
+                                               problem.load_cases.front().loads, problem.options());
+  assembly.contact_normal_force.resize(assembly.contacts.size());
+  assembly.contact_tangential_force.resize(assembly.contacts.size());
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    assembly.contact_normal_force[c] += loaded.contact_forces[c].normal;
+    assembly.contact_tangential_force[c] += loaded.contact_forces[c].tangential;
+  }
+  problem.times.add("loads", loaded.times.total());
+  return problem;
+}
+
+/// Of the names of files of the mode that is lost at the critical load.
+constexpr const char* buckling_suffix = "_buckling";
+
+void draw_mode(const CommonOptions& options, const Problem& problem, const Stability& result) {
+  if (!result.critical_load || result.critical_load->motion.empty()) return;
+  const std::string& title = problem.resolved.title;
+  write_state_picture(options, pictures_of(problem.resolved.output), buckling_suffix,
+                      {.assembly = problem.assembly, .motions = result.critical_load->motion},
+                      {.title = fmt::format("{}{}buckles at {:.6g} times the forces at rest", title,
+                                            title.empty() ? "" : ": ", result.critical_load->factor)});
 }
 
 int dry_run_survey(const StabilityCommand& options, const Problem& problem) {
@@ -77,10 +113,11 @@ int stability(const StabilityCommand& options) {
   const OutputPlan plan(options);
   plan.expect_results();
   expect_survey(plan);
+  expect_state(plan, pictures_of(resolved.output), buckling_suffix);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
-  const auto shared_problem = std::make_shared<const Problem>(acts(resolved) ? build_problem(std::move(resolved))
-                                                                             : problem_of(std::move(resolved)));
+  const auto shared_problem = std::make_shared<const Problem>(
+      prestressed(under_loads(acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved)))));
   const Problem& problem = *shared_problem;
   if (options.dry_run) return dry_run_survey(options, problem);
   const auto shared_result = std::make_shared<const Stability>(
@@ -89,9 +126,14 @@ int stability(const StabilityCommand& options) {
   StageTimes times = problem.times;
   times.add(result.times);
   deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {
-    if (options.out) write_survey(*options.out, problem.resolved.title, result, options.overwrite);
+    if (options.out) {
+      write_survey(*options.out, problem.resolved.title, result, options.overwrite);
+      draw_mode(options, problem, result);
+    }
     write_case(options, problem.resolved);
   });
+  if (arrays_wanted() && result.critical_load && !result.critical_load->motion.empty())
+    hand_over(motion_arrays("buckling/", {shared_result, &result.critical_load->motion}));
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));
   for (std::size_t k = 0; arrays_wanted() && k < result.natural.motions.size(); ++k) {
     const std::shared_ptr<const std::vector<DiscMotion>> mode(shared_result, &result.natural.motions[k]);
@@ -100,6 +142,7 @@ int stability(const StabilityCommand& options) {
   hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
   hand_over([shared_problem, shared_result](const CommonOptions& into) {
     write_survey(*into.out, shared_problem->resolved.title, *shared_result, into.overwrite);
+    draw_mode(into, *shared_problem, *shared_result);
     write_case(into, shared_problem->resolved);
   });
   return 0;

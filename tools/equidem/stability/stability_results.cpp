@@ -58,7 +58,10 @@ void add_mechanisms(Results& out, const Stability& s, bool periodic) {
 void add_inertia(Results& out, const Stability& s) {
   const InertiaReport& inertia = s.inertia;
   out.line("inertia").add("negative_pivots", "", inertia.negative_pivots, "negative pivot", {Shown::count});
-  if (inertia.negative_pivots > 0) {
+  if (s.critical_load && inertia.negative_pivots > 0 && inertia.negative_pivots == inertia.unstable_modes) {
+    out.note(fmt::format(": under its forces at rest the assembly gives way by {}",
+                         counted(inertia.unstable_modes, "mode")));
+  } else if (inertia.negative_pivots > 0) {
     out.note(inertia.unstable_modes == 0 ? ", one for each rotation: no translation has lost its stiffness"
              : inertia.unstable_modes > 0
                  ? fmt::format(", {} beyond one for each rotation: the assembly gives way by so many modes",
@@ -66,6 +69,23 @@ void add_inertia(Results& out, const Stability& s) {
                  : "; the rotations alone are singular, so that they cannot be told apart");
   }
   out.set("unstable_modes", known(inertia.unstable_modes));
+}
+
+/// The factor of the forces at rest at which stability is lost.
+void add_critical_load(Results& out, const CriticalLoad& load, const Assembly& assembly) {
+  out.line("critical load");
+  if (!load.sought) {
+    out.note("not sought: " + load.why).set("critical_load/factor", nullptr);
+    return;
+  }
+  if (!std::isfinite(load.factor)) {
+    out.note("none: forces at rest of any size leave it stable").set("critical_load/factor", nullptr);
+    return;
+  }
+  out.add("critical_load/factor", "", load.factor, "times the forces at rest", {.digits = 10});
+  out.add("critical_load/width", "proven to", load.width, "of it", {Shown::power, 0});
+  if (!load.motion.empty())
+    out.line("", "gives way by ").add("critical_load/motion", "", describe_motion(assembly, load.motion));
 }
 
 void add_critical(Results& out, const Stability& s) {
@@ -303,9 +323,10 @@ Results stability_results(const Problem& problem, const Stability& s) {
   Results out = problem_results(problem, s.effects, AssemblyKeys::size);
   if (problem.resolved.ensemble)
     out.line("not used", "[ensemble]: the one assembly of [assembly] is judged, with its seed");
-  if (periodic) add_waves(out, s);
+  if (periodic && !s.critical_load) add_waves(out, s);
   add_mechanisms(out, s, periodic);
   add_inertia(out, s);
+  if (s.critical_load) add_critical_load(out, *s.critical_load, problem.assembly);
   add_critical(out, s);
   add_growth(out, s, periodic);
   add_natural_frequencies(out, s, problem.assembly);

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
@@ -73,11 +74,13 @@ void check_key(const std::string& key, const std::vector<std::string>& known) {
 
 void check_keys_together(const std::function<bool(const char*)>& has, double gap_tolerance) {
   if (!has("contacts")) {
-    for (const char* key : {"levers", "normals", "offsets", "springs", "strengths", "facet_lengths"}) {
-      if (!has(key)) continue;
+    const auto refuse = [&](const char* key) {
+      if (!has(key)) return;
       bad_input_at(key, fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
                    "Add \"contacts\"");
-    }
+    };
+    for (const char* key : {"levers", "normals", "offsets", "facet_lengths"}) refuse(key);
+    for (const ContactNumbers& numbers : contact_numbers) refuse(numbers.key);
     if (has("sections")) {
       bad_input_at("sections", "there are sections but no contacts", "only of discs it is known where they touch",
                    "Add \"contacts\"");

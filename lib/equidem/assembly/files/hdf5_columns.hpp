@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "equidem/assembly/contact_numbers.hpp"
+
 namespace equidem::hdf5_columns {
 
 /// A dataset with a row of `width` numbers for each of something; width 0: one number each, in a list.
@@ -17,10 +19,14 @@ struct Column {
 inline constexpr Column cell = {"cell", 0, "m"}, box = {"box", 2, "m"}, discs = {"discs", 3, "m"},
                         sections = {"sections", 2, "m2, m4"}, contacts = {"contacts", 4, ""},
                         levers = {"levers", 2, "m"}, normals = {"normals", 2, "1"}, offsets = {"offsets", 2, "m"},
-                        springs = {"springs", 2, "Pa"}, strengths = {"strengths", 2, "N/m"},
                         cell_areas = {"cell_areas", 0, "m2"}, facet_lengths = {"facet_lengths", 0, "m"};
-inline constexpr Column all_columns[] = {cell,    box,     discs,   sections,  contacts,   levers,
-                                         normals, offsets, springs, strengths, cell_areas, facet_lengths};
+/// All but those of ContactNumbers.
+inline constexpr Column all_columns[] = {cell,   box,     discs,   sections,   contacts,
+                                         levers, normals, offsets, cell_areas, facet_lengths};
+
+constexpr Column column_of(const ContactNumbers& numbers) {
+  return {numbers.key, 2, numbers.unit};
+}
 
 /// Rows that are read or written at once: a piece of some hundred KB.
 inline constexpr std::size_t rows_at_once = 1 << 16;

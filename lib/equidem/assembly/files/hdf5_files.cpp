@@ -52,6 +52,7 @@ class Reading {
                  fmt::format("the text attribute schema = \"{}\"", assembly_schema));
     std::vector<std::string> known = {"groups"};
     for (const Column& column : all_columns) known.emplace_back(column.name);
+    for (const ContactNumbers& numbers : contact_numbers) known.emplace_back(numbers.key);
     for (const std::string& name : file_.names("/")) {
       check_key(name, known);
       if (name == "groups" ? file_.is_group(name) : file_.find(name).has_value()) continue;
@@ -192,14 +193,10 @@ class Reading {
       assembly_.contact_arms[k].offset_i = row[0];
       assembly_.contact_arms[k].offset_j = row[1];
     });
-    read(springs, "contact", count, [&](std::size_t, auto row) {
-      assembly_.contact_kN.push_back(row[0]);
-      assembly_.contact_kT.push_back(row[1]);
-    });
-    read(strengths, "contact", count, [&](std::size_t, auto row) {
-      assembly_.contact_tension.push_back(row[0]);
-      assembly_.contact_shear.push_back(row[1]);
-    });
+    for (const ContactNumbers& numbers : contact_numbers) {
+      read(column_of(numbers), "contact", count,
+           [&](std::size_t, auto row) { numbers.add(row[0], row[1], assembly_); });
+    }
     read(facet_lengths, "contact", count, [&](std::size_t, auto row) { assembly_.facet_lengths.push_back(row[0]); });
   }
 

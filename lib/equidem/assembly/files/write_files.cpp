@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/files/hdf5_files.hpp"
@@ -61,13 +62,10 @@ std::string json_of(const Assembly& assembly) {
     append_list(text, "offsets", contacts.size(),
                 [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
   }
-  if (!assembly.contact_kN.empty()) {
-    append_list(text, "springs", contacts.size(),
-                [&](std::size_t k) { return pair_of(assembly.contact_kN[k], assembly.contact_kT[k]); });
-  }
-  if (!assembly.contact_tension.empty()) {
-    append_list(text, "strengths", contacts.size(),
-                [&](std::size_t k) { return pair_of(assembly.contact_tension[k], assembly.contact_shear[k]); });
+  for (const ContactNumbers& numbers : contact_numbers) {
+    if (!numbers.given(assembly)) continue;
+    append_list(text, numbers.key, contacts.size(),
+                [&](std::size_t k) { return pair_of((assembly.*numbers.first)[k], (assembly.*numbers.second)[k]); });
   }
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";

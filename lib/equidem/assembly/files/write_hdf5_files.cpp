@@ -118,11 +118,11 @@ class Writing {
       add<double>(offsets, count,
                   [&a](std::size_t k, double* to) { set(to, a.contact_arms[k].offset_i, a.contact_arms[k].offset_j); });
     }
-    if (!a.contact_kN.empty())
-      add<double>(springs, count, [&a](std::size_t k, double* to) { set(to, a.contact_kN[k], a.contact_kT[k]); });
-    if (!a.contact_tension.empty()) {
-      add<double>(strengths, count,
-                  [&a](std::size_t k, double* to) { set(to, a.contact_tension[k], a.contact_shear[k]); });
+    for (const ContactNumbers& numbers : contact_numbers) {
+      if (!numbers.given(a)) continue;
+      add<double>(column_of(numbers), count, [&a, &numbers](std::size_t k, double* to) {
+        set(to, (a.*numbers.first)[k], (a.*numbers.second)[k]);
+      });
     }
     if (!a.facet_lengths.empty() || (count == 0 && !a.cell_areas.empty()))
       add<double>(facet_lengths, count, [&a](std::size_t k, double* to) { *to = a.facet_lengths[k]; });

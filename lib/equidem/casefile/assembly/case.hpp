@@ -23,6 +23,7 @@
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/prestress_choice.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/bounds.hpp"
@@ -137,6 +138,7 @@ struct Case : CaseDocument {
   std::optional<ViscoelasticCase> viscoelastic;
   SpringWeighting weighting = SpringWeighting::uniform;
   Rotation rotation = Rotation::from_scene;
+  PrestressChoice prestress = PrestressChoice::automatic;
   std::optional<TensionTest> test;     ///< or
   std::vector<Support> supports;       ///< with
   std::vector<NamedLoads> load_cases;  ///< at least one: without [[load]] one empty case

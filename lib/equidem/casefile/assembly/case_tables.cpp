@@ -128,7 +128,10 @@ void bind_material(File<CaseTables>& file) {
   file.table("material").keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]")});
   file.table("effects", completed, "effects that may be switched off")
       .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
-                                "rotation of the discs; left out: free where a tangential spring turns them")});
+                                "rotation of the discs; left out: free where a tangential spring turns them"),
+             key_in<CaseTables>("prestress", &Case::prestress,
+                                "whether the forces that contacts carry at rest count in the stiffness; auto: where "
+                                "they are large, or nothing else may hold the bodies")});
 }
 
 void bind_supports_and_loads(File<CaseTables>& file) {

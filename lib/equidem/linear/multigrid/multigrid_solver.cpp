@@ -202,7 +202,7 @@ class MultigridSolver final : public Factorization {
 
 std::unique_ptr<Factorization> multigrid_solver(const SpringNetwork& network, const multigrid::CycleOptions& options,
                                                 int max_iterations) {
-  assert(!network.springs.any_negative());
+  assert(!network.springs.may_be_indefinite());
   return std::make_unique<MultigridSolver>(network, options, max_iterations);
 }
 

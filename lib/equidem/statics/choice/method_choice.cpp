@@ -63,8 +63,8 @@ MethodForecast forecast(const SpringNetwork& network, int right_hand_sides) {
   result.elimination_bytes = discs * (entries * 4.5 + 400) + contacts * 100;
   constexpr double grids = 0.6e-6, iterations = 0.9e-6;  // s a disc
   const double more_iterations = 1 + 1.2 * scatter_of(network.springs, assembly.contacts.size());
-  result.multigrid = network.springs.any_negative() ? std::numeric_limits<double>::infinity()
-                                                    : discs * (grids + sides * iterations * more_iterations);
+  result.multigrid = network.springs.may_be_indefinite() ? std::numeric_limits<double>::infinity()
+                                                         : discs * (grids + sides * iterations * more_iterations);
   result.multigrid_bytes = bytes_of_multigrid(discs, contacts);
   return result;
 }
@@ -72,7 +72,7 @@ MethodForecast forecast(const SpringNetwork& network, int right_hand_sides) {
 MethodChoice choose_method(const SpringNetwork& network, const SolverOptions& options) {
   if (options.method != SolverMethod::automatic) return {options.method, {}};
   if (options.precision != FactorPrecision::automatic) return {};
-  if (static_cast<double>(network.assembly.size()) < few_discs || network.springs.any_negative()) return {};
+  if (static_cast<double>(network.assembly.size()) < few_discs || network.springs.may_be_indefinite()) return {};
   const MethodForecast costs = forecast(network, options.right_hand_sides);
   const double memory = options.memory_limit > 0 ? options.memory_limit : available_memory();
   if (costs.elimination_bytes > memory && costs.multigrid_bytes < memory) {

@@ -62,6 +62,11 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
                   ? "Hold that motion by a support, or add contacts"
                   : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
   }
+  if (system.springs.prestressed()) {
+    computation_failed("under its forces at rest the assembly is at its limit of stability",
+                       fmt::format("a motion resists no more than round-off: {}", motion),
+                       "Add contacts or supports, or give the contacts larger tangential springs (kT)");
+  }
   if (springs_cancel(system, motions)) {
     computation_failed("at this kT/kN the assembly is at its limit of stability",
                        fmt::format("a motion resists no more than round-off: {}", motion),
@@ -110,7 +115,7 @@ std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mecha
 }
 
 std::unique_ptr<Factorization> multifrontal(const System& system, Mechanisms mechanisms) {
-  if (system.springs.any_negative()) return indefinite(system, mechanisms);
+  if (system.springs.may_be_indefinite()) return indefinite(system, mechanisms);
   if (auto factor = multifrontal_cholesky(system.symbolic, system.k)) {
     if (!is_mechanism(system, *factor)) return factor;
     if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
@@ -129,9 +134,11 @@ std::unique_ptr<Factorization> judged(std::unique_ptr<Factorization> factor, con
 
 std::unique_ptr<Factorization> by_back_end(SolverMethod method, const System& system, Mechanisms mechanisms) {
   const BackEnd& back_end = entry_of(method).back_end;
-  if (back_end.definite_only && system.springs.any_negative()) {
+  if (back_end.definite_only && system.springs.may_be_indefinite()) {
     bad_input(fmt::format("method '{}' cannot solve this case", to_string(method)),
-              "some kT is negative, and the method needs a positive definite matrix", "Use method = \"auto\"");
+              fmt::format("{}, and the method needs a positive definite matrix",
+                          system.springs.any_negative() ? "some kT is negative" : "forces at rest count"),
+              "Use method = \"auto\"");
   }
   if (back_end.iterative) {
     return multigrid_solver({system.k.assembly, system.k.graph, system.springs, system.unknowns}, {},

@@ -29,7 +29,7 @@ bool tries_single_precision(const SolverOptions& options, const ContactSprings& 
                             const SymbolicFactor& symbolic) {
   constexpr double large = 4e6;  // entries, from where it is faster: measured with 1e4 and 1e5 discs
   if (options.method != SolverMethod::automatic && options.method != SolverMethod::multifrontal) return false;
-  if (springs.any_negative() || options.max_refinements == 0) return false;
+  if (springs.may_be_indefinite() || options.max_refinements == 0) return false;
   switch (options.precision) {
     case FactorPrecision::automatic:
       return symbolic.panel_entries() >= large;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/contact/chosen_springs.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace equidem {
+
+ContactSprings chosen_springs(const ContactSprings& springs, const std::vector<std::int32_t>& contacts) {
+  ContactSprings result = springs.with_prestress({});
+  if (!springs.uniform() && !contacts.empty()) {
+    std::vector<SpringConstants> each;
+    for (const std::int32_t c : contacts) each.push_back(springs[static_cast<std::size_t>(c)]);
+    result = ContactSprings(std::move(each));
+  }
+  if (!springs.prestressed()) return result;
+  std::vector<ContactPrestress> prestress;
+  for (const std::int32_t c : contacts) prestress.push_back(*springs.prestress(static_cast<std::size_t>(c)));
+  return result.with_prestress(std::move(prestress));
+}
+
+}  // namespace equidem

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The geometric stiffness of a contact: what the force that it carries at rest adds to the tangent as the contact
+/// turns.
+///
+/// A contact carries N0 (tension positive) and T0 on i along n and s. Under motions of any size the work that it stores
+/// is W(dn, ds) with dW = N d(dn) + T d(ds); its second derivative is that of the springs plus
+///
+///   N0 d²(dn) + T0 d²(ds).
+///
+/// d²(dn) is the curvature of the gap of two smooth bodies. To second order in their motion these are the discs that
+/// touch them: with kappa the curvature of a surface at the contact (the inverse of the distance from the contact point
+/// to its centre of curvature) and r the levers,
+///
+///   d²(dn) = (kappa_i kappa_j ds² + 2 ds (kappa_j theta_i + kappa_i theta_j) - (theta_i - theta_j)²)
+///            / (kappa_i + kappa_j) + r_i theta_i² + r_j theta_j².
+///
+/// Of discs about their centres, kappa = 1/r and l = r_i + r_j, it is (s . (u_j - u_i))²/l: no rotation enters. A wall
+/// has kappa = 0. The slip of discs is that of finite_bond.hpp, (r_i + r_j) (psi - theta), whose second derivative is
+/// -2 (r_i + r_j)/l² (n . (u_j - u_i)) (s . (u_j - u_i)). Both are derivatives of a potential: K stays symmetric. Slip
+/// of other bodies depends on how their curvature varies, and is left to those who know their outlines.
+///
+/// Colliding bodies (grains) have the same normal force; their tangential force follows the slip without a potential,
+/// dT = kT (v . s) dt, and differs in its derivative by T0/l along n: an amount of the order of the overlap over the
+/// radius beside kT.
+#pragma once
+
+#include "equidem/contact/frame.hpp"
+
+namespace equidem {
+
+/// The symmetric form of a contact in (dn, ds, theta_i, theta_j) that is added to kN dn² + kT ds²: N/m² = Pa, of
+/// rotations N and N m. The entry nn is 0.
+struct ContactPrestress {
+  double ns = 0, ni = 0, nj = 0;  ///< Pa, N/m, N/m
+  double ss = 0, si = 0, sj = 0;  ///< Pa, N/m, N/m
+  double ii = 0, ij = 0, jj = 0;  ///< N
+};
+
+/// Whether the form changes as body i, or j, turns about its centre: that of discs about their centres does not.
+bool turns_i(const ContactPrestress& prestress, const ContactFrame& frame);
+bool turns_j(const ContactPrestress& prestress, const ContactFrame& frame);
+
+/// Curvatures of both surfaces at a contact, 1/m; 0: flat.
+struct ContactCurvatures {
+  double i = 0, j = 0;
+};
+
+/// Of two discs about their centres, with the distance `length` between these.
+ContactPrestress prestress_of_discs(const ContactFrame& frame, double length, const ContactForce& at_rest);
+
+/// Of smooth bodies. Precondition: the curvatures are not negative, and not both 0; no tangential force, or a flat
+/// surface on one side, which turns no normal, beside a disc about its centre on the other.
+ContactPrestress prestress_of_bodies(const ContactFrame& frame, const ContactCurvatures& curvatures,
+                                     double normal_force);
+
+/// The change of the force of a contact, and what turns the bodies beside the moments of that force, N.
+template <typename Number>
+struct ContactResponse {
+  ForceOf<Number> force;
+  Number moment_i = 0, moment_j = 0;
+};
+
+/// What the form adds to the force of the springs.
+template <typename Number>
+void add_prestress(const ContactPrestress& g, const DeformationOf<Number>& d, Number theta_i, Number theta_j,
+                   ContactResponse<Number>& response) {
+  response.force.normal += g.ns * d.tangential + g.ni * theta_i + g.nj * theta_j;
+  response.force.tangential += g.ns * d.normal + g.ss * d.tangential + g.si * theta_i + g.sj * theta_j;
+  response.moment_i -= g.ni * d.normal + g.si * d.tangential + g.ii * theta_i + g.ij * theta_j;
+  response.moment_j -= g.nj * d.normal + g.sj * d.tangential + g.ij * theta_i + g.jj * theta_j;
+}
+
+/// The form of two deformations a and b: a . G b, N.
+inline double prestress_form(const ContactPrestress& g, const ContactDeformation& a, double a_i, double a_j,
+                             const ContactDeformation& b, double b_i, double b_j) {
+  ContactResponse<double> of_b;
+  add_prestress(g, b, b_i, b_j, of_b);
+  return of_b.force.normal * a.normal + of_b.force.tangential * a.tangential - of_b.moment_i * a_i -
+         of_b.moment_j * a_j;
+}
+
+}  // namespace equidem

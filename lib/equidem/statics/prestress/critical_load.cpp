@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/statics/prestress/critical_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/pencil/matrix_pencil.hpp"
+
+namespace equidem {
+namespace {
+
+void check(const CriticalLoadOptions& options) {
+  if (options.largest > 0) return;
+  bad_input(fmt::format("largest = {}", options.largest), "the search ends at a factor above 0", "Correct it");
+}
+
+/// K + lambda K_g with the motions held that nothing resists.
+class LoadPencil {
+ public:
+  LoadPencil(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
+             const CriticalLoadOptions& options)
+      : assembly_(assembly),
+        springs_(springs),
+        unstressed_(springs.with_prestress({})),
+        weightless_(springs.changed([](SpringConstants) {
+          return SpringConstants{0, 0};
+        })),
+        graph_(assembly),
+        unknowns_(number_unknowns(assembly, springs, derive_effects(assembly, springs, options.rotation), supports)) {
+    hold_free_motions(assembly, graph_, springs, unknowns_);
+    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
+    check_memory(estimate(*symbolic_, unknowns_, true), 0);
+    geometric_ = assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
+  }
+
+  struct Inertia {
+    std::int64_t negative = 0, zero = 0;
+  };
+  Inertia inertia(double factor) {
+    const FactorReport report = factorize(factor)->report();
+    return {report.negative_pivots, report.zero_pivots};
+  }
+  bool stable(double factor) {
+    const Inertia counted = inertia(factor);
+    return counted.negative == 0 && counted.zero == 0;
+  }
+
+  /// The eigenvalue lambda of K x = -lambda K_g x nearest to `shift`, by inverse iteration from x; NaN where it does
+  /// not settle. Energies are summed over contacts: in x.K x of a slender assembly the digits of its stretch would be
+  /// lost.
+  double nearest(double shift, std::vector<double>& x) {
+    const auto factor = factorize(shift);
+    const InverseIteration iteration{
+        assembly_,
+        graph_,
+        unknowns_,
+        geometric_,
+        *factor,
+        [&](const auto& y) {
+          const std::vector<DiscMotion> motions = disc_motions(unknowns_, y);
+          return -elastic_energy(assembly_, unstressed_, motions) / elastic_energy(assembly_, weightless_, motions);
+        },
+        [](double value, double before) { return std::abs(value - before) <= 1e-12 * std::abs(value); }};
+    return iteration.run(x);
+  }
+
+  [[nodiscard]] std::vector<double> first_motion() const { return random_motion(unknowns_); }
+  [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
+    std::vector<DiscMotion> motions = disc_motions(unknowns_, x);
+    double largest = 0;
+    for (const DiscMotion& motion : motions) largest = std::max(largest, norm(motion.u));
+    if (largest == 0) return motions;
+    for (DiscMotion& motion : motions) motion = {motion.u / largest, motion.theta / largest};
+    return motions;
+  }
+  [[nodiscard]] std::int64_t factorizations() const { return factorizations_; }
+
+ private:
+  [[nodiscard]] StiffnessMatrix stiffness(double factor) const {
+    return assemble_stiffness(assembly_, graph_, springs_.with_prestress(springs_.scaled_prestress(factor)), unknowns_);
+  }
+  std::unique_ptr<Factorization> factorize(double factor) {
+    stop_if_interrupted();
+    ++factorizations_;
+    const StiffnessMatrix matrix = stiffness(factor);
+    return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_}, {.threshold = 0.1});
+  }
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  ContactSprings unstressed_, weightless_;  ///< springs without forces at rest, and these without springs
+  ContactGraph graph_;
+  DegreesOfFreedom unknowns_;
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+  StiffnessMatrix geometric_;
+  std::int64_t factorizations_ = 0;
+};
+
+/// Whether factorizations on both sides of the value, the closest that round-off allows, have it between them.
+bool prove(LoadPencil& pencil, double value, CriticalLoad& result) {
+  constexpr double closest = 1e-11, farthest = 1e-4, widen = 10;  // relative
+  for (double way = closest; way <= farthest; way *= widen) {
+    if (!pencil.stable(value * (1 - way)) || pencil.stable(value * (1 + way))) continue;
+    result.width = 2 * way;
+    return true;
+  }
+  return false;
+}
+
+void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
+  double safe = 0, unstable = 1;
+  while (pencil.stable(unstable)) {
+    safe = unstable;
+    unstable *= 4;
+    if (unstable > largest) {
+      result.factor = std::numeric_limits<double>::infinity();
+      return;
+    }
+  }
+  constexpr double near = 0.1, narrow = 1e-13;  // widths of the bracket over its place; from the former on
+                                                // inverse iteration may get there
+  for (int attempts = 0; safe == 0 || unstable - safe > narrow * unstable;) {
+    if (safe > 0 && unstable - safe < near * safe && attempts < 4) {
+      ++attempts;
+      std::vector<double> x = pencil.first_motion();
+      const double value = pencil.nearest(safe, x);
+      if (value > safe && value < unstable && prove(pencil, value, result)) {
+        result.factor = value;
+        result.motion = pencil.motions_of(x);
+        return;
+      }
+    }
+    const double at = safe > 0 ? 0.5 * (safe + unstable) : unstable / 64;
+    if (at < std::numeric_limits<double>::min()) return;
+    (pencil.stable(at) ? safe : unstable) = at;
+  }
+  result.factor = 0.5 * (safe + unstable);
+  result.width = (unstable - safe) / unstable;
+}
+
+}  // namespace
+
+CriticalLoad find_critical_load(const Assembly& assembly, const ContactSprings& springs,
+                                std::span<const Support> supports, const CriticalLoadOptions& options) {
+  check(options);
+  equidem::check(assembly);
+  CriticalLoad result;
+  const auto not_sought = [&](const char* why) {
+    result.sought = false;
+    result.why = why;
+    return result;
+  };
+  if (!springs.prestressed()) return not_sought("no forces at rest count");
+  LoadPencil pencil(assembly, springs, supports, options);
+  const auto at_zero = pencil.inertia(0);
+  if (at_zero.negative > 0) return not_sought("the springs alone are unstable (kT < 0)");
+  if (at_zero.zero > 0) return not_sought("the springs alone leave motions that only the forces at rest resist");
+  search(pencil, options.largest, result);
+  result.factorizations = pencil.factorizations();
+  return result;
+}
+
+}  // namespace equidem

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The geometric stiffness of a contact is the derivative of the forces of finite motions that runs use.
+#include "equidem/contact/prestress.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/finite_bond.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/random.hpp"
+
+#include "support/catch.hpp"
+
+using namespace equidem;
+
+namespace {
+
+template <typename Number>
+using Six = std::array<Number, 6>;  ///< (u_x, u_y, theta) of i, then of j, or their forces
+using Matrix6 = std::array<Six<double>, 6>;
+
+/// The derivative of forces by motions, by central differences of three widths, extrapolated to the order 6.
+template <typename Number, typename Forces>
+Matrix6 minus_derivative(const Forces& forces, Number width) {
+  Matrix6 k{};
+  for (std::size_t q = 0; q < 6; ++q) {
+    const auto difference = [&](Number h, std::size_t p) {
+      Six<Number> ahead{}, behind{};
+      ahead[q] = h, behind[q] = -h;
+      return (forces(ahead)[p] - forces(behind)[p]) / (2 * h);
+    };
+    for (std::size_t p = 0; p < 6; ++p) {
+      const Number one = difference(width, p), two = difference(2 * width, p), four = difference(4 * width, p);
+      const Number fine = (4 * one - two) / 3, coarse = (4 * two - four) / 3;
+      k[p][q] = -static_cast<double>((16 * fine - coarse) / 15);
+    }
+  }
+  return k;
+}
+
+/// The tangent that statics assembles, with rotations in rad (a = 1).
+Matrix6 tangent(const ContactFrame& frame, const SpringConstants& k, const ContactPrestress& prestress) {
+  const DeformationGradient g = deformation_gradient(frame, 1);
+  Matrix6 result{};
+  for (int p = 0; p < 2; ++p) {
+    for (int q = 0; q < 2; ++q) {
+      std::array<double, 9> block{};
+      const auto &n_p = p == 0 ? g.normal_i : g.normal_j, &n_q = q == 0 ? g.normal_i : g.normal_j;
+      const auto &t_p = p == 0 ? g.tangential_i : g.tangential_j, &t_q = q == 0 ? g.tangential_i : g.tangential_j;
+      add_linear_spring_tangent<3>(k, n_p, n_q, t_p, t_q, block.data());
+      const auto turns = [](int end) { return std::array{end == 0 ? 1.0 : 0.0, end == 1 ? 1.0 : 0.0}; };
+      add_prestress_tangent<3>(prestress, n_p, n_q, t_p, t_q, turns(p), turns(q), block.data());
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c) result[3 * p + r][3 * q + c] = block[3 * r + c];
+    }
+  }
+  return result;
+}
+
+double largest_difference(const Matrix6& a, const Matrix6& b) {
+  double largest = 0;
+  for (std::size_t p = 0; p < 6; ++p)
+    for (std::size_t q = 0; q < 6; ++q) largest = std::max(largest, std::abs(a[p][q] - b[p][q]));
+  return largest;
+}
+
+Assembly two_discs(Vec2 branch, double r_i, double r_j, ContactForce at_rest) {
+  Assembly pair;
+  pair.centres = {{0, 0}, branch};
+  pair.radii = {r_i, r_j};
+  pair.contacts = {{.i = 0, .j = 1, .lever_i = r_i, .lever_j = r_j}};
+  pair.contact_normal_force = {at_rest.normal};
+  pair.contact_tangential_force = {at_rest.tangential};
+  return pair;
+}
+
+}  // namespace
+
+TEST_CASE("the_prestress_of_bonded_discs_is_the_derivative_of_the_finite_bond") {
+  Random random(7);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double angle = random.uniform(0, 6.28), length = random.uniform(0.5, 2);
+    const ContactForce at_rest{random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3)};
+    const SpringConstants k{random.uniform(0.5, 2), random.uniform(-0.2, 1)};
+    const Vec2 branch = length * Vec2{std::cos(angle), std::sin(angle)};
+    // The finite bond is defined for any levers; the springs of statics are those of levers that add up to the
+    // distance.
+    const double r_i = random.uniform(0.2, 0.8) * length, r_j = length - r_i;
+    const Assembly pair = two_discs(branch, r_i, r_j, at_rest);
+    const FiniteBond bond = bond_of(pair, pair.contacts[0], k);
+    const auto forces = [&](const Six<long double>& q) {
+      const BondMotion<long double> motion{q[3] - q[0], q[4] - q[1], q[2], q[5]};
+      const DeformationOf<long double> d = bond_deformation(bond, motion);
+      const ForceOf<long double> force{at_rest.normal + k.kN * d.normal, at_rest.tangential + k.kT * d.tangential};
+      const BondForces<long double> f = bond_forces(bond, motion, force);
+      return Six<long double>{f.x, f.y, f.moment_i, -f.x, -f.y, f.moment_j};
+    };
+    const Matrix6 expected = minus_derivative<long double>(forces, 1e-3L);
+    const Matrix6 found = tangent(frame_of(pair, 0), k, prestress_of(pair)[0]);
+    CAPTURE(trial, angle, length, at_rest.normal, at_rest.tangential, k.kN, k.kT);
+    CHECK(largest_difference(found, expected) < 1e-12);
+    for (std::size_t p = 0; p < 6; ++p)
+      for (std::size_t q = 0; q < p; ++q) CHECK(found[p][q] == Approx(found[q][p]).margin(1e-15));
+  }
+}
+
+// The force of colliding bodies is kN times the overlap along the common normal; the point that it acts in rolls along
+// both outlines.
+TEST_CASE("the_prestress_of_ellipses_is_the_derivative_of_their_contact_force") {
+  Random random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double kN = random.uniform(0.5, 2), overlap = random.uniform(0.001, 0.05);
+    const double a_i = random.uniform(0.6, 1.2), a_j = random.uniform(0.6, 1.2);
+    const double b_i = a_i * random.uniform(0.4, 1), b_j = a_j * random.uniform(0.4, 1);
+    const double phi_i = random.uniform(0, 6.28), phi_j = random.uniform(0, 6.28), way = random.uniform(0, 6.28);
+    const auto contact = [&](const Six<double>& q, Vec2 branch) {
+      return contact_of_ellipses(Ellipse::at_angle(a_i, b_i, phi_i + q[2]), Ellipse::at_angle(a_j, b_j, phi_j + q[5]),
+                                 branch + Vec2{q[3] - q[0], q[4] - q[1]});
+    };
+    Vec2 branch = (a_i + a_j) * Vec2{std::cos(way), std::sin(way)};
+    for (int k = 0; k < 50; ++k) {
+      const EllipseContact now = contact({}, branch);
+      branch -= (now.gap + overlap) * now.normal;
+    }
+    const EllipseContact at_rest = contact({}, branch);
+    REQUIRE(at_rest.gap == Approx(-overlap).epsilon(1e-9));
+    const auto forces = [&](const Six<double>& q) {
+      const EllipseContact now = contact(q, branch);
+      const Vec2 on_i = kN * now.gap * now.normal;
+      return Six<double>{on_i.x, on_i.y, cross(now.arm_i, on_i), -on_i.x, -on_i.y, -cross(now.arm_j, on_i)};
+    };
+    // The assembly: the contact point in the middle of the overlap, curvatures as seen from it.
+    Assembly pair;
+    pair.centres = {{0, 0}, branch};
+    pair.radii = {std::sqrt(a_i * b_i), std::sqrt(a_j * b_j)};
+    const Vec2 n = at_rest.normal, s = perpendicular(n);
+    const Vec2 arm_i = at_rest.arm_i - 0.5 * overlap * n, arm_j = at_rest.arm_j + 0.5 * overlap * n;
+    pair.contacts = {{.i = 0, .j = 1, .lever_i = dot(arm_i, n), .lever_j = -dot(arm_j, n)}};
+    pair.contact_arms = {{n, dot(arm_i, s), -dot(arm_j, s)}};
+    pair.contact_normal_force = {kN * at_rest.gap};
+    pair.contact_tangential_force = {0};
+    const double rho_i = support(Ellipse::at_angle(a_i, b_i, phi_i), n).radius,
+                 rho_j = support(Ellipse::at_angle(a_j, b_j, phi_j), -n).radius;
+    pair.contact_curvature_i = {1 / (rho_i - 0.5 * overlap)};
+    pair.contact_curvature_j = {1 / (rho_j - 0.5 * overlap)};
+    const Matrix6 expected = minus_derivative<double>(forces, 5e-4);
+    const Matrix6 found = tangent(frame_of(pair, 0), {kN, 0}, prestress_of(pair)[0]);
+    const Matrix6 without = tangent(frame_of(pair, 0), {kN, 0}, {});
+    CAPTURE(trial, kN, overlap, a_i, b_i, a_j, b_j, phi_i, phi_j, way);
+    CHECK(largest_difference(found, expected) < 1e-7 * kN * overlap);
+    CHECK(largest_difference(without, expected) > 0.1 * kN * overlap);
+  }
+}
+
+TEST_CASE("a_disc_on_a_wall_rolls_and_slides_without_geometric_stiffness") {
+  Assembly pair = two_discs({0, -2}, 1, 1, {-0.1, 0.02});
+  pair.contact_curvature_i = {1};
+  pair.contact_curvature_j = {0};
+  const Matrix6 found = tangent(frame_of(pair, 0), {0, 0}, prestress_of(pair)[0]);
+  for (std::size_t p = 0; p < 3; ++p)
+    for (std::size_t q = 0; q < 3; ++q) CHECK(std::abs(found[p][q]) < 1e-16);
+}
+
+TEST_CASE("discs_by_their_curvatures_have_the_prestress_of_discs") {
+  Assembly pair = two_discs({1.2, 0.9}, 0.6, 0.9, {-0.2, 0});
+  const ContactFrame frame = frame_of(pair, 0);
+  const Matrix6 expected = tangent(frame, {0, 0}, prestress_of_discs(frame, 1.5, {-0.2, 0}));
+  const Matrix6 found = tangent(frame, {0, 0}, prestress_of_bodies(frame, {1 / 0.6, 1 / 0.9}, -0.2));
+  CHECK(largest_difference(found, expected) < 1e-16);
+  CHECK_FALSE(turns_i(prestress_of_bodies(frame, {1 / 0.6, 1 / 0.9}, -0.2), frame));
+  CHECK(turns_j(prestress_of_bodies(frame, {1 / 0.6, 1 / 0.8}, -0.2), frame));
+}
+
+TEST_CASE("prestress_is_chosen_by_its_size_and_refused_where_it_is_not_known") {
+  const ContactSprings stiff(SpringConstants{1e6, 1e5}), smooth(SpringConstants{1e6, 0});
+  const Assembly pair = two_discs({2, 0}, 1, 1, {-100, 0});  // |N0|/(kN l) = 5e-5
+  using enum PrestressChoice;
+  CHECK_FALSE(choose_prestress(pair, stiff, automatic)->springs.prestressed());
+  CHECK(choose_prestress(pair, stiff, automatic)->largest == Approx(5e-5));
+  CHECK(choose_prestress(pair, smooth, automatic)->springs.prestressed());
+  CHECK(choose_prestress(pair, stiff, on)->springs.prestressed());
+  CHECK_FALSE(choose_prestress(pair, smooth, off)->springs.prestressed());
+  Assembly loose = pair;
+  loose.contact_normal_force.clear(), loose.contact_tangential_force.clear();
+  CHECK_FALSE(choose_prestress(loose, stiff, automatic));
+  CHECK_THROWS_WITH(choose_prestress(loose, stiff, on), Catch::Contains("no contact carries a force"));
+
+  Assembly bodies = pair;
+  bodies.contact_arms = {{{1, 0}, 0, 0}};
+  CHECK_THROWS_WITH(choose_prestress(bodies, stiff, on), Catch::Contains("curvatures"));
+  CHECK_THAT(choose_prestress(bodies, smooth, automatic)->sentence, Catch::Contains("DO NOT COUNT"));
+  bodies.contact_curvature_i = {0.5}, bodies.contact_curvature_j = {1};
+  CHECK(choose_prestress(bodies, stiff, on)->springs.prestressed());
+  bodies.contact_tangential_force = {1};
+  CHECK_THROWS_WITH(choose_prestress(bodies, stiff, on), Catch::Contains("tangential force"));
+
+  Assembly cell = pair;
+  cell.period = Vec2{4, 4};
+  CHECK_THROWS_WITH(choose_prestress(cell, stiff, on), Catch::Contains("do not balance"));
+  cell.contacts.push_back({.i = 1, .j = 0, .shift_x = 1, .lever_i = 1, .lever_j = 1});
+  cell.contact_normal_force = {-100, -100}, cell.contact_tangential_force = {0, 0};
+  CHECK(choose_prestress(cell, stiff, on)->springs.prestressed());
+}

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Forces at rest from pack to moduli and critical loads: run_prestress.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import json
+import math
+import unittest
+
+from program import CASES, ProgramTest, equidem, parse_json
+
+COLUMN = CASES / "column.toml"
+SMOOTH = ("--set", "springs.shear_wave_speed=none", "--set", "springs.poisson_ratio=none", "--set", "springs.kN=1e8",
+          "--set", "springs.kT=0")
+
+
+class Prestress(ProgramTest):
+    def done(self, *arguments):
+        done = equidem(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def case_of(self, assembly, more=""):
+        path = self.folder / "case.toml"
+        path.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "{assembly}"\n{more}')
+        return path
+
+    def refused(self, words, *arguments):
+        done = equidem(*arguments)
+        self.assertNotEqual(done.returncode, 0, done.stdout)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def test_frictionless_ellipses_have_moduli_by_their_forces(self):
+        packed = self.folder / "packed"
+        report = self.done("pack", CASES / "pack_ellipses.toml", "--set", "packing.sides=periodic", "--set",
+                           "packing.grains=60", *SMOOTH, "--out", packed)
+        self.assertIn("forces at rest", report)
+        self.assertLess(json.loads((packed / "result.json").read_text())["forces_at_rest"]["imbalance"], 1e-5)
+        case = self.case_of(packed / "assembly.json")
+        found = parse_json(self.done("homogenize", case, "--json", "-"))
+        self.assertTrue(found["prestress"]["counts"])
+        self.assertGreater(found["bulk_modulus_2d"], 1e6)
+        self.assertLess(found["stress_at_rest"]["xx"], 0)
+        self.assertIn("stress at rest", self.done("homogenize", case))
+        # Without them the packing is floppy, or so soft that no digit is left.
+        self.refused([], "homogenize", case, "--set", "effects.prestress=off")
+
+        assembly = json.loads((packed / "assembly.json").read_text())
+        largest = max(range(len(assembly["forces"])), key=lambda contact: abs(assembly["forces"][contact][0]))
+        assembly["forces"][largest] = [0.0, 0.0]
+        (self.folder / "unbalanced.json").write_text(json.dumps(assembly))
+        on = ("--set", "effects.prestress=on")
+        self.refused(["do not balance", "disc"], "homogenize", self.case_of("unbalanced.json"), *on)
+        del assembly["curvatures"]
+        assembly["forces"][largest] = [-1e-9, 0.0]
+        (self.folder / "unknown.json").write_text(json.dumps(assembly))
+        self.refused([], "homogenize", self.case_of("unknown.json"), *on)
+
+    def test_bodies_that_fell_carry_forces_that_balance_their_weight(self):
+        packed = self.folder / "fallen"
+        self.done("pack", CASES / "pack_soil.toml", "--set", "packing.grains=60", "--out", packed)
+        case = self.case_of(packed / "assembly_with_walls.json",
+                            '[[support]]\ngroup = "walls"\nux = true\nuy = true\nrotation = true\n')
+        report = self.done("stability", case, "--set", "effects.prestress=on", "--without-critical-ratio")
+        self.assertIn("weight, walls", " ".join(report.split()))
+        self.assertIn("critical load", report)
+
+    def test_a_slender_column_buckles_at_eulers_load_less_its_shear(self):
+        out = self.folder / "column"
+        quick = ("stability", COLUMN, "--without-critical-ratio")
+        self.assertIn("gives way by", self.done(*quick, "--out", out))
+        self.assertTrue((out / "picture_buckling.svg").exists())
+        found, euler = json.loads((out / "result.json").read_text()), math.pi**2 * 1e9 * 0.005 / 128**2
+        missing = 1 - found["critical_load"]["factor"] / euler
+        self.assertGreater(missing, 7e-4)
+        self.assertLess(missing, 9e-4)
+        self.assertEqual((found["unstable_modes"], found["status"]), (0, "stable"))
+        short = parse_json(self.done(*quick, "--set", "assembly.columns=33", "--json", "-"))
+        self.assertAlmostEqual((1 - short["critical_load"]["factor"] / (4 * euler)) / missing, 4, delta=0.2)
+        pushed = parse_json(self.done(*quick, "--set", "load.0.force=[-4000.0, 0.0]", "--json", "-"))
+        self.assertEqual((pushed["unstable_modes"], pushed["status"]), (1, "unstable"))
+        self.assertAlmostEqual(pushed["critical_load"]["factor"] * 4000 / found["critical_load"]["factor"], 1, delta=1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main()

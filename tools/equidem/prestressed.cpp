@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prestressed.hpp"
+
+#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/core/error.hpp"
+
+namespace equidem {
+
+Problem prestressed(Problem problem) {
+  try {
+    problem.prestress = choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
+  } catch (const Error& error) {
+    throw error.at(problem.resolved.where("effects.prestress"));
+  }
+  if (problem.prestress) problem.springs.springs = problem.prestress->springs;
+  return problem;
+}
+
+void add_forces_at_rest(Results& results, const Problem& problem) {
+  if (!problem.prestress) {
+    if (carries_forces(problem.assembly))
+      results.line("not used", "forces at rest: solve, homogenize and stability take them");
+    return;
+  }
+  results.line("forces at rest", problem.prestress->sentence);
+  results.set("prestress/counts", problem.prestress->springs.prestressed())
+      .set("prestress/largest", problem.prestress->largest)
+      .set("prestress/imbalance", problem.prestress->balance.relative);
+}
+
+}  // namespace equidem

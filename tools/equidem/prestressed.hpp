@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The forces at rest of the contacts of a problem.
+#pragma once
+
+#include "equidem/output/results.hpp"
+
+#include "problem.hpp"
+
+namespace equidem {
+
+/// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
+/// their geometric stiffness.
+/// \throws Error (bad_input) as choose_prestress
+Problem prestressed(Problem problem);
+
+/// What was decided, or that the verb takes no such forces.
+void add_forces_at_rest(Results& results, const Problem& problem);
+
+}  // namespace equidem
