@@ -37,6 +37,10 @@ struct BreakEvent {
   std::int64_t unstable_modes = 0;        ///< of the network with the contact; -1: not known
   double relative_residual = 0;           ///< of the state at which it breaks
   std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it: they carry nothing any more
+  // Of contacts without a bond alone:
+  double friction = 0;             ///< N, lost by slip so far
+  std::int64_t other_answers = 0;  ///< found for the increment that begins here
+  double motion_difference = 0, load_difference = 0;  ///< relative, of their rates
 };
 
 /// The reason for which a path ended.
