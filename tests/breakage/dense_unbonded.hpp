@@ -63,7 +63,7 @@ inline bool lemke(std::vector<double> m, std::vector<double> q, std::vector<doub
       const double a = t[r * width + entering];
       if (a < 1e-9) continue;
       const double ratio = t[r * width + width - 1] / a;
-      const bool tie = std::abs(ratio - best) <= 1e-12 * std::max(1.0, std::abs(best));
+      const bool tie = found < n && std::abs(ratio - best) <= 1e-12 * std::max(1.0, std::abs(best));
       if ((!tie && ratio < best) || (tie && basis[r] == 2 * n)) best = ratio, found = r;
     }
     if (found == n) return false;
@@ -124,6 +124,8 @@ class DenseUnbonded {
 
   std::vector<Event> events;
   double lambda = 0;
+  /// Events before the first network with a motion that nothing resists: behind it what is loose may be anywhere.
+  std::size_t determined = std::numeric_limits<std::size_t>::max();
   [[nodiscard]] const std::vector<Contact1>& contacts() const { return contacts_; }
 
  private:
@@ -139,7 +141,8 @@ class DenseUnbonded {
       const double end = release ? 1 : std::abs(whole) - done;
       std::size_t breaks = contacts_.size();
       BreakMode mode = BreakMode::tension;
-      const double t = std::min(end, next(breaks, mode));
+      const double until = next(breaks, mode), t = std::min(end, until);
+      if (until > end) breaks = contacts_.size();
       for (std::size_t c = 0; c < contacts_.size(); ++c) {
         Contact1& one = contacts_[c];
         one.n += t * dn_[c], one.t += t * dt_[c], one.gap += t * dg_[c];
@@ -230,7 +233,7 @@ class DenseUnbonded {
 
   /// The rates of all contacts by the complementarity problem of those on a limit.
   bool find_rates(const RightHandSide& pattern, double way, bool release) {
-    const std::size_t n = unknowns_.held.size(), count = contacts_.size();
+    const std::size_t n = unknowns_.held.size(), count = contacts_.size(), events_before = events.size();
     std::vector<std::vector<double>> g(count), h(count);
     for (std::size_t c = 0; c < count; ++c) rows(c, g[c], h[c]);
     // Contacts on a limit are closed and stick in the base.
@@ -257,19 +260,23 @@ class DenseUnbonded {
       }
     }
     const auto kt = [&](std::size_t c) { return contacts_[c].state == bonded || rough(c) ? springs_[c].kT : 0; };
-    std::vector<double> k(n * n, 0.0), vectors;
-    for (std::size_t c = 0; c < count; ++c) {
-      if (!closed[c]) continue;
-      for (std::size_t p = 0; p < n; ++p) {
-        for (std::size_t q = 0; q < n; ++q)
-          k[p * n + q] += springs_[c].kN * g[c][p] * g[c][q] + kt(c) * h[c][p] * h[c][q];
+    const auto modes_of = [&](const std::vector<bool>& resists, std::vector<double>& vectors) {
+      std::vector<double> k(n * n, 0.0);
+      for (std::size_t c = 0; c < count; ++c) {
+        if (!resists[c]) continue;
+        for (std::size_t p = 0; p < n; ++p) {
+          for (std::size_t q = 0; q < n; ++q)
+            k[p * n + q] += springs_[c].kN * g[c][p] * g[c][q] + kt(c) * h[c][p] * h[c][q];
+        }
       }
-    }
-    for (std::size_t p = 0; p < n; ++p) {
-      if (unknowns_.held[p] == 0) continue;
-      for (std::size_t q = 0; q < n; ++q) k[p * n + q] = k[q * n + p] = 0;
-    }
-    const std::vector<double> values = jacobi(k, vectors, n);
+      for (std::size_t p = 0; p < n; ++p) {
+        if (unknowns_.held[p] == 0) continue;
+        for (std::size_t q = 0; q < n; ++q) k[p * n + q] = k[q * n + p] = 0;
+      }
+      return jacobi(k, vectors, n);
+    };
+    std::vector<double> vectors;
+    const std::vector<double> values = modes_of(closed, vectors);
     double largest = 0;
     for (const double value : values) largest = std::max(largest, std::abs(value));
     const auto solve = [&](const std::vector<double>& f, bool& carried) {
@@ -388,7 +395,19 @@ class DenseUnbonded {
         now = slips;
       }
       change(c, now, sign);
+      closed[c] = now != open;
     }
+    const std::vector<double> left = modes_of(closed, vectors);
+    int loose = assembly_.periodic() ? -2 : 0;
+    for (std::size_t mode = 0; mode < n; ++mode) {
+      bool moves = false;
+      for (std::size_t p = 0; p < n; ++p) {
+        const bool turns = unknowns_.per_disc == 3 && p % 3 == 2;
+        moves = moves || (!turns && unknowns_.held[p] == 0 && std::abs(vectors[p * n + mode]) > 1e-6);
+      }
+      loose += moves && std::abs(left[mode]) <= 1e-10 * largest ? 1 : 0;
+    }
+    if (loose > 0) determined = std::min(determined, events_before);
     return true;
   }
 

@@ -12,7 +12,7 @@ using namespace equidem::test;
 
 namespace {
 
-const ContactSprings springs(SpringConstants{1000, 300});
+const ContactSprings pair_of_springs(SpringConstants{1000, 300});
 
 /// A disc on a held one, pressed down by 1 N/m and pushed sideways by lambda.
 Unbonded on_the_ground(double friction, std::vector<double> legs, LoadControl control = LoadControl::load) {
@@ -22,7 +22,7 @@ Unbonded on_the_ground(double friction, std::vector<double> legs, LoadControl co
   options.loads = {{"last", LoadKind::per_disc, {0, 1}, 0}};
   options.control = control;
   options.legs = std::move(legs);
-  return {chain_of_discs(2, 1), springs, options, friction};
+  return {chain_of_discs(2, 1), pair_of_springs, options, friction};
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ TEST_CASE("a_contact_that_is_pulled_opens") {
   options.supports = {{"first", 0, 0, 0}, {"last", 1e-3, 0, 0}};
   options.control = LoadControl::motion;
   options.legs = {-1, 1};
-  Unbonded pair(chain_of_discs(2, 1), springs, options, 0.5);
+  Unbonded pair(chain_of_discs(2, 1), pair_of_springs, options, 0.5);
   pair.all();
   REQUIRE(pair.events().size() == 1);
   CHECK(pair.event(0).mode == BreakMode::open);

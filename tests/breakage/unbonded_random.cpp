@@ -90,7 +90,7 @@ DrawnPacking draw_packing(std::uint64_t seed) {
 
 TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense_matrices_says") {
   std::map<std::string, int> seen;
-  std::int64_t compared = 0, ambiguous = 0, not_found = 0;
+  std::int64_t compared = 0, ambiguous = 0, unknown = 0, not_found = 0, loose = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const DrawnPacking d = draw_packing(seed);
     CAPTURE(d.name);
@@ -99,6 +99,7 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
     while (ours.events().size() < most && ours.run().advance()) {
     }
     CAPTURE(ours.run().why(), ours.events().size());
+    if (getenv("SHOW")) std::printf("%s: %zu %s\n", d.name.c_str(), ours.events().size(), ours.run().why().c_str());
     CHECK(ours.run().counters().largest_residual < 1e-12);
     CHECK(ours.run().state().ledger().error() < 1e-10);
     const DegreesOfFreedom unknowns =
@@ -107,13 +108,20 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
                         d.unbonded.rest);
     const bool found = dense.go(most);
     not_found += found ? 0 : 1;
-    const std::size_t both = std::min(dense.events.size(), ours.events().size());
+    const std::size_t both = std::min({dense.events.size(), ours.events().size(), dense.determined});
+    loose += dense.determined < dense.events.size() ? 1 : 0;
+    if (getenv("SEED") && seed == std::stoul(getenv("SEED"))) {
+      for (const auto& e : dense.events) std::printf("D %.12g %ld %s\n", e.lambda, e.contact, to_string(e.mode).c_str());
+      for (const auto& e : ours.events()) std::printf("O %.12g %ld %s %ld\n", e.lambda, e.contact, to_string(e.mode).c_str(), e.other_answers);
+      std::printf("determined %zu\n", dense.determined);
+    }
     for (std::size_t k = 0; k < both; ++k) {
       const BreakEvent& event = ours.event(k);
-      if (event.other_answers > 0) {
-        ++ambiguous;
+      if (event.other_answers > 0) ++ambiguous;
+      if (event.other_answers < 0) ++unknown;
+      // Of several answers pivots may find another one.
+      if (event.other_answers != 0 && (event.contact != dense.events[k].contact || event.mode != dense.events[k].mode))
         break;
-      }
       CAPTURE(k, dense.events[k].lambda, event.lambda, event.ties, to_string(event.mode),
               to_string(dense.events[k].mode), event.contact, dense.events[k].contact, found);
       REQUIRE(event.lambda == Approx(dense.events[k].lambda).epsilon(1e-8).margin(1e-9));
@@ -123,7 +131,8 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
       ++compared;
     }
   }
-  CAPTURE(compared, ambiguous, not_found, seen);
+  CAPTURE(compared, ambiguous, unknown, not_found, seen);
+  std::printf("%ld %ld %ld %ld %ld\n", compared, ambiguous, unknown, not_found, loose);for (auto& [a,b] : seen) std::printf("%s %d\n", a.c_str(), b);
   CHECK(compared > 1000);
   for (const char* mode : {"tension", "shear", "open", "close", "slip", "stick"}) CHECK(seen[mode] > 20);
 }

@@ -39,7 +39,7 @@ struct BreakEvent {
   std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it: they carry nothing any more
   // Of contacts without a bond alone:
   double friction = 0;             ///< N, lost by slip so far
-  std::int64_t other_answers = 0;  ///< found for the increment that begins here
+  std::int64_t other_answers = 0;  ///< found for the increment that begins here; -1: not known
   double motion_difference = 0, load_difference = 0;  ///< relative, of their rates
 };
 

@@ -19,6 +19,8 @@ ContactForce rate_of_force(const ContactTangent& a, const ContactDeformation& d)
   return {a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
 }
 
+constexpr double rounded_rate = 1e-14;  // of motions, as springs take it for a force
+
 /// The residual of the rates: what drives less what contacts take.
 class RateResidual {
  public:
@@ -31,6 +33,8 @@ class RateResidual {
     const std::vector<double>& load = driving_.pattern->force;
     std::vector<double> internal(contacts_.components(), 0.0);
     rates.force_scale = 0;
+    double stiffest = 0, fastest = 0;
+    for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
     rates.deformation.resize(contacts_.contacts());
     for (std::size_t c = 0; c < contacts_.contacts(); ++c) {
       ContactDeformation d = contacts_.deformation(c, rates.motion);
@@ -39,6 +43,7 @@ class RateResidual {
         d.tangential += rates.lambda * driving_.affine[c].tangential;
       }
       rates.deformation[c] = d;
+      stiffest = std::max(stiffest, tangents_[c].nn);
       const ContactForce f = rate_of_force(tangents_[c], d);
       if (f.normal == 0 && f.tangential == 0) continue;
       rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
@@ -54,6 +59,10 @@ class RateResidual {
       residual[k] = from_load + beside - internal[k];
       sum = std::max(sum, std::abs(residual[k]));
     }
+    // Forces that no more than the rounding of motions leaves are none.
+    const double none = rounded_rate * stiffest * fastest;
+    rates.force_scale = std::max(rates.force_scale, none);
+    if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;
   }
 

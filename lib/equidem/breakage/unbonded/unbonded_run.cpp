@@ -19,7 +19,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double on_limit = 1e-11;  // of the largest force: a contact is on a limit of its law
 constexpr double no_rate = 1e-9;    // of the largest rate of a force
 constexpr double ground = 1e-11;    // of the stiffest spring: holds what nothing resists
-constexpr double same = 1e-10;      // of the parameter: events at once
+constexpr double same_time = 1e-10;      // of the parameter: events at once
 
 std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
   std::vector<UnbondedLaw> laws(scene.assembly.contacts.size());
@@ -179,6 +179,9 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
   const Branches branches = find_branches(problem, solver_, answer, fresh);
   ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   checked_ = true;
+  if (!branches.all_tried) {
+    for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
+  }
   if (branches.others == 0) return;
   const Rates other = rates_of(contacts_, solver_, tangents_of(laws_, branches.other), problem.driving);
   solver_.set(tangents_of(laws_, answer.status));
@@ -292,7 +295,7 @@ UnbondedRun::Next UnbondedRun::next_event() const {
   bool first = true;
   double second = infinite;
   for (std::size_t c = 0; c < times.size(); ++c) {
-    if (times[c] > next.t * (1 + same)) {
+    if (times[c] > next.t * (1 + same_time)) {
       second = std::min(second, times[c]);
     } else if (first) {
       next.contact = c;

@@ -11,6 +11,7 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t contacts_at_once = 1 << 12;
+constexpr double rounded_motion = 1e-14;  // of motions, as springs take it for a force
 
 ContactForce operator+(const ContactForce& a, const ContactForce& b) {
   return {a.normal + b.normal, a.tangential + b.tangential};
@@ -31,7 +32,7 @@ double work_of(const ContactForce& from, const ContactForce& to, const ContactDe
 
 double ContactLedger::error() const {
   const double largest = std::max({std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
-  return largest > 0 ? std::abs(work - elastic - friction - released) / largest : 0;
+  return largest > negligible ? std::abs(work - elastic - friction - released) / largest : 0;
 }
 
 UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
@@ -90,7 +91,7 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
     residual[k] = unknowns_.held[k] != 0 ? 0 : from_outside - internal_[k];
     largest = std::max(largest, std::abs(residual[k]));
   }
-  force_scale_ = std::max(force_scale_, force);
+  force_scale_ = std::max({force_scale_, force, round_off_force()});
   residual_ = force_scale_ > 0 ? largest / force_scale_ : 0;
 }
 
@@ -165,6 +166,15 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   }
   kept_share_ = share_;
   ledger_.elastic = elastic_energy() - rest_energy_;
+  double farthest = 0;
+  for (const double u : motion_.high) farthest = std::max(farthest, std::abs(u));
+  ledger_.negligible = std::max(ledger_.negligible, round_off_force() * farthest);
+}
+
+double UnbondedState::round_off_force() const {
+  double farthest = 0;
+  for (const double u : motion_.high) farthest = std::max(farthest, std::abs(u));
+  return rounded_motion * springs_.largest() * farthest;
 }
 
 void UnbondedState::set_status(std::size_t c, ContactStatus status) {

@@ -25,6 +25,7 @@ struct ContactLedger {
   double elastic = 0;   ///< the energy of the springs now, less that at rest
   double friction = 0;  ///< lost by slip
   double released = 0;  ///< by bonds that broke
+  double negligible = 0;  ///< energy of forces that are round-off
 
   /// The sum that should vanish, over the largest of its terms.
   [[nodiscard]] double error() const;
@@ -82,6 +83,8 @@ class UnbondedState {
   void correct(bool by_motion, TangentSolver& solver);
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;
+  /// Forces that rounding of the motions may leave, N/m.
+  [[nodiscard]] double round_off_force() const;
 
   const Assembly& assembly_;
   const ContactSprings& springs_;
