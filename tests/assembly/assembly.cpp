@@ -101,6 +101,13 @@ TEST_CASE("what_breaks_an_assembly_is_named") {
        "the contact."},
       {[&](Assembly& a) { a.contact_kT[0] = infinity; },
        "contact 0, of discs 0 and 1, has kT = inf Pa (a tangential spring must be finite). Correct it."},
+      {[](Assembly& a) { a.contact_normal_force = {-1}; },
+       "0 tangential forces are given for 1 contacts (there must be one for each). Give 1 tangential forces, or none."},
+      {[](Assembly& a) {
+         a.contact_normal_force = {NAN};
+         a.contact_tangential_force = {0};
+       },
+       "contact 0, of discs 0 and 1, carries the forces nan and 0 N/m at rest (they must be finite). Correct them."},
       {[](Assembly& a) {
          a.period = Vec2{4, 0};
        },

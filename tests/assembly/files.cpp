@@ -78,6 +78,8 @@ void require_same(const Assembly& a, const Assembly& b) {
     CHECK((a.sections[d].area == b.sections[d].area && a.sections[d].polar_moment == b.sections[d].polar_moment));
   CHECK(a.contact_kN == b.contact_kN);
   CHECK(a.contact_kT == b.contact_kT);
+  CHECK(a.contact_normal_force == b.contact_normal_force);
+  CHECK(a.contact_tangential_force == b.contact_tangential_force);
   REQUIRE(a.groups.size() == b.groups.size());
   for (const auto& [name, discs] : a.groups) {
     CAPTURE(name);
@@ -98,6 +100,8 @@ TEST_CASE("files_read_back_to_the_same_bits") {
   for (std::size_t k = 0; k < a.contacts.size(); ++k) {
     a.contact_kN.push_back(1e9 / (1.0 + static_cast<double>(k)));
     a.contact_kT.push_back(-1e-300 * static_cast<double>(k));
+    a.contact_normal_force.push_back(-1.0 / (3.0 + static_cast<double>(k)));
+    a.contact_tangential_force.push_back(1e-7 / (7.0 + static_cast<double>(k)));
   }
   a.groups["chosen \"few\""] = {.discs = {3, 17}, .tributary_lengths = {}};
   a.groups["loaded"] = {.discs = {2, 5}, .tributary_lengths = {1e-3 / 3, 0.1}};

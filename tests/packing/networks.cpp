@@ -9,6 +9,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
+#include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
@@ -75,6 +76,72 @@ TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
   check(held.assembly);
   CHECK(held.assembly.contact_arms.empty() == shape.is_disc());
   CHECK(held.assembly.groups.at("walls").discs.size() + held.bodies.size() == held.assembly.size());
+}
+
+// Jammed bodies without weight hold each other: their forces balance on every body, moments too.
+TEST_CASE("the_forces_at_rest_of_jammed_bodies_balance_and_are_those_of_their_overlaps") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()));
+  const GrainPacking packing = pack(jammed(shape, 60));
+  const Assembly assembly = network_of(packing, {.springs = usual});
+  check(assembly);
+  const RestBalance balance = balance_at_rest(assembly);
+  CAPTURE(to_string(shape.kind), balance.loaded, balance.mean_force, balance.relative, balance.disc_of_force,
+          balance.largest_force, balance.largest_moment);
+  CHECK(balance.loaded > 60);
+  CHECK(balance.mean_force == Approx(1e-3 * usual.kN * assembly.mean_radius()).epsilon(0.6));
+  CHECK(balance.relative < 1e-4);
+  const std::vector<PackingContact> contacts = contacts_of(packing);
+  REQUIRE(contacts.size() == assembly.contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    CHECK(force_at_rest(assembly, c).normal == -usual.kN * std::max(contacts[c].overlap, 0.0));
+    CHECK(force_at_rest(assembly, c).tangential == 0);
+  }
+  // Without springs there is no force to tell, and what only lies apart carries none.
+  CHECK_FALSE(carries_forces(network_of(packing, {})));
+  PackingOptions loose = jammed(shape, 30);
+  loose.method = PackingMethod::rejection;
+  loose.box.size = 2.0 * loose.box.size;
+  CHECK_FALSE(carries_forces(network_of(pack(loose), {.springs = usual, .gap_tolerance = 0.1})));
+}
+
+// What the contacts lack on a body that fell is its weight, and what they exert on the walls is the weight of all.
+TEST_CASE("the_forces_at_rest_of_bodies_that_fell_balance_their_weight") {
+  const PackingShape shape = GENERATE(from_range(networked_shapes()), PackingShape{.kind = Kind::bonded_pair});
+  PackingOptions options = falling_soil(30, 0.12);
+  options.shape = shape;
+  const GrainPacking packing = pack(options);
+  const HeldNetwork held = held_network_of(packing, {.springs = options.settling.springs});
+  const Assembly& assembly = held.assembly;
+  check(assembly);
+  std::vector<Vec2> forces(assembly.size());
+  std::vector<double> moments(assembly.size());
+  double largest_tangential = 0, mean = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const ContactFrame frame = frame_of(assembly, c);
+    const ContactForce force = force_at_rest(assembly, c);
+    const auto i = static_cast<std::size_t>(assembly.contacts[c].i),
+               j = static_cast<std::size_t>(assembly.contacts[c].j);
+    forces[i] += force_on_i(frame, force);
+    forces[j] -= force_on_i(frame, force);
+    moments[i] += moment_on_i(frame, force);
+    moments[j] += moment_on_j(frame, force);
+    CHECK(force.normal <= 0);
+    largest_tangential = std::max(largest_tangential, std::abs(force.tangential));
+    mean += std::abs(force.normal) / static_cast<double>(assembly.contacts.size());
+  }
+  CHECK(largest_tangential > 0.01 * mean);
+  const std::vector<Inertia> inertia = inertia_of(assembly, options.settling.density, Body::disc);
+  for (std::size_t k = 0; k < held.bodies.size(); ++k) {
+    const Vec2 lack = forces[k] - Vec2{0, inertia[k].mass * options.settling.gravity};
+    CAPTURE(to_string(shape.kind), k, lack.x, lack.y, moments[k], mean);
+    CHECK(norm(lack) < 1e-4 * mean);
+    CHECK(std::abs(moments[k]) < 1e-4 * mean * assembly.radii[k]);
+  }
+  // Told without the walls, whose mirrors lack all that they hold up.
+  const RestBalance balance = balance_at_rest(assembly, assembly.groups.at("walls").discs);
+  CHECK(balance.disc_of_force < static_cast<std::int32_t>(held.bodies.size()));
+  CHECK(balance.largest_force ==
+        Approx(options.settling.gravity * std::ranges::max(inertia, {}, &Inertia::mass).mass).epsilon(0.3));
 }
 
 TEST_CASE("pairs_tied_by_dashpots_are_confirmed_as_rigid_ones") {

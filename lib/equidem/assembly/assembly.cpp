@@ -173,19 +173,49 @@ void check_bodies(const Assembly& assembly) {
   }
 }
 
+/// Two lists of numbers, each empty or as long as that of the contacts; check(c, first, second) for each contact.
+template <typename Check>
+void check_pairs(const Assembly& assembly, const char* first, const std::vector<double>& firsts, const char* second,
+                 const std::vector<double>& seconds, const Check& check) {
+  if (firsts.empty() && seconds.empty()) return;
+  check_count(first, firsts.size(), "contacts", assembly.contacts.size());
+  check_count(second, seconds.size(), "contacts", assembly.contacts.size());
+  check_each(assembly.contacts.size(), [&](std::size_t c) { check(c, firsts[c], seconds[c]); });
+}
+
 void check_strengths(const Assembly& assembly) {
-  const std::size_t m = assembly.contacts.size();
-  if (assembly.contact_tension.empty() && assembly.contact_shear.empty()) return;
-  check_count("tensile strengths", assembly.contact_tension.size(), "contacts", m);
-  check_count("shear strengths", assembly.contact_shear.size(), "contacts", m);
-  check_each(m, [&](std::size_t c) {
-    const double tension = assembly.contact_tension[c], shear = assembly.contact_shear[c];
-    if (!(tension >= 0 && shear >= 0 && std::isfinite(tension + shear))) {
-      bad_input(fmt::format("{}, has the strengths {} and {} N/m", described(assembly.contacts[c], c), tension, shear),
-                "a strength must be finite and not negative",
-                "Correct them; a contact that never breaks has large ones");
-    }
-  });
+  check_pairs(
+      assembly, "tensile strengths", assembly.contact_tension, "shear strengths", assembly.contact_shear,
+      [&](std::size_t c, double tension, double shear) {
+        if (tension >= 0 && shear >= 0 && std::isfinite(tension + shear)) return;
+        bad_input(
+            fmt::format("{}, has the strengths {} and {} N/m", described(assembly.contacts[c], c), tension, shear),
+            "a strength must be finite and not negative", "Correct them; a contact that never breaks has large ones");
+      });
+}
+
+void check_forces_at_rest(const Assembly& assembly) {
+  check_pairs(assembly, "normal forces", assembly.contact_normal_force, "tangential forces",
+              assembly.contact_tangential_force, [&](std::size_t c, double normal, double tangential) {
+                if (std::isfinite(normal + tangential)) return;
+                bad_input(fmt::format("{}, carries the forces {} and {} N/m at rest",
+                                      described(assembly.contacts[c], c), normal, tangential),
+                          "they must be finite", "Correct them");
+              });
+}
+
+void check_springs(const Assembly& assembly) {
+  check_pairs(assembly, "normal springs", assembly.contact_kN, "tangential springs", assembly.contact_kT,
+              [&](std::size_t c, double kN, double kT) {
+                if (!is_positive(kN)) {
+                  bad_input(fmt::format("{}, has kN = {} Pa", described(assembly.contacts[c], c), kN),
+                            "a normal spring must be positive and finite", "Correct it or remove the contact");
+                }
+                if (!std::isfinite(kT)) {
+                  bad_input(fmt::format("{}, has kT = {} Pa", described(assembly.contacts[c], c), kT),
+                            "a tangential spring must be finite", "Correct it");
+                }
+              });
 }
 
 void check_contacts(const Assembly& assembly) {
@@ -206,19 +236,8 @@ void check_contacts(const Assembly& assembly) {
     });
   }
   check_strengths(assembly);
-  if (assembly.contact_kN.empty() && assembly.contact_kT.empty()) return;
-  check_count("normal springs", assembly.contact_kN.size(), "contacts", m);
-  check_count("tangential springs", assembly.contact_kT.size(), "contacts", m);
-  for (std::size_t c = 0; c < m; ++c) {
-    if (!is_positive(assembly.contact_kN[c])) {
-      bad_input(fmt::format("{}, has kN = {} Pa", described(assembly.contacts[c], c), assembly.contact_kN[c]),
-                "a normal spring must be positive and finite", "Correct it or remove the contact");
-    }
-    if (!std::isfinite(assembly.contact_kT[c])) {
-      bad_input(fmt::format("{}, has kT = {} Pa", described(assembly.contacts[c], c), assembly.contact_kT[c]),
-                "a tangential spring must be finite", "Correct it");
-    }
-  }
+  check_forces_at_rest(assembly);
+  check_springs(assembly);
 }
 
 void check_group(const Assembly& assembly, const std::string& name, const DiscGroup& discs) {

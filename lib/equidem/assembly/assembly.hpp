@@ -69,12 +69,15 @@ struct Assembly {
       box;  ///< free: the region that the cells fill; none: the smallest rectangle that holds all discs
   std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
   std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
-  std::vector<ContactArms> contact_arms;    ///< per contact; empty: all lie on the lines of centres, n = l/|l|
-  std::vector<BodySection> sections;        ///< per body; empty: discs of these radii
-  std::vector<double> contact_kN;           ///< Pa, per contact: overrides the springs of the case; empty: none given
-  std::vector<double> contact_kT;           ///< Pa, likewise
-  std::vector<double> contact_tension;      ///< N/m, per contact: its strength in tension; empty: none given
-  std::vector<double> contact_shear;        ///< N/m, likewise in shear
+  std::vector<ContactArms> contact_arms;  ///< per contact; empty: all lie on the lines of centres, n = l/|l|
+  std::vector<BodySection> sections;      ///< per body; empty: discs of these radii
+  std::vector<double> contact_kN;         ///< Pa, per contact: overrides the springs of the case; empty: none given
+  std::vector<double> contact_kT;         ///< Pa, likewise
+  std::vector<double> contact_tension;    ///< N/m, per contact: its strength in tension; empty: none given
+  std::vector<double> contact_shear;      ///< N/m, likewise in shear
+  /// N/m, per contact: the force that it carries at rest, before any motion, on i along n (tension positive) and along
+  /// s = (-n_y, n_x); empty: contacts are unstressed
+  std::vector<double> contact_normal_force, contact_tangential_force;
   std::map<std::string, DiscGroup> groups;  ///< left, right, bottom, top, bottom_left, ... and the user's own
 
   [[nodiscard]] std::size_t size() const { return centres.size(); }
@@ -117,7 +120,7 @@ std::string length_limits();
 /// Check everything that later parts rely on: counts agree, radii, periods and distances of discs in contact are
 /// measurable, contacts join two existing discs (or a disc and another image of itself) with lever arms that are not
 /// negative; where contacts have arms of their own: unit normals, and arms that meet in one point to 1e-9 of the
-/// distance.
+/// distance; forces at rest are finite.
 /// \throws Error (bad_input) naming the first disc or contact that breaks this
 void check(const Assembly& assembly);
 

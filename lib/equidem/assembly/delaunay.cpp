@@ -112,6 +112,8 @@ void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.contact_kT.clear();
   assembly.contact_tension.clear();
   assembly.contact_shear.clear();
+  assembly.contact_normal_force.clear();
+  assembly.contact_tangential_force.clear();
   set_midpoints(assembly);
   take_sides(assembly, cells);
 }

@@ -32,7 +32,7 @@ using Json = nlohmann::json;
 
 const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",     "discs",
                                              "sections", "contacts",  "levers", "normals", "offsets",
-                                             "springs",  "strengths", "groups"};
+                                             "springs",  "strengths", "forces", "groups"};
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {
@@ -214,6 +214,10 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
   read_pairs(file, "strengths", "f_t, f_s", "contact", contacts, [&](std::size_t, double tension, double shear) {
     assembly.contact_tension.push_back(tension);
     assembly.contact_shear.push_back(shear);
+  });
+  read_pairs(file, "forces", "N, T", "contact", contacts, [&](std::size_t, double normal, double tangential) {
+    assembly.contact_normal_force.push_back(normal);
+    assembly.contact_tangential_force.push_back(tangential);
   });
   refuse_repeated_contacts(assembly);
 }

@@ -39,14 +39,14 @@ struct AssemblyFileOptions {
 /// Read an assembly, or copy the Given<Assembly> of that name. As JSON: `contacts` missing: those of touching_discs, at
 /// least one. The contact point is the midpoint of the branch unless "levers": [[r_i, r_j], ...] is given (see
 /// Contact); off the line of centres "normals": [[n_x, n_y], ...] and "offsets": [[o_i, o_j], ...] give its place (see
-/// ContactArms); "springs": [[kN, kT], ...] per contact, "strengths": [[f_t, f_s], ...] in N/m likewise; "sections":
-/// [[area, polar moment], ...] in m² and m⁴ of bodies that are no discs, each then with the radius of the disc of equal
-/// area; "box": [[x, y], [x, y]], the lower left and the upper right corner of what the cells of a free assembly fill,
-/// else the smallest rectangle that holds all discs; "groups": {"name": [disc, ...]}. Sides (left, right, bottom, top)
-/// and corners of a free assembly are added where the file gives none by that name: the discs whose cells touch the
-/// side of that rectangle.
-/// A LAMMPS data file or dump, a text export of YADE and a table with the columns x, y and radius are recognised by
-/// their first lines: particle_rows.hpp.
+/// ContactArms); "springs": [[kN, kT], ...] per contact, "strengths": [[f_t, f_s], ...] in N/m likewise, "forces":
+/// [[N, T], ...] in N/m those that contacts carry at rest; "sections": [[area, polar moment], ...] in m² and m⁴ of
+/// bodies that are no discs, each then with the radius of the disc of equal area; "box": [[x, y], [x, y]], the lower
+/// left and the upper right corner of what the cells of a free assembly fill, else the smallest rectangle that holds
+/// all discs; "groups": {"name": [disc, ...]}. Sides (left, right, bottom, top) and corners of a free assembly are
+/// added where the file gives none by that name: the discs whose cells touch the side of that rectangle. A LAMMPS data
+/// file or dump, a text export of YADE and a table with the columns x, y and radius are recognised by their first
+/// lines: particle_rows.hpp.
 /// \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated file, missing or
 ///         unknown key,
 ///         wrong type, absent disc, non-finite number, ...; a gap tolerance above 0 beside contacts

@@ -110,6 +110,8 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   opened.contact_kT.clear();
   opened.contact_tension.clear();
   opened.contact_shear.clear();
+  opened.contact_normal_force.clear();
+  opened.contact_tangential_force.clear();
   std::vector<Vec2> a, steps;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];

@@ -10,6 +10,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/packing/carried_forces.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/outline.hpp"
 #include "equidem/statics/equilibrium.hpp"
@@ -80,10 +81,20 @@ Rectangle outline_of_all(const GrainPacking& packing) {
   return box;
 }
 
-/// The contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
-std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing, double gap_tolerance) {
-  std::vector<PackingContact> contacts = contacts_of(packing, gap_tolerance);
-  for (PackingContact& contact : contacts) {
+/// Contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
+struct BodyContacts {
+  std::vector<PackingContact> places;
+  std::vector<ContactForce> forces;  ///< of each place; empty: none are known
+
+  [[nodiscard]] const ContactForce* force(std::size_t contact) const {
+    return forces.empty() ? nullptr : &forces[contact];
+  }
+};
+
+BodyContacts contacts_of_bodies(const GrainPacking& packing, const NetworkOptions& options) {
+  BodyContacts contacts{.places = contacts_of(packing, options.gap_tolerance), .forces = {}};
+  contacts.forces = carried_forces(packing, contacts.places, options.springs);
+  for (PackingContact& contact : contacts.places) {
     const auto i = static_cast<std::size_t>(contact.i);
     contact.arm_i += place_in_body(packing, i);
     contact.i = static_cast<std::int32_t>(packing.body_of(i));
@@ -93,8 +104,9 @@ std::vector<PackingContact> contacts_of_bodies(const GrainPacking& packing, doub
 }
 
 /// \param found between bodies of the assembly
-void add_contact(PackingShape::Kind shape, const PackingContact& found, const std::optional<SpringConstants>& springs,
-                 Assembly& assembly) {
+/// \param force that it carries at rest; null: not known
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const ContactForce* force,
+                 const std::optional<SpringConstants>& springs, Assembly& assembly) {
   Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
   const Vec2 branch = assembly.branch(contact);
   if (shape == PackingShape::Kind::disc) {
@@ -110,6 +122,10 @@ void add_contact(PackingShape::Kind shape, const PackingContact& found, const st
     assembly.contact_arms.push_back({n, offset(found.arm_i), offset(rest)});
   }
   assembly.contacts.push_back(contact);
+  if (force != nullptr) {
+    assembly.contact_normal_force.push_back(force->normal);
+    assembly.contact_tangential_force.push_back(force->tangential);
+  }
   if (!springs) return;
   assembly.contact_kN.push_back(springs->kN);
   assembly.contact_kT.push_back(springs->kT);
@@ -163,14 +179,17 @@ Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) 
   } else if (packing.shape != PackingShape::Kind::disc) {
     assembly.box = outline_of_all(packing);
   }
-  for (const PackingContact& found : contacts_of_bodies(packing, options.gap_tolerance))
-    if (found.j >= 0) add_contact(packing.shape, found, options.springs, assembly);
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    if (contacts.places[c].j < 0) continue;
+    add_contact(packing.shape, contacts.places[c], contacts.force(c), options.springs, assembly);
+  }
   return assembly;
 }
 
 HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
-  const auto contacts = contacts_of_bodies(packing, options.gap_tolerance);
-  const std::vector<char> held = held_by_two(contacts, packing.size());
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  const std::vector<char> held = held_by_two(contacts.places, packing.size());
   HeldNetwork result;
   Assembly& assembly = result.assembly;
   assembly.kind = "packing";
@@ -184,7 +203,8 @@ HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& o
   DiscGroup walls;
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>
       mirrors;  // of a body at a wall, which it may touch twice
-  for (PackingContact found : contacts) {
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    PackingContact found = contacts.places[c];
     const auto i = static_cast<std::size_t>(found.i);
     if (!held[i] || (found.j >= 0 && !held[static_cast<std::size_t>(found.j)])) continue;
     if (found.j >= 0) {
@@ -198,7 +218,7 @@ HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& o
       found.j = mirror->second;
     }
     found.i = number[i];
-    add_contact(packing.shape, found, options.springs, assembly);
+    add_contact(packing.shape, found, contacts.force(c), options.springs, assembly);
   }
   if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;

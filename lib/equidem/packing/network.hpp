@@ -6,8 +6,8 @@
 /// proportion to the radii. Of ellipses and clumps each contact has its normal and its point (ContactArms), each body
 /// its section (BodySection) and the radius of the disc of equal area; clumps may touch in several places, with a
 /// spring in each. A pair tied by dashpots counts as one rigid body: at rest dashpots resist nothing, and without them
-/// the pair would fall apart, while over any time in which bodies move little they hold it. Springs are those given,
-/// unstressed: what the forces at rest add to the stiffness as contacts turn is left out.
+/// the pair would fall apart, while over any time in which bodies move little they hold it. Springs are those given;
+/// the forces at rest, where the packing carries some (carried_forces.hpp), go with the contacts.
 #pragma once
 
 #include <cstdint>

@@ -66,6 +66,7 @@ struct GrainPacking {
   std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
   std::vector<double> radii;     ///< of each body (PackingShape), m
   bool complete = true;          ///< all wanted bodies are there, in the wanted sizes
+  bool jammed = false;    ///< the overlaps, with equal springs, hold the bodies in balance
   double seconds = 0;
   std::int64_t work = 0;  ///< attempts, sweeps, evaluations of all contacts or time steps: as the method counts
   // falling

@@ -344,8 +344,9 @@ class Pruning {
     take(whole.cell_areas, result.discs, rest.cell_areas);
     take(whole.contact_arms, result.contacts, rest.contact_arms);
     take(whole.sections, result.discs, rest.sections);
-    for (const auto numbers : {&Assembly::facet_lengths, &Assembly::contact_kN, &Assembly::contact_kT,
-                               &Assembly::contact_tension, &Assembly::contact_shear}) {
+    for (const auto numbers :
+         {&Assembly::facet_lengths, &Assembly::contact_kN, &Assembly::contact_kT, &Assembly::contact_tension,
+          &Assembly::contact_shear, &Assembly::contact_normal_force, &Assembly::contact_tangential_force}) {
       take(whole.*numbers, result.contacts, rest.*numbers);
     }
     for (const auto& [name, group] : whole.groups) {

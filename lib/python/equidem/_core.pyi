@@ -22,6 +22,7 @@ class Assembly:
     normals: Floats
     cell_areas: Floats
     facet_lengths: Floats
+    forces: Floats
     period: tuple[float, float] | None
     area: float
     solid_fraction: float
@@ -29,6 +30,7 @@ class Assembly:
     groups: dict[str, Integers]
     def __len__(self) -> int: ...
     def with_springs(self, springs: Floats) -> Assembly: ...
+    def with_forces(self, forces: Floats) -> Assembly: ...
     def with_strengths(self, strengths: Floats) -> Assembly: ...
 
 def from_arrays(centres: Floats, radii: Floats, contacts: Integers | None, levers: Floats | None,

@@ -100,6 +100,23 @@ class Assembly:
         rows = floats("strengths", strengths, (len(self.contacts), 2))
         return Assembly._of(self._native.with_strengths(rows))
 
+    def with_forces(self, forces: npt.ArrayLike) -> Assembly:
+        """The same assembly whose contacts carry forces at rest.
+
+        Parameters
+        ----------
+        forces : array (m, 2)
+            N/m, of each contact on i: along the normal from i to j (tension positive) and along the tangent, the normal
+            turned by 90 degrees counter-clockwise.
+
+        Raises
+        ------
+        BadInput
+            Another shape, or a force that is not finite.
+        """
+        rows = floats("forces", forces, (len(self.contacts), 2))
+        return Assembly._of(self._native.with_forces(rows))
+
     @property
     def kind(self) -> str:
         """"hexagonal", "square", "delaunay", "arrays", "file", ..."""
@@ -144,6 +161,12 @@ class Assembly:
     def facet_lengths(self) -> Floats:
         """(m,), m: the edge that the cells of both discs share; empty where unknown."""
         return self._native.facet_lengths
+
+    @property
+    def forces(self) -> Floats:
+        """(m, 2), N/m: normal (tension positive) and tangential force that each contact carries at rest; (0, 2) where
+        none are given; computed at each call."""
+        return self._native.forces
 
     @property
     def cell(self) -> tuple[float, float] | None:

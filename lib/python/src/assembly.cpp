@@ -80,27 +80,27 @@ Shared from_text(std::string text) {
   });
 }
 
-Shared with_springs(const Assembly& assembly, const Floats& springs) {
+/// The assembly with the columns of `rows`, one row for each contact, in two of its lists.
+template <std::vector<double> Assembly::*first, std::vector<double> Assembly::*second>
+Shared with_pairs(const Assembly& assembly, const Floats& rows) {
   Assembly result = assembly;
-  result.contact_kN.clear();
-  result.contact_kT.clear();
-  for (py::ssize_t c = 0; c < springs.shape(0); ++c) {
-    result.contact_kN.push_back(springs.at(c, 0));
-    result.contact_kT.push_back(springs.at(c, 1));
-  }
-  return shared(std::move(result));
-}
-
-Shared with_strengths(const Assembly& assembly, const Floats& strengths) {
-  Assembly result = assembly;
-  result.contact_tension.clear();
-  result.contact_shear.clear();
-  for (py::ssize_t c = 0; c < strengths.shape(0); ++c) {
-    result.contact_tension.push_back(strengths.at(c, 0));
-    result.contact_shear.push_back(strengths.at(c, 1));
+  (result.*first).clear();
+  (result.*second).clear();
+  for (py::ssize_t c = 0; c < rows.shape(0); ++c) {
+    (result.*first).push_back(rows.at(c, 0));
+    (result.*second).push_back(rows.at(c, 1));
   }
   check(result);
   return shared(std::move(result));
+}
+
+/// (m, 2): the forces at rest, N/m, or (0, 2).
+py::array forces_of(const Assembly& assembly) {
+  std::vector<Vec2> forces(assembly.contact_normal_force.size());
+  for (std::size_t c = 0; c < forces.size(); ++c)
+    forces[c] = {assembly.contact_normal_force[c], assembly.contact_tangential_force[c]};
+  const auto owner = std::make_shared<const std::vector<Vec2>>(std::move(forces));
+  return columns_of(owner, *owner, &Vec2::x, 2);
 }
 
 py::array normals_of(const Assembly& assembly) {
@@ -147,8 +147,10 @@ void bind_assembly(py::module_& module) {
       .def_property_readonly("solid_fraction", &Assembly::solid_fraction)
       .def_property_readonly("coordination_number", &Assembly::coordination_number)
       .def_property_readonly("groups", groups_of)
-      .def("with_springs", with_springs)
-      .def("with_strengths", with_strengths)
+      .def_property_readonly("forces", forces_of)
+      .def("with_springs", with_pairs<&Assembly::contact_kN, &Assembly::contact_kT>)
+      .def("with_strengths", with_pairs<&Assembly::contact_tension, &Assembly::contact_shear>)
+      .def("with_forces", with_pairs<&Assembly::contact_normal_force, &Assembly::contact_tangential_force>)
       .def(py::pickle([](const Assembly& a) { return py::make_tuple(json_of(a)); },
                       [](const py::tuple& state) { return from_text(state[0].cast<std::string>()); }));
 

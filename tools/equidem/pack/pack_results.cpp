@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
@@ -86,6 +87,18 @@ void add_bonds(Results& out, const GrainPacking& packing, const Assembly& networ
     if (count.gap_tolerance > 0)
       others.push_back(fmt::format("{}: {} (z = {:.3g})", count.gap_tolerance, count.contacts, count.coordination));
   out.line("", "with other values of it: " + joined(others));
+}
+
+/// The forces that go with the contacts of the assembly, and what walls and weight balance besides.
+void add_forces_at_rest(Results& out, const Assembly& network) {
+  const RestBalance balance = balance_at_rest(network);
+  out.set("forces_at_rest/contacts", balance.loaded);
+  if (balance.loaded == 0) return;
+  out.line("forces at rest")
+      .add("", "of", balance.loaded, "contact", {Shown::count})
+      .add("forces_at_rest/mean", "", balance.mean_force, "N/m in the mean", {.digits = 3})
+      .add("forces_at_rest/imbalance", "; contacts of one body lack", balance.relative,
+           "of it at most without walls and weight", {.digits = 2});
 }
 
 /// \param density kg/m³, of the bodies
@@ -216,6 +229,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   if (std::ranges::all_of(packing.grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; }))
     add_largest_void(out, network);
   add_bonds(out, packing, network);
+  add_forces_at_rest(out, network);
   add_density(out, resolved, density, noun);
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
                           {.digits = 3});

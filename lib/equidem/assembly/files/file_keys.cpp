@@ -73,7 +73,7 @@ void check_key(const std::string& key, const std::vector<std::string>& known) {
 
 void check_keys_together(const std::function<bool(const char*)>& has, double gap_tolerance) {
   if (!has("contacts")) {
-    for (const char* key : {"levers", "normals", "offsets", "springs", "strengths", "facet_lengths"}) {
+    for (const char* key : {"levers", "normals", "offsets", "springs", "strengths", "forces", "facet_lengths"}) {
       if (!has(key)) continue;
       bad_input_at(key, fmt::format("there are {} but no contacts", key), "they are given in the order of the contacts",
                    "Add \"contacts\"");

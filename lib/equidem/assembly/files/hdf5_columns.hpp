@@ -18,9 +18,10 @@ inline constexpr Column cell = {"cell", 0, "m"}, box = {"box", 2, "m"}, discs = 
                         sections = {"sections", 2, "m2, m4"}, contacts = {"contacts", 4, ""},
                         levers = {"levers", 2, "m"}, normals = {"normals", 2, "1"}, offsets = {"offsets", 2, "m"},
                         springs = {"springs", 2, "Pa"}, strengths = {"strengths", 2, "N/m"},
-                        cell_areas = {"cell_areas", 0, "m2"}, facet_lengths = {"facet_lengths", 0, "m"};
-inline constexpr Column all_columns[] = {cell,    box,     discs,   sections,  contacts,   levers,
-                                         normals, offsets, springs, strengths, cell_areas, facet_lengths};
+                        forces = {"forces", 2, "N/m"}, cell_areas = {"cell_areas", 0, "m2"},
+                        facet_lengths = {"facet_lengths", 0, "m"};
+inline constexpr Column all_columns[] = {cell,    box,     discs,     sections, contacts,   levers,       normals,
+                                         offsets, springs, strengths, forces,   cell_areas, facet_lengths};
 
 /// Rows that are read or written at once: a piece of some hundred KB.
 inline constexpr std::size_t rows_at_once = 1 << 16;

@@ -200,6 +200,10 @@ class Reading {
       assembly_.contact_tension.push_back(row[0]);
       assembly_.contact_shear.push_back(row[1]);
     });
+    read(forces, "contact", count, [&](std::size_t, auto row) {
+      assembly_.contact_normal_force.push_back(row[0]);
+      assembly_.contact_tangential_force.push_back(row[1]);
+    });
     read(facet_lengths, "contact", count, [&](std::size_t, auto row) { assembly_.facet_lengths.push_back(row[0]); });
   }
 

@@ -69,6 +69,11 @@ std::string json_of(const Assembly& assembly) {
     append_list(text, "strengths", contacts.size(),
                 [&](std::size_t k) { return pair_of(assembly.contact_tension[k], assembly.contact_shear[k]); });
   }
+  if (!assembly.contact_normal_force.empty()) {
+    append_list(text, "forces", contacts.size(), [&](std::size_t k) {
+      return pair_of(assembly.contact_normal_force[k], assembly.contact_tangential_force[k]);
+    });
+  }
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {

@@ -124,6 +124,11 @@ class Writing {
       add<double>(strengths, count,
                   [&a](std::size_t k, double* to) { set(to, a.contact_tension[k], a.contact_shear[k]); });
     }
+    if (!a.contact_normal_force.empty()) {
+      add<double>(forces, count, [&a](std::size_t k, double* to) {
+        set(to, a.contact_normal_force[k], a.contact_tangential_force[k]);
+      });
+    }
     if (!a.facet_lengths.empty() || (count == 0 && !a.cell_areas.empty()))
       add<double>(facet_lengths, count, [&a](std::size_t k, double* to) { *to = a.facet_lengths[k]; });
   }

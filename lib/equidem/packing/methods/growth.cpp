@@ -176,6 +176,7 @@ void fill_by_growth(const PackingOptions& options, GrainPacking& packing) {
   if (options.as_dense_as_possible) {
     grow_to_jamming(options, growth);
     packing.complete = false;
+    packing.jammed = true;
   } else {
     grow_to_size(options, growth);
   }
