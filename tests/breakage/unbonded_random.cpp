@@ -91,7 +91,7 @@ DrawnPacking draw_packing(std::uint64_t seed) {
 TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense_matrices_says") {
   std::map<std::string, int> seen;
   std::int64_t compared = 0, ambiguous = 0, unknown = 0, not_found = 0, loose = 0;
-  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+  for (std::uint64_t seed = getenv("SEED") ? std::stoul(getenv("SEED")) : 1; seed <= (getenv("SEED") ? std::stoul(getenv("SEED")) : 120); ++seed) {
     const DrawnPacking d = draw_packing(seed);
     CAPTURE(d.name);
     Unbonded ours(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
@@ -124,9 +124,10 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
         break;
       CAPTURE(k, dense.events[k].lambda, event.lambda, event.ties, to_string(event.mode),
               to_string(dense.events[k].mode), event.contact, dense.events[k].contact, found);
-      REQUIRE(event.lambda == Approx(dense.events[k].lambda).epsilon(1e-8).margin(1e-9));
-      REQUIRE(event.contact == dense.events[k].contact);
-      REQUIRE(event.mode == dense.events[k].mode);
+      CHECK(event.lambda == Approx(dense.events[k].lambda).epsilon(1e-8).margin(1e-9));
+      CHECK(event.contact == dense.events[k].contact);
+      CHECK(event.mode == dense.events[k].mode);
+      if (event.contact != dense.events[k].contact || event.mode != dense.events[k].mode) break;
       ++seen[to_string(event.mode)];
       ++compared;
     }

@@ -112,7 +112,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
 /// The contacts on limits whose rates ask for another status.
 std::vector<std::pair<std::size_t, ContactStatus>> inconsistent(const RateProblem& problem, const RateAnswer& answer) {
   std::vector<std::pair<std::size_t, ContactStatus>> wrong;
-  const double none = negligible_rate(problem, answer.rates);
+  const double none = answer.rates.negligible;
   for (const LimitContact& at : problem.limits) {
     const ContactStatus present = answer.status[at.contact];
     const ContactStatus wanted =
@@ -154,9 +154,9 @@ std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::
 
 double negligible_rate(const RateProblem& problem, const Rates& rates) {
   double largest = 0;
-  for (const LimitContact& at : problem.limits) {
-    const ContactDeformation& d = rates.deformation[at.contact];
-    const SpringConstants& k = problem.laws[at.contact].k;
+  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
+    const ContactDeformation& d = rates.deformation[c];
+    const SpringConstants& k = problem.laws[c].k;
     largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
   }
   return 1e-9 * rates.force_scale + 1e-11 * largest;
@@ -179,6 +179,7 @@ RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::v
   const std::size_t most = 60 + 20 * problem.limits.size();
   for (std::size_t k = 0; k < most; ++k) {
     answer.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, answer.status), problem.driving);
+    answer.rates.negligible = negligible_rate(problem, answer.rates);
     const auto wrong = inconsistent(problem, answer);
     if (wrong.empty()) {
       answer.agrees = true;

@@ -29,6 +29,7 @@ struct Rates {
   std::vector<ContactDeformation> deformation;  ///< per contact, that of a mean gradient included
   double lambda = 0;
   double force_scale = 0;  ///< the largest rate of a contact force or load
+  double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
   bool balanced = false;   ///< false: loads drive a motion that nothing resists
 };
 
@@ -52,7 +53,7 @@ struct RateAnswer {
 
 std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
 
-/// Rates of force below are round-off.
+/// Rates::negligible of these rates.
 double negligible_rate(const RateProblem& problem, const Rates& rates);
 
 /// Whether the rates ask for no other status of a contact on a limit.

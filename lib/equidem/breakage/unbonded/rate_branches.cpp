@@ -11,7 +11,7 @@ namespace {
 
 constexpr double same_rates = 1e-6;        // relative, of answers that differ by round-off
 constexpr double singular = 1e-10;         // least pivot of a combination that has rates at all
-constexpr std::int64_t most_solved = 512;  // combinations with a solution of the whole network each
+constexpr std::size_t most_pivoted = 400;  // contacts on limits, of complementary pivots
 
 std::vector<ContactStatus> choices_of(const RateProblem& problem, const LimitContact& at) {
   using enum ContactStatus;
@@ -83,6 +83,13 @@ std::vector<double> compliance(const RateProblem& problem, const TangentSolver& 
   return c;
 }
 
+/// An opening or a slip of a contact on a limit.
+struct Multiplier {
+  std::size_t place;  // in RateProblem::limits
+  bool opens;
+  double sign;  // of the slip
+};
+
 }  // namespace
 
 Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
@@ -112,7 +119,7 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
     d0[2 * p + 1] = answer.rates.deformation[contact].tangential;
     largest = std::max({largest, std::abs(d0[2 * p]), std::abs(d0[2 * p + 1])});
   }
-  const double none = negligible_rate(problem, answer.rates);
+  const double none = answer.rates.negligible;
   std::vector<double> system(n * n), d;
   std::vector<std::size_t> pivots;
   do {
@@ -152,19 +159,64 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
   return result;
 }
 
-std::optional<RateAnswer> try_all(const RateProblem& problem, TangentSolver& solver,
-                                  const std::vector<ContactStatus>& status) {
-  Combinations all(problem, {problem.limits.begin(), problem.limits.end()});
-  if (all.count() > static_cast<double>(most_solved)) return {};
-  do {
-    RateAnswer answer;
-    answer.status = status;
-    for (std::size_t k = 0; k < problem.limits.size(); ++k) answer.status[problem.limits[k].contact] = all.of(k);
-    answer.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, answer.status), problem.driving);
-    answer.agrees = agree(problem, answer);
-    if (answer.agrees && answer.rates.balanced) return answer;
-  } while (all.next());
-  return {};
+std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
+                                      std::vector<ContactStatus> status) {
+  const std::size_t contacts = problem.limits.size();
+  if (contacts == 0 || contacts > most_pivoted) return {};
+  for (const LimitContact& at : problem.limits) status[at.contact] = ContactStatus::stuck;
+  const Rates base = rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving);
+  const std::vector<double> c = compliance(problem, solver);
+  std::vector<Multiplier> unknowns;
+  for (std::size_t p = 0; p < contacts; ++p) {
+    const LimitContact& at = problem.limits[p];
+    if (at.limit == OnLimit::apex) unknowns.push_back({p, true, 1});
+    if (!problem.laws[at.contact].rough()) continue;
+    if (at.limit == OnLimit::friction) unknowns.push_back({p, false, at.direction});
+    if (at.limit == OnLimit::apex) unknowns.push_back({p, false, 1}), unknowns.push_back({p, false, -1});
+  }
+  const auto law = [&](const Multiplier& m) -> const UnbondedLaw& {
+    return problem.laws[problem.limits[m.place].contact];
+  };
+  // w of a multiplier where the contact deforms by d beside its own eigenstrain.
+  const auto slack = [&](const Multiplier& m, double normal, double tangential) {
+    const UnbondedLaw& l = law(m);
+    const double n = l.k.kN * normal, t = l.k.kT * tangential;
+    return m.opens ? -n : -(m.sign * t + l.friction * n);
+  };
+  const std::size_t n = unknowns.size(), width = 2 * contacts;
+  std::vector<double> matrix(n * n), q(n);
+  double stiffest = 0, unit = 0;
+  for (std::size_t r = 0; r < n; ++r) {
+    const ContactDeformation& d = base.deformation[problem.limits[unknowns[r].place].contact];
+    q[r] = slack(unknowns[r], d.normal, d.tangential);
+    unit = std::max(unit, std::abs(q[r]));
+    stiffest = std::max(stiffest, law(unknowns[r]).k.kN);
+  }
+  if (unit == 0) return {};
+  for (std::size_t k = 0; k < n; ++k) {
+    const Multiplier& by = unknowns[k];
+    const std::size_t column = 2 * by.place + (by.opens ? 0 : 1);
+    const double stress = by.opens ? law(by).k.kN : law(by).k.kT * by.sign;
+    for (std::size_t r = 0; r < n; ++r) {
+      const std::size_t p = 2 * unknowns[r].place;
+      const bool own = unknowns[r].place == by.place;
+      const double normal = c[p * width + column] * stress - (own && by.opens ? 1 : 0);
+      const double tangential = c[(p + 1) * width + column] * stress - (own && !by.opens ? by.sign : 0);
+      matrix[r * n + k] = slack(unknowns[r], normal, tangential) / stiffest;
+    }
+  }
+  for (double& x : q) x = std::abs(x) > 1e-12 * unit ? x / unit : 0;
+  const std::optional<std::vector<double>> z = solve_complementarity(matrix, q);
+  if (!z) return {};
+  const double largest = *std::ranges::max_element(*z);
+  for (std::size_t k = 0; k < n; ++k) {
+    ContactStatus& now = status[problem.limits[unknowns[k].place].contact];
+    if ((*z)[k] <= 1e-10 * largest || now == ContactStatus::open) continue;
+    now = unknowns[k].opens ? ContactStatus::open : slipping(unknowns[k].sign);
+  }
+  RateAnswer answer = solve_rates(problem, solver, std::move(status));
+  if (!answer.agrees || !answer.rates.balanced) return {};
+  return answer;
 }
 
 }  // namespace equidem

@@ -33,9 +33,14 @@ struct Branches {
 Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
                        std::span<const std::size_t> fresh);
 
-/// Every combination by itself, in the order of contact numbers, where they are few: the first that agrees with its
-/// rates and balances the forces.
-std::optional<RateAnswer> try_all(const RateProblem& problem, TangentSolver& solver,
-                                  const std::vector<ContactStatus>& status);
+/// An answer by complementary pivots, from the network in which all contacts on limits stick: with the openings a, the
+/// slips s forward and backward,
+///
+///   0 <= a  _|_  -N' >= 0,   0 <= s  _|_  -mu N' -+ T' >= 0.
+///
+/// \return none where the pivots find none, where the contacts on limits are too many, or where the answer that they
+///         find does not agree with its rates
+std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
+                                      std::vector<ContactStatus> status);
 
 }  // namespace equidem

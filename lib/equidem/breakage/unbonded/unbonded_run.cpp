@@ -16,10 +16,9 @@ namespace equidem {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double on_limit = 1e-11;  // of the largest force: a contact is on a limit of its law
-constexpr double no_rate = 1e-9;    // of the largest rate of a force
-constexpr double ground = 1e-11;    // of the stiffest spring: holds what nothing resists
-constexpr double same_time = 1e-10;      // of the parameter: events at once
+constexpr double on_limit = 1e-11;   // of the largest force: a contact is on a limit of its law
+constexpr double ground = 1e-11;     // of the stiffest spring: holds what nothing resists
+constexpr double same_time = 1e-10;  // of the parameter: events at once
 
 std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
   std::vector<UnbondedLaw> laws(scene.assembly.contacts.size());
@@ -153,7 +152,7 @@ bool UnbondedRun::find_rates() {
   const RateProblem problem{contacts_, laws_, limits, driving()};
   RateAnswer answer = solve_rates(problem, solver_, state_->status());
   if (!answer.agrees || !answer.rates.balanced) {
-    std::optional<RateAnswer> other = try_all(problem, solver_, state_->status());
+    std::optional<RateAnswer> other = pivot_rates(problem, solver_, state_->status());
     if (!other) {
       if (answer.agrees) record_changes(answer.status);
       end(PathEnd::load_moves_part, sentence_on(answer));
@@ -244,7 +243,7 @@ double UnbondedRun::stage_end() const {
 }
 
 UnbondedRun::Next UnbondedRun::next_event() const {
-  const double none = no_rate * rates_->force_scale, tolerance = on_limit * state_->force_scale();
+  const double none = rates_->negligible, tolerance = on_limit * state_->force_scale();
   std::vector<double> times(laws_.size(), infinite);
   std::vector<std::optional<BreakMode>> modes(laws_.size());
   const auto reach = [&](std::size_t c, double a, double b, std::optional<BreakMode> mode) {
@@ -391,6 +390,7 @@ void UnbondedRun::end(PathEnd why, std::string sentence) {
 
 bool UnbondedRun::advance() {
   const std::size_t before = events_.size();
+  still_ = 0;
   const std::int64_t most_still = 1000 + 20 * std::ssize(laws_);
   while (end_ == PathEnd::none) {
     if (!releasing() && events_.size() > before) return true;
@@ -409,8 +409,7 @@ bool UnbondedRun::advance() {
       end(PathEnd::never_breaks, "no contact changes any more at any lambda");
       break;
     }
-    still_ = t > 0 ? 0 : still_ + 1;
-    if (still_ > most_still) {
+    if (++still_ > most_still) {
       end(PathEnd::load_moves_part, "contacts change without end at the same lambda");
       break;
     }

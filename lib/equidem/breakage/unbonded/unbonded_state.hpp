@@ -22,9 +22,9 @@ namespace equidem {
 /// Work of everything from outside, and where it went, N, from the start.
 struct ContactLedger {
   double work = 0;
-  double elastic = 0;   ///< the energy of the springs now, less that at rest
-  double friction = 0;  ///< lost by slip
-  double released = 0;  ///< by bonds that broke
+  double elastic = 0;     ///< the energy of the springs now, less that at rest
+  double friction = 0;    ///< lost by slip
+  double released = 0;    ///< by bonds that broke
   double negligible = 0;  ///< energy of forces that are round-off
 
   /// The sum that should vanish, over the largest of its terms.
