@@ -184,6 +184,8 @@ class DenseUnbonded {
       one.state = stuck;
     }
     one.kept_n -= one.n, one.kept_t -= one.t;
+    letting_go_ = false;
+    for (const Contact1& other : contacts_) letting_go_ = letting_go_ || other.kept_n != 0 || other.kept_t != 0;
   }
 
   double next(std::size_t& breaks, BreakMode& mode) const {
@@ -351,9 +353,9 @@ class DenseUnbonded {
       q[a] = slack(multipliers[a], force(c, u, false) + springs_[c].kN * an[c], force(c, u, true) + kt(c) * at[c]);
       unit = std::max(unit, std::abs(q[a]));
       for (std::size_t b = 0; b < m; ++b) {
-        matrix[a * m + b] = slack(multipliers[a], force(c, by[b], false) + own(b, c, false),
-                                  force(c, by[b], true) + own(b, c, true)) /
-                            largest;
+        matrix[a * m + b] =
+            slack(multipliers[a], force(c, by[b], false) + own(b, c, false), force(c, by[b], true) + own(b, c, true)) /
+            largest;
       }
     }
     for (double& x : q) x = unit > 0 && std::abs(x) > 1e-10 * unit ? x / unit : 0;

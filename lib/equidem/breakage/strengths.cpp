@@ -21,6 +21,7 @@ void check_options(const StrengthOptions& options) {
   if (options.tension) check_strength("strength in tension", *options.tension);
   if (options.shear) check_strength("strength in shear", *options.shear);
   check_strength("friction", options.friction);
+  if (options.residual_friction) check_strength("residual friction", *options.residual_friction);
   if (options.weibull_modulus) check_positive(*options.weibull_modulus, "the Weibull modulus");
 }
 

@@ -16,8 +16,7 @@ namespace equidem {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double on_limit = 1e-11;   // of the largest force: a contact is on a limit of its law
-constexpr double ground = 1e-11;     // of the stiffest spring: holds what nothing resists
+constexpr double ground = 1e-9;     // of the stiffest spring: holds what nothing resists
 constexpr double same_time = 1e-10;  // of the parameter: events at once
 
 std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
@@ -89,8 +88,6 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
   if (dead_done_) points_.push_back({0, 0, state_->load(), state_->mean_motion()});
 }
 
-UnbondedRun::~UnbondedRun() = default;
-
 double UnbondedRun::direction(std::int64_t leg) const {
   const std::vector<double>& legs = scene_.path.legs;
   const auto k = static_cast<std::size_t>(leg);
@@ -126,7 +123,7 @@ Driving UnbondedRun::driving() const {
 }
 
 std::vector<LimitContact> UnbondedRun::contacts_on_limits() const {
-  const double none = on_limit * state_->force_scale();
+  const double none = state_->negligible_force();
   std::vector<LimitContact> limits;
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     const ContactStatus status = state_->status()[c];
@@ -243,7 +240,7 @@ double UnbondedRun::stage_end() const {
 }
 
 UnbondedRun::Next UnbondedRun::next_event() const {
-  const double none = rates_->negligible, tolerance = on_limit * state_->force_scale();
+  const double none = rates_->negligible, tolerance = state_->negligible_force();
   std::vector<double> times(laws_.size(), infinite);
   std::vector<std::optional<BreakMode>> modes(laws_.size());
   const auto reach = [&](std::size_t c, double a, double b, std::optional<BreakMode> mode) {

@@ -38,23 +38,27 @@ struct UnbondedCounters {
   double largest_residual = 0;
 };
 
-class UnbondedRun {
+class UnbondedRun : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
   /// \throws Error (bad_input) where a tangential spring is negative, where the control is none of those that a path
   ///         with a history has, or where forces at rest pull or are beyond friction
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
-  ~UnbondedRun();
 
-  /// Goes on to the next event, or to several that happen at once.
-  /// \return false where the path has ended
-  bool advance();
-
-  [[nodiscard]] const std::vector<BreakEvent>& events() const { return events_; }
-  [[nodiscard]] PathEnd end() const { return end_; }
-  [[nodiscard]] const std::string& why() const { return why_; }
-  [[nodiscard]] const std::vector<LegPoint>& leg_points() const { return points_; }
-  [[nodiscard]] double direction(std::int64_t leg) const;
+  bool advance() override;
+  [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
+  [[nodiscard]] PathEnd end() const override { return end_; }
+  [[nodiscard]] const std::string& why() const override { return why_; }
+  [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
+  [[nodiscard]] double direction(std::int64_t leg) const override;
+  /// None: contacts that carry nothing at first may close.
+  [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
+  [[nodiscard]] double lambda() const override { return state_->lambda(); }
+  [[nodiscard]] bool has_history() const override { return true; }
+  [[nodiscard]] double load_left(double) const override { return state_->load(); }
+  [[nodiscard]] double elastic_energy() const override { return state_->ledger().elastic; }
+  [[nodiscard]] double released() const override { return state_->ledger().released; }
+  [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
   [[nodiscard]] const UnbondedState& state() const { return *state_; }
   [[nodiscard]] UnbondedCounters counters() const;
 
@@ -86,6 +90,7 @@ class UnbondedRun {
   std::unique_ptr<UnbondedState> state_;
   std::vector<BreakEvent> events_;
   std::vector<LegPoint> points_;
+  std::vector<std::int32_t> idle_;
   std::vector<std::size_t> breaking_;  // events whose energy behind them is not known yet
   std::vector<double> beside_;         // per component, of a release
   std::optional<Rates> rates_;

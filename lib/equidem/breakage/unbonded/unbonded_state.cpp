@@ -11,6 +11,7 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t contacts_at_once = 1 << 12;
+constexpr double on_limit = 1e-11;        // of the largest force: a contact is on a limit of its law
 constexpr double rounded_motion = 1e-14;  // of motions, as springs take it for a force
 
 ContactForce operator+(const ContactForce& a, const ContactForce& b) {
@@ -91,12 +92,13 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
     residual[k] = unknowns_.held[k] != 0 ? 0 : from_outside - internal_[k];
     largest = std::max(largest, std::abs(residual[k]));
   }
-  force_scale_ = std::max({force_scale_, force, round_off_force()});
-  residual_ = force_scale_ > 0 ? largest / force_scale_ : 0;
+  const double none = round_off_force();
+  force_scale_ = std::max({force_scale_, force, none});
+  residual_ = force_scale_ > none ? largest / force_scale_ : 0;
 }
 
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
-  constexpr double good = 2e-15;
+  constexpr double good = 4e-15, none = 1e-15;
   constexpr int most = 6;
   const std::vector<double>& load = path_.pattern.force;
   std::vector<double> residual(contacts_.components()), along;
@@ -110,6 +112,8 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   for (int k = 0; k < most && residual_ > good; ++k) {
     const double before = residual_;
     const auto kept = std::pair(motion_, lambda_);
+    // Loose discs would follow the round-off of forces far.
+    for (double& r : residual) r = std::abs(r) > none * force_scale_ ? r : 0;
     solver.solve(residual);
     if (by_motion) {
       if (along.empty()) {
@@ -166,15 +170,23 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   }
   kept_share_ = share_;
   ledger_.elastic = elastic_energy() - rest_energy_;
-  double farthest = 0;
-  for (const double u : motion_.high) farthest = std::max(farthest, std::abs(u));
-  ledger_.negligible = std::max(ledger_.negligible, round_off_force() * farthest);
+  ledger_.negligible = std::max(ledger_.negligible, round_off_force() * farthest());
+}
+
+double UnbondedState::negligible_force() const {
+  return on_limit * force_scale_ + 4 * round_off_force();
+}
+
+double UnbondedState::farthest() const {
+  double far = 0, strained = 0;
+  for (const double u : motion_.high) far = std::max(far, std::abs(u));
+  for (const ContactDeformation& d : affine_)
+    strained = std::max({strained, std::abs(d.normal), std::abs(d.tangential)});
+  return std::max(far, std::abs(lambda_) * strained);
 }
 
 double UnbondedState::round_off_force() const {
-  double farthest = 0;
-  for (const double u : motion_.high) farthest = std::max(farthest, std::abs(u));
-  return rounded_motion * springs_.largest() * farthest;
+  return rounded_motion * springs_.largest() * farthest();
 }
 
 void UnbondedState::set_status(std::size_t c, ContactStatus status) {

@@ -73,7 +73,8 @@ class UnbondedState {
   [[nodiscard]] const ContactLedger& ledger() const { return ledger_; }
   /// The largest unbalanced force over the largest contact force or load.
   [[nodiscard]] double relative_residual() const { return residual_; }
-  [[nodiscard]] double force_scale() const { return force_scale_; }
+  /// N/m: forces, and gaps times kN, below are round-off.
+  [[nodiscard]] double negligible_force() const;
   /// Reactions of held components and loads together, N/m; of free ones the internal force.
   [[nodiscard]] std::span<const double> internal() const { return internal_; }
 
@@ -83,6 +84,8 @@ class UnbondedState {
   void correct(bool by_motion, TangentSolver& solver);
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;
+  /// The largest motion, or deformation by the mean strain, m.
+  [[nodiscard]] double farthest() const;
   /// Forces that rounding of the motions may leave, N/m.
   [[nodiscard]] double round_off_force() const;
 

@@ -215,7 +215,12 @@ void bind_breakage(File<CaseTables>& file) {
              key("weibull_modulus", &S::weibull_modulus, positive,
                  "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
                  "equal"),
-             key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths")});
+             key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths"),
+             key("after_breaking", &S::after_breaking,
+                 "gone: a broken contact carries nothing; rubs: it opens, closes, sticks and slips. Contacts whose "
+                 "strengths are both 0 are then no bonds from the start"),
+             key("residual_friction", &S::residual_friction, not_negative,
+                 "coefficient of friction of contacts without a bond, where they rub; left out: friction")});
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
       .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
              key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
@@ -232,7 +237,8 @@ void bind_breakage(File<CaseTables>& file) {
       .keys(
           {key("control", &Q::control,
                "what does not fall while contacts break: path: nothing, lambda may fall from event to event "
-               "(snap-back); load; motion: that through which the load works"),
+               "(snap-back); load; motion: that through which the load works. Left out: path, or where contacts rub "
+               "what lambda multiplies"),
            key("legs", &Q::legs, "lambda at the end of each leg, such as [1.0, 0.0, 2.0]; empty: until nothing breaks"),
            key("max_events", &Q::max_events, not_negative, "after so many events the path ends; 0: no limit"),
            key("frame_every", &Q::frame_every, not_negative,
