@@ -7,7 +7,7 @@
 
 namespace equidem {
 
-Avalanches avalanches_by(const BreakageRun& run, double BreakEvent::*quantity) {
+Avalanches avalanches_by(const EventPath& run, double BreakEvent::*quantity) {
   constexpr double same = 1e-10;  // relative, of values that are equal but for round-off
   Avalanches result;
   double most = -std::numeric_limits<double>::infinity();
@@ -27,7 +27,7 @@ Avalanches avalanches_by(const BreakageRun& run, double BreakEvent::*quantity) {
   return result;
 }
 
-LoadCurve curve_of(const BreakageRun& run) {
+LoadCurve curve_of(const EventPath& run) {
   LoadCurve curve;
   const std::vector<LegPoint> points = run.leg_points();
   std::size_t next = 0;
@@ -43,7 +43,7 @@ LoadCurve curve_of(const BreakageRun& run) {
   return curve;
 }
 
-LoadCurve load_envelope(const BreakageRun& run) {
+LoadCurve load_envelope(const EventPath& run) {
   const LegPoint start = run.leg_points().front();
   LoadCurve curve{{start.motion}, {start.load}};
   for (const std::int64_t k : avalanches_by(run, &BreakEvent::load).first) {
@@ -53,7 +53,7 @@ LoadCurve load_envelope(const BreakageRun& run) {
   return curve;
 }
 
-LoadCurve motion_envelope(const BreakageRun& run) {
+LoadCurve motion_envelope(const EventPath& run) {
   const LegPoint start = run.leg_points().front();
   LoadCurve curve{{start.motion}, {start.load}};
   const std::vector<BreakEvent>& events = run.events();
@@ -68,9 +68,7 @@ LoadCurve motion_envelope(const BreakageRun& run) {
       const double slope = next.motion_rate > 0 ? next.load_rate / next.motion_rate : 0;
       curve.load.push_back(next.load + slope * (event.motion - next.motion));
     } else {
-      const NetworkResponse& r = run.response();
-      const bool moves = r.motion[1] > 0;
-      curve.load.push_back(moves ? NetworkResponse::at(r.load, (event.motion - r.motion[0]) / r.motion[1]) : 0);
+      curve.load.push_back(run.load_left(event.motion));
     }
   }
   return curve;

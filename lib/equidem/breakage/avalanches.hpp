@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "equidem/breakage/breakage_run.hpp"
+#include "equidem/breakage/event_path.hpp"
 
 namespace equidem {
 
@@ -21,17 +21,17 @@ struct Avalanches {
 };
 
 /// \param quantity &BreakEvent::load or &BreakEvent::motion
-Avalanches avalanches_by(const BreakageRun& run, double BreakEvent::*quantity);
+Avalanches avalanches_by(const EventPath& run, double BreakEvent::*quantity);
 
 /// Points of a curve of load against motion.
 struct LoadCurve {
   std::vector<double> motion, load;
 };
 /// All events, the start and the ends of legs, in the order of the path.
-LoadCurve curve_of(const BreakageRun& run);
+LoadCurve curve_of(const EventPath& run);
 /// The first events of avalanches, with the start.
-LoadCurve load_envelope(const BreakageRun& run);
+LoadCurve load_envelope(const EventPath& run);
 /// Likewise; the load falls at each to what is left when its avalanche is over.
-LoadCurve motion_envelope(const BreakageRun& run);
+LoadCurve motion_envelope(const EventPath& run);
 
 }  // namespace equidem

@@ -15,13 +15,15 @@
 
 namespace equidem {
 
-enum class BreakMode { tension, shear };
+/// A bond breaks in tension or in shear; contacts without a bond open, close, slip and stick.
+enum class BreakMode { tension, shear, open, close, slip, stick };
 
 template <>
 struct EnumNames<BreakMode> {
   using enum BreakMode;
   static constexpr const char* what = "mode of breaking";
-  static constexpr NamedValue<BreakMode> list[] = {{tension, "tension"}, {shear, "shear"}};
+  static constexpr NamedValue<BreakMode> list[] = {{tension, "tension"}, {shear, "shear"}, {open, "open"},
+                                                   {close, "close"},     {slip, "slip"},   {stick, "stick"}};
 };
 
 struct NextBreak {

@@ -235,6 +235,11 @@ void BreakageRun::resume(std::vector<BreakEvent> events) {
   }
 }
 
+double BreakageRun::load_left(double motion) const {
+  const NetworkResponse& r = response_;
+  return r.motion[1] > 0 ? NetworkResponse::at(r.load, (motion - r.motion[0]) / r.motion[1]) : 0;
+}
+
 double BreakageRun::released() const {
   double sum = 0;
   for (const BreakEvent& event : events_) sum += event.energy_released;

@@ -11,61 +11,12 @@
 
 #include "equidem/breakage/break_search.hpp"
 #include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/event_path.hpp"
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/breakage/network_response.hpp"
 #include "equidem/breakage/strengths.hpp"
-#include "equidem/core/names.hpp"
-#include "equidem/core/vector.hpp"
 
 namespace equidem {
-
-struct BreakEvent {
-  std::int64_t leg = 0;  ///< from 0
-  double lambda = 0;
-  std::int64_t contact = 0;
-  BreakMode mode = BreakMode::tension;
-  std::int64_t ties = 0;  ///< other contacts that would have broken at the same lambda
-  double gap = 0;         ///< of lambda, relative, to the next contact that would have broken; infinite: none
-  double load = 0;        ///< LoadPath, as the contact breaks
-  double motion = 0;      ///< LoadPath, likewise
-  Tensor2 stress;         ///< Pa, likewise
-  double energy_before = 0, energy_after = 0;  ///< N, elastic, at this lambda with and without the contact
-  /// N, what the crack takes: energy_before - energy_after and the work of the loads while the contact lets go.
-  double energy_released = 0;
-  double work = 0;  ///< N, of everything from outside, from the unloaded state to behind this event
-  double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact
-  std::int64_t unstable_modes = 0;        ///< of the network with the contact; -1: not known
-  double relative_residual = 0;           ///< of the state at which it breaks
-  std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it: they carry nothing any more
-};
-
-/// The reason for which a path ended.
-enum class PathEnd {
-  none,             ///< it has not ended
-  legs_done,        ///< lambda has gone along all legs
-  never_breaks,     ///< no contact breaks at any lambda
-  carries_nothing,  ///< no contact carries a force that grows with lambda
-  load_moves_part,  ///< a load acts on a part that nothing holds, or drives a mechanism
-  most_events,      ///< LoadPath::max_events
-};
-
-template <>
-struct EnumNames<PathEnd> {
-  using enum PathEnd;
-  static constexpr const char* what = "end of a path";
-  static constexpr NamedValue<PathEnd> list[] = {{none, "not_ended"},
-                                                 {legs_done, "legs_done"},
-                                                 {never_breaks, "never_breaks"},
-                                                 {carries_nothing, "carries_nothing"},
-                                                 {load_moves_part, "load_moves_part"},
-                                                 {most_events, "most_events"}};
-};
-
-/// A point of the curve of load against motion beside the events: the start, the end of a leg.
-struct LegPoint {
-  std::int64_t events_before = 0;
-  double lambda = 0, load = 0, motion = 0;
-};
 
 /// The network of a BreakageRun, to which it refers.
 struct BreakageScene {
@@ -79,7 +30,7 @@ struct BreakageScene {
 BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
                                    const SolverOptions& solver = {});
 
-class BreakageRun {
+class BreakageRun : public EventPath {
  public:
   /// \param system with the right-hand sides of the path: the pattern and, where there are any, the dead loads
   /// \throws Error (bad_input) where the network, before anything breaks, cannot balance the pattern or the dead loads
@@ -91,24 +42,22 @@ class BreakageRun {
   /// Breaks the next contact.
   /// \return false where the path has ended
   /// \throws Error (computation_failed) as BreakableSystem::remove
-  bool advance();
+  bool advance() override;
 
-  [[nodiscard]] const std::vector<BreakEvent>& events() const { return events_; }
-  [[nodiscard]] PathEnd end() const { return end_; }
-  /// A sentence on the end; empty where it has not come.
-  [[nodiscard]] const std::string& why() const { return why_; }
-  /// The start, and the ends of the legs that are done.
-  [[nodiscard]] std::vector<LegPoint> leg_points() const;
-  /// 1 or -1: where lambda goes on a leg.
-  [[nodiscard]] double direction(std::int64_t leg) const;
-  /// Discs that carried nothing from the start.
-  [[nodiscard]] const std::vector<std::int32_t>& idle() const { return idle_; }
-  /// lambda of the last event, or where the path has ended.
-  [[nodiscard]] double lambda() const { return lambda_; }
+  [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
+  [[nodiscard]] PathEnd end() const override { return end_; }
+  [[nodiscard]] const std::string& why() const override { return why_; }
+  [[nodiscard]] std::vector<LegPoint> leg_points() const override;
+  [[nodiscard]] double direction(std::int64_t leg) const override;
+  [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
+  [[nodiscard]] double lambda() const override { return lambda_; }
+  [[nodiscard]] bool has_history() const override { return false; }
+  [[nodiscard]] double load_left(double motion) const override;
+  [[nodiscard]] double elastic_energy() const override { return response_.energy_at(lambda_); }
   [[nodiscard]] const NetworkResponse& response() const { return response_; }
   /// Work minus elastic energy minus all that was released, over the largest of the three.
-  [[nodiscard]] double energy_error() const;
-  [[nodiscard]] double released() const;
+  [[nodiscard]] double energy_error() const override;
+  [[nodiscard]] double released() const override;
 
  private:
   [[nodiscard]] bool leg_ends_before(double lambda) const;

@@ -28,9 +28,9 @@ void check_strength(const char* name, double value) {
             "Correct it; a contact that never breaks has large strengths");
 }
 
-void check_friction(double friction) {
+void check_friction(const char* name, double friction) {
   if (friction >= 0 && friction <= largest_friction) return;
-  bad_input(fmt::format("the friction is {}", friction),
+  bad_input(fmt::format("the {} is {}", name, friction),
             fmt::format("it must be a number from 0 to {:g}", largest_friction), "Correct it");
 }
 
@@ -49,7 +49,8 @@ void check_strengths(const ContactStrengths& strengths, const std::string& why, 
 void check_options(const StrengthOptions& options) {
   if (options.tension) check_strength("strength in tension", *options.tension);
   if (options.shear) check_strength("strength in shear", *options.shear);
-  check_friction(options.friction);
+  check_friction("friction", options.friction);
+  if (options.residual_friction) check_friction("residual friction", *options.residual_friction);
   if (options.weibull_modulus) check_positive(*options.weibull_modulus, "the Weibull modulus");
 }
 

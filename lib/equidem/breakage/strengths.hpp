@@ -27,6 +27,19 @@ struct EnumNames<BondLength> {
       {none, "none"}, {facet, "facet"}, {smaller_diameter, "smaller_diameter"}};
 };
 
+/// A contact without a bond.
+enum class AfterBreaking {
+  gone,  ///< it carries nothing any more
+  rubs,  ///< it opens, closes, sticks and slips
+};
+
+template <>
+struct EnumNames<AfterBreaking> {
+  using enum AfterBreaking;
+  static constexpr const char* what = "behaviour of broken contacts";
+  static constexpr NamedValue<AfterBreaking> list[] = {{gone, "gone"}, {rubs, "rubs"}};
+};
+
 struct StrengthOptions {
   std::optional<double> tension = {};  ///< f_t >= 0, N/m; with a bond length Pa
   std::optional<double> shear = {};    ///< f_s >= 0, likewise
@@ -36,6 +49,9 @@ struct StrengthOptions {
   /// the contacts is more than x times as strong as given. None: all are equal.
   std::optional<double> weibull_modulus = {};
   std::uint64_t seed = 1;
+  AfterBreaking after_breaking = AfterBreaking::gone;
+  /// mu >= 0 of contacts without a bond, where they rub. None: `friction`.
+  std::optional<double> residual_friction = {};
 };
 
 /// A contact with the forces N (tension positive) and T breaks in tension where N >= tension, in shear where |T| >=

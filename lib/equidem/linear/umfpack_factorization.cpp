@@ -39,11 +39,9 @@ class UmfpackLu final : public Factorization {
   ~UmfpackLu() override { umfpack_dl_free_numeric(&numeric_); }
 
   /// Whether no pivot is zero.
-  bool factorize(CompressedColumns lower) {
-    component_ = std::move(lower.component);
+  bool factorize(CompressedColumns k) {
+    component_ = std::move(k.component);
     if (component_.empty()) return true;
-    const CompressedColumns k = with_upper_triangle(lower);
-    lower = {};
     const auto n = static_cast<Index>(component_.size());
     std::array<double, UMFPACK_INFO> info{};
     void* symbolic = nullptr;
@@ -120,9 +118,18 @@ std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const Deg
                                           FactorReport* report) {
   dense::use_one_thread_per_call();
   auto factor = std::make_unique<UmfpackLu>(held_stiffness(matrix.matrix, unknowns));
-  const bool regular = factor->factorize(compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns));
+  CompressedColumns whole = compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns);
+  whole = with_upper_triangle(whole);
+  const bool regular = factor->factorize(std::move(whole));
   if (report != nullptr) *report = factor->report();
   if (!regular) return nullptr;
+  return factor;
+}
+
+std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness) {
+  dense::use_one_thread_per_call();
+  auto factor = std::make_unique<UmfpackLu>(held_stiffness);
+  if (!factor->factorize(std::move(whole))) return nullptr;
   return factor;
 }
 

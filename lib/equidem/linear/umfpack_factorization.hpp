@@ -8,6 +8,7 @@
 #include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
 
@@ -19,5 +20,9 @@ namespace equidem {
 /// \throws Error (computation_failed) where memory does not suffice or UMFPACK fails
 std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                           FactorReport* report = nullptr);
+
+/// All entries of a matrix that need not be symmetric, over the components of its columns. As above, but for the rows of
+/// components that are held, which are those of a unit matrix times `held_stiffness`.
+std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness);
 
 }  // namespace equidem

@@ -74,7 +74,7 @@ std::string unit_of_motion(DrivenBy driven_by) {
   return driven_by == DrivenBy::strain ? "" : "m";
 }
 
-Table event_table(const BreakageRun& run, const BreakageScene& scene) {
+Table event_table(const EventPath& run, const BreakageScene& scene) {
   const std::vector<BreakEvent>& events = run.events();
   Table table;
   std::vector<std::int64_t> number;
@@ -92,10 +92,15 @@ Table event_table(const BreakageRun& run, const BreakageScene& scene) {
   table.add("avalanche_of_load", avalanches_by(run, &BreakEvent::load).number);
   table.add("avalanche_of_motion", avalanches_by(run, &BreakEvent::motion).number);
   table.add("loosened", events, [](const BreakEvent& event) { return numbers_of(event.loosened); });
+  if (!run.has_history()) return table;
+  table.add("friction_N", events, &BreakEvent::friction);
+  table.add("other_answers", events, &BreakEvent::other_answers);
+  table.add("motion_difference", events, &BreakEvent::motion_difference);
+  table.add("load_difference", events, &BreakEvent::load_difference);
   return table;
 }
 
-std::vector<BreakEvent> read_events(const std::filesystem::path& path, const BreakageRun& run,
+std::vector<BreakEvent> read_events(const std::filesystem::path& path, const EventPath& run,
                                     const BreakageScene& scene) {
   const StoredTable table(path, event_table(run, scene), "quasistatic",
                           "Begin anew, without --resume and with --overwrite");

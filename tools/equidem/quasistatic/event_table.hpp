@@ -17,9 +17,9 @@ std::string unit_of_load(DrivenBy driven_by);
 std::string unit_of_motion(DrivenBy driven_by);
 
 /// One row for each event, numbers that read back to the same bits.
-Table event_table(const BreakageRun& run, const BreakageScene& scene);
+Table event_table(const EventPath& run, const BreakageScene& scene);
 /// \throws Error (bad_input) where the table is another one, or a row was altered
-std::vector<BreakEvent> read_events(const std::filesystem::path& path, const BreakageRun& run,
+std::vector<BreakEvent> read_events(const std::filesystem::path& path, const EventPath& run,
                                     const BreakageScene& scene);
 
 }  // namespace equidem

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -48,7 +50,8 @@ struct Sequence {
   LoadPath path;
   std::vector<std::size_t> cut{};  ///< contacts across notches
   std::unique_ptr<BreakableSystem> system{};
-  std::unique_ptr<BreakageRun> run{};
+  std::unique_ptr<BreakageRun> brittle{};
+  std::unique_ptr<UnbondedRun> unbonded{};  ///< where contacts rub, instead of the two above
 
   explicit Sequence(Problem given) : problem(std::move(given)) {
     const Case& resolved = problem.resolved;
@@ -57,22 +60,43 @@ struct Sequence {
     strengths = contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{}));
     cut = contacts_across(assembly, resolved.notches);
     const QuasistaticCase& wanted = resolved.quasistatic;
+    const bool loaded = !problem.load_cases.front().loads.empty();
+    if (rubs()) {
+      for (const std::size_t contact : cut) strengths.tension[contact] = strengths.shear[contact] = 0;
+    }
     path = make_load_path(assembly, problem.springs.springs, effects,
                           {.supports = problem.supports,
                            .loads = problem.load_cases.front().loads,
                            .dead_loads = resolved.dead_loads,
                            .strain = resolved.strain,
-                           .control = wanted.control,
+                           .control = wanted.control.value_or(!rubs()  ? LoadControl::path
+                                                              : loaded ? LoadControl::load
+                                                                       : LoadControl::motion),
                            .legs = wanted.legs,
                            .max_events = wanted.max_events});
   }
 
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
+  [[nodiscard]] bool rubs() const {
+    const auto& strength = problem.resolved.strength;
+    return strength && strength->after_breaking == AfterBreaking::rubs;
+  }
+  [[nodiscard]] EventPath& run() const {
+    return unbonded ? static_cast<EventPath&>(*unbonded) : static_cast<EventPath&>(*brittle);
+  }
   void begin() {
     const Stopwatch watch;
-    system = make_breakable_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
-    if (!cut.empty()) system->remove(cut);
-    run = std::make_unique<BreakageRun>(scene(), *system);
+    if (rubs()) {
+      const StrengthOptions& strength = *problem.resolved.strength;
+      UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
+      for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
+        options.rest.push_back(force_at_rest(problem.assembly, c));
+      unbonded = std::make_unique<UnbondedRun>(scene(), effects, problem.supports, std::move(options));
+    } else {
+      system = make_breakable_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
+      if (!cut.empty()) system->remove(cut);
+      brittle = std::make_unique<BreakageRun>(scene(), *system);
+    }
     problem.times.add("first state", watch.seconds());
   }
 };
@@ -104,13 +128,13 @@ void resume(const CommonOptions& options, Sequence& sequence) {
     bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  sequence.run->resume(read_events(table, *sequence.run, sequence.scene()));
+  sequence.brittle->resume(read_events(table, *sequence.brittle, sequence.scene()));
 }
 
 /// \return whether the path has come to its end; false: the user asked to stop
 bool go(const CommonOptions& options, Sequence& sequence) {
   constexpr double save_after = 10;  // s
-  BreakageRun& run = *sequence.run;
+  EventPath& run = sequence.run();
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   const auto save = [&] {
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
@@ -126,7 +150,8 @@ bool go(const CommonOptions& options, Sequence& sequence) {
   try {
     Progress progress("breaking");
     while (run.advance()) {
-      if (frames) frames->add(run, *sequence.system);
+      if (frames && sequence.unbonded) frames->add(*sequence.unbonded);
+      if (frames && sequence.brittle) frames->add(*sequence.brittle, *sequence.system);
       if (watch.seconds() - saved > save_after) {
         save();
         saved = watch.seconds();
@@ -159,20 +184,22 @@ int quasistatic(const QuasistaticOptions& given) {
   Sequence sequence(build(resolved));
   if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
-  // Frames are not kept in the table of events: with them every event is computed again.
-  if (given.resume && resolved.quasistatic.frame_every == 0) resume(options, sequence);
+  // Frames, and the history of contacts that rub, are not kept in the table of events: with them every event is
+  // computed again.
+  if (given.resume && resolved.quasistatic.frame_every == 0 && sequence.brittle) resume(options, sequence);
   write_case(options, sequence.problem.resolved);
   const bool done = go(options, sequence);
-  Results results = quasistatic_results(sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
-                                        *sequence.run, *sequence.system);
+  const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size()};
+  Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
+                                      : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
   results.set("complete", done);
   deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
     if (options.out)
-      write_figures(options, sequence.problem.resolved.output, sequence.scene(), *sequence.run, sequence.cut,
+      write_figures(options, sequence.problem.resolved.output, sequence.scene(), sequence.run(), sequence.cut,
                     sequence.problem.resolved.title);
   });
   if (!done) {
-    throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run->events()), "event")),
+    throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),
                   "Run the same command with --resume to go on");
   }
   return 0;

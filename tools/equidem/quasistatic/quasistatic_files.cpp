@@ -35,7 +35,7 @@ void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted) {
 }
 
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
-                   const BreakageRun& run, std::span<const std::size_t> cut, const std::string& title) {
+                   const EventPath& run, std::span<const std::size_t> cut, const std::string& title) {
   const DrivenBy driven_by = scene.path.driven_by;
   Plot plot;
   plot.title = title;
@@ -52,6 +52,7 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
   const auto events = std::ssize(run.events());
   for (std::int64_t k = 0; k < events; ++k) {
     const BreakEvent& event = run.events()[static_cast<std::size_t>(k)];
+    if (event.mode != BreakMode::tension && event.mode != BreakMode::shear) continue;
     picture.cracks.push_back({event.contact, event.mode == BreakMode::shear ? CrackKind::shear : CrackKind::tension,
                               events > 1 ? static_cast<double>(k) / static_cast<double>(events - 1) : 1});
   }
@@ -74,20 +75,37 @@ void EventFrames::add(const BreakageRun& run, const BreakableSystem& system) {
   if (event % every_ != 0) return;
   const Assembly& assembly = scene_.assembly;
   const bool dead = scene_.path.dead.has_value();
-  const auto at = [&](std::size_t k) {
-    return run.lambda() * system.motion(0)[k] + (dead ? system.motion(1)[k] : 0.0);
-  };
-  std::vector<DiscMotion> motions(assembly.size()), still(assembly.size());
-  for (std::size_t d = 0; d < motions.size(); ++d) {
-    const std::size_t first = d * per_disc_;
-    motions[d] = {{at(first), at(first + 1)}, per_disc_ == 3 ? at(first + 2) / assembly.mean_radius() : 0};
-  }
+  std::vector<double> motion(assembly.size() * per_disc_);
+  for (std::size_t k = 0; k < motion.size(); ++k)
+    motion[k] = run.lambda() * system.motion(0)[k] + (dead ? system.motion(1)[k] : 0.0);
   std::vector<BodyContact> contacts;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     if (broken_[c] != 0) continue;
     const ContactForce a = dead ? system.forces(1)[c] : ContactForce{}, b = system.forces(0)[c];
     contacts.push_back(
         bonded_contact(assembly, c, {a.normal + run.lambda() * b.normal, a.tangential + run.lambda() * b.tangential}));
+  }
+  append(event, motion, contacts);
+}
+
+void EventFrames::add(const UnbondedRun& run) {
+  const std::int64_t event = std::ssize(run.events());
+  if (event / every_ == written_) return;
+  written_ = event / every_;
+  std::vector<BodyContact> contacts;
+  for (std::size_t c = 0; c < scene_.assembly.contacts.size(); ++c) {
+    if (run.state().status()[c] == ContactStatus::open) continue;
+    contacts.push_back(bonded_contact(scene_.assembly, c, run.state().forces()[c]));
+  }
+  append(event, run.state().motion().high, contacts);
+}
+
+void EventFrames::append(std::int64_t event, std::span<const double> motion, const std::vector<BodyContact>& contacts) {
+  const Assembly& assembly = scene_.assembly;
+  std::vector<DiscMotion> motions(assembly.size()), still(assembly.size());
+  for (std::size_t d = 0; d < motions.size(); ++d) {
+    const std::size_t first = d * per_disc_;
+    motions[d] = {{motion[first], motion[first + 1]}, per_disc_ == 3 ? motion[first + 2] / assembly.mean_radius() : 0};
   }
   writer_.append(event, static_cast<double>(event), motions, still, contacts);
 }

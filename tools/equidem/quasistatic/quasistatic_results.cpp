@@ -31,21 +31,28 @@ std::string named(const Assembly& assembly, const std::vector<std::int32_t>& dis
   return discs.size() == 1 ? first : fmt::format("{} and {}", first, counted(std::ssize(discs) - 1, "other"));
 }
 
-void add_events(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+void add_events(Results& out, const BreakageScene& scene, const EventPath& run) {
   const std::vector<BreakEvent>& events = run.events();
-  const auto sheared = std::ranges::count(events, BreakMode::shear, &BreakEvent::mode);
-  out.line("events").add("event_count", "", std::ssize(events), "contact", {Shown::count});
-  out.note(fmt::format(" of {} broken, {} in tension, {} in shear", scene.assembly.contacts.size(),
-                       std::ssize(events) - sheared, sheared));
-  out.set("broken_in_tension", std::ssize(events) - sheared).set("broken_in_shear", sheared);
+  const auto in = [&](BreakMode mode) { return std::ranges::count(events, mode, &BreakEvent::mode); };
+  const std::int64_t pulled = in(BreakMode::tension), sheared = in(BreakMode::shear);
+  const bool brittle = pulled + sheared == std::ssize(events);
+  out.line("events").add("event_count", "", std::ssize(events), brittle ? "contact" : "event", {Shown::count});
+  out.note(
+      brittle
+          ? fmt::format(" of {} broken, {} in tension, {} in shear", scene.assembly.contacts.size(), pulled, sheared)
+          : fmt::format(": {} broken in tension, {} in shear, {} opened, {} closed, {} slipped, {} stuck", pulled,
+                        sheared, in(BreakMode::open), in(BreakMode::close), in(BreakMode::slip), in(BreakMode::stick)));
+  out.set("broken_in_tension", pulled).set("broken_in_shear", sheared);
   out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended: " + run.why());
   out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
   if (events.empty()) return;
   const auto ties = std::ranges::count_if(events, [](const BreakEvent& event) { return event.ties > 0; });
   out.set("tied_events", ties);
   if (ties > 0) {
-    out.line("", fmt::format("{} would have broken at the same lambda as others: the lowest number went first",
-                             counted(ties, "contact")));
+    out.line("", brittle
+                     ? fmt::format("{} would have broken at the same lambda as others: the lowest number went first",
+                                   counted(ties, "contact"))
+                     : fmt::format("{} at the same lambda as others", counted(ties, "event")));
   }
   const auto& first = events.front();
   out.line("first")
@@ -54,7 +61,7 @@ void add_events(Results& out, const BreakageScene& scene, const BreakageRun& run
       .note(fmt::format(" in {}", to_string(first.mode)));
 }
 
-void add_loads(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+void add_loads(Results& out, const BreakageScene& scene, const EventPath& run) {
   const std::vector<BreakEvent>& events = run.events();
   if (events.empty()) return;
   const std::string load = unit_of_load(scene.path.driven_by), motion = unit_of_motion(scene.path.driven_by);
@@ -76,14 +83,14 @@ void add_loads(Results& out, const BreakageScene& scene, const BreakageRun& run)
   avalanches("avalanches_of_motion", "motion control", &BreakEvent::motion);
 }
 
-void add_energies(Results& out, const BreakageRun& run) {
+void add_energies(Results& out, const EventPath& run) {
   out.line("energy")
       .add("energies/released", "released", run.released(), "N")
-      .add("energies/elastic", "elastic at the end", run.response().energy_at(run.lambda()), "N")
+      .add("energies/elastic", "elastic at the end", run.elastic_energy(), "N")
       .add("energies/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
 }
 
-void add_loosened(Results& out, const BreakageScene& scene, const BreakageRun& run) {
+void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run) {
   constexpr int most = 5;
   if (!run.idle().empty()) {
     out.line("idle", fmt::format("{} from the start, which can carry no load", named(scene.assembly, run.idle())));
@@ -121,6 +128,33 @@ void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& syst
       .add("factorizations_for_accuracy", "of which", counters.mended, "for round-off", {});
 }
 
+void add_trust(Results& out, const UnbondedRun& run) {
+  const UnbondedCounters counters = run.counters();
+  out.line("uniqueness", fmt::format("{} with events: {} with one answer, {} with several, {} not decided",
+                                     counted(counters.unique + counters.not_unique + counters.unchecked, "increment"),
+                                     counters.unique, counters.not_unique, counters.unchecked));
+  out.set("increments/unique", counters.unique)
+      .set("increments/not_unique", counters.not_unique)
+      .set("increments/not_decided", counters.unchecked);
+  if (counters.not_unique > 0) {
+    out.line("", fmt::format("of several answers that which changes the fewest contacts was taken; the rates of motion "
+                             "of another differ by {:.2g}, those of load by {:.2g}, relative, at most",
+                             counters.largest_motion_difference, counters.largest_load_difference));
+  }
+  if (counters.unchecked > 0) {
+    out.line("",
+             "where more contacts are on their limits than have combinations to try, other answers were looked for "
+             "among the contacts of the event");
+  }
+  out.set("increments/motion_difference", counters.largest_motion_difference)
+      .set("increments/load_difference", counters.largest_load_difference);
+  out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
+  out.line("solver")
+      .add("solver", "", "UMFPACK LU, updated")
+      .add("factorizations", "", counters.factorizations, "factorization", {Shown::count})
+      .add("factor_updates", "", counters.updates, "update", {Shown::count});
+}
+
 Results of_event(const BreakEvent& event, DrivenBy driven_by) {
   Results one;
   one.set("lambda", event.lambda)
@@ -146,6 +180,25 @@ Results curve_results(const LoadCurve& curve) {
   return Results().set("motion", curve.motion).set("load", curve.load);
 }
 
+/// Sizes, path, events and loads.
+Results first_results(const QuasistaticOutcome& outcome, const EventPath& run) {
+  Results out = problem_results(outcome.problem, outcome.effects);
+  out.append(path_results(outcome.scene, outcome.cut));
+  add_events(out, outcome.scene, run);
+  add_loads(out, outcome.scene, run);
+  return out;
+}
+
+Results events_and_curves(const QuasistaticOutcome& outcome, const EventPath& run) {
+  Results out;
+  std::vector<Results> events;
+  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, outcome.scene.path.driven_by));
+  out.set("events", std::move(events));
+  out.append(curve_results(curve_of(run)).under("curve"));
+  out.append(curve_results(load_envelope(run)).under("load_envelope"));
+  return out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
+}
+
 }  // namespace
 
 Results path_results(const BreakageScene& scene, std::size_t cut) {
@@ -168,21 +221,20 @@ Results path_results(const BreakageScene& scene, std::size_t cut) {
   return out.set("control", to_string(path.control));
 }
 
-Results quasistatic_results(const Problem& problem, const Effects& effects, const BreakageScene& scene, std::size_t cut,
-                            const BreakageRun& run, const BreakableSystem& system) {
-  Results out = problem_results(problem, effects);
-  out.append(path_results(scene, cut));
-  add_events(out, scene, run);
-  add_loads(out, scene, run);
+Results quasistatic_results(const QuasistaticOutcome& outcome, const BreakageRun& run, const BreakableSystem& system) {
+  Results out = first_results(outcome, run);
   add_energies(out, run);
-  add_loosened(out, scene, run);
+  add_loosened(out, outcome.scene, run);
   add_trust(out, run, system);
-  std::vector<Results> events;
-  for (const BreakEvent& event : run.events()) events.push_back(of_event(event, scene.path.driven_by));
-  out.set("events", std::move(events));
-  out.append(curve_results(curve_of(run)).under("curve"));
-  out.append(curve_results(load_envelope(run)).under("load_envelope"));
-  return out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
+  return out.append(events_and_curves(outcome, run));
+}
+
+Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun& run) {
+  Results out = first_results(outcome, run);
+  add_energies(out, run);
+  out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
+  add_trust(out, run);
+  return out.append(events_and_curves(outcome, run));
 }
 
 }  // namespace equidem

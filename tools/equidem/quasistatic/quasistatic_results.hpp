@@ -4,6 +4,7 @@
 #pragma once
 
 #include "equidem/breakage/breakage_run.hpp"
+#include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/contact/effects.hpp"
 
 #include "problem.hpp"
@@ -13,8 +14,17 @@ namespace equidem {
 /// Strengths, path and control.
 Results path_results(const BreakageScene& scene, std::size_t cut);
 
+/// The scene of results.
+struct QuasistaticOutcome {
+  const Problem& problem;
+  const Effects& effects;
+  BreakageScene scene;
+  std::size_t cut = 0;
+};
+
 /// Events, avalanches, energies, stability, residual.
-Results quasistatic_results(const Problem& problem, const Effects& effects, const BreakageScene& scene, std::size_t cut,
-                            const BreakageRun& run, const BreakableSystem& system);
+Results quasistatic_results(const QuasistaticOutcome& outcome, const BreakageRun& run, const BreakableSystem& system);
+/// The same of contacts without a bond: slip and uniqueness beside them.
+Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun& run);
 
 }  // namespace equidem

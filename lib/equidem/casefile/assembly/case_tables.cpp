@@ -228,7 +228,8 @@ void bind_breakage(File<CaseTables>& file) {
       .keys(
           {key("control", &Q::control,
                "what does not fall while contacts break: path: nothing, lambda may fall from event to event "
-               "(snap-back); load; motion: that through which the load works"),
+               "(snap-back); load; motion: that through which the load works. Left out: path, or where contacts rub "
+               "what lambda multiplies"),
            key("legs", &Q::legs, "lambda at the end of each leg, such as [1.0, 0.0, 2.0]; empty: until nothing breaks"),
            key("max_events", &Q::max_events, not_negative, "after so many events the path ends; 0: no limit"),
            key("frame_every", &Q::frame_every, not_negative,

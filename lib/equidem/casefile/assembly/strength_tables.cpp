@@ -36,7 +36,12 @@ std::vector<Key<StrengthOptions>> strength_keys() {
           key("weibull_modulus", &S::weibull_modulus, positive,
               "m: a share exp(-x^m) of the contacts is more than x times as strong as given; left out: all are "
               "equal"),
-          key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths")};
+          key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths"),
+          key("after_breaking", &S::after_breaking,
+              "gone: a broken contact carries nothing; rubs: it opens, closes, sticks and slips. Contacts whose "
+              "strengths are both 0 are then no bonds from the start"),
+          key("residual_friction", &S::residual_friction, not_negative,
+              "coefficient of friction of contacts without a bond, where they rub; left out: friction")};
 }
 
 std::vector<Key<StrengthTargetCase>> strength_target_keys() {
@@ -77,6 +82,11 @@ void check_strength_target(const TomlValue& root) {
       fail_at(*given, fmt::format("strength.{}", name), "it is given beside [strength_target]",
               "calibrate looks for it; friction, bond_length and weibull_modulus of [strength] are kept",
               "Remove one of them");
+  }
+  for (const char* name : {"after_breaking", "residual_friction"}) {
+    if (const TomlValue* given = strength->find(name); given != nullptr)
+      fail_at(*given, fmt::format("strength.{}", name), "it is given beside [strength_target]",
+              "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");
   }
 }
 

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/unbonded/contact_rates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace equidem {
+namespace {
+
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+ContactForce rate_of_force(const ContactTangent& a, const ContactDeformation& d) {
+  return {a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
+}
+
+constexpr double rounded_rate = 1e-14;  // of motions, as springs take it for a force
+
+/// The residual of the rates: what drives less what contacts take.
+class RateResidual {
+ public:
+  RateResidual(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const Driving& driving)
+      : contacts_(contacts), tangents_(tangents), driving_(driving) {}
+
+  /// \return its largest component over the largest rate of a force
+  double evaluate(Rates& rates, std::vector<double>& residual) const {
+    const auto& held = contacts_.unknowns().held;
+    const std::vector<double>& load = driving_.pattern->force;
+    std::vector<double> internal(contacts_.components(), 0.0);
+    rates.force_scale = 0;
+    double stiffest = 0, fastest = 0;
+    for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
+    rates.deformation.resize(contacts_.contacts());
+    for (std::size_t c = 0; c < contacts_.contacts(); ++c) {
+      ContactDeformation d = contacts_.deformation(c, rates.motion);
+      if (!driving_.affine.empty()) {
+        d.normal += rates.lambda * driving_.affine[c].normal;
+        d.tangential += rates.lambda * driving_.affine[c].tangential;
+        fastest = std::max({fastest, std::abs(d.normal), std::abs(d.tangential)});
+      }
+      rates.deformation[c] = d;
+      stiffest = std::max(stiffest, tangents_[c].nn);
+      const ContactForce f = rate_of_force(tangents_[c], d);
+      if (f.normal == 0 && f.tangential == 0) continue;
+      rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
+      contacts_.add_internal(c, f, internal);
+    }
+    double sum = 0;
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      residual[k] = 0;
+      if (held[k] != 0) continue;
+      const double from_load = load.empty() ? 0 : rates.lambda * load[k];
+      const double beside = driving_.beside.empty() ? 0 : driving_.beside[k];
+      rates.force_scale = std::max({rates.force_scale, std::abs(from_load), std::abs(beside)});
+      residual[k] = from_load + beside - internal[k];
+      sum = std::max(sum, std::abs(residual[k]));
+    }
+    // Forces that no more than the rounding of motions leaves are none.
+    const double none = rounded_rate * stiffest * fastest;
+    rates.force_scale = std::max(rates.force_scale, none);
+    if (sum <= none) return 0;
+    return rates.force_scale > 0 ? sum / rates.force_scale : 0;
+  }
+
+ private:
+  const ContactOperator& contacts_;
+  std::span<const ContactTangent> tangents_;
+  const Driving& driving_;
+};
+
+constexpr double balanced = 1e-11, refined = 1e-14, round_off_share = 1e-15;
+constexpr int most_refinements = 40;
+
+/// \return the residual that is left
+double refine(const ContactOperator& contacts, const RateResidual& residual_of, const TangentSolver& solver,
+              const Driving& driving, Rates& rates) {
+  const std::vector<double>& load = driving.pattern->force;
+  std::vector<double> residual(rates.motion.size()), along;
+  double along_load = 0;
+  if (driving.by_motion) {
+    along = load;
+    for (std::size_t k = 0; k < along.size(); ++k) along[k] = contacts.unknowns().held[k] != 0 ? 0 : along[k];
+    solver.solve(along);
+    along_load = dot(load, along);
+  }
+  double left = residual_of.evaluate(rates, residual);
+  Rates best = rates;
+  for (int k = 0; k < most_refinements; ++k) {
+    const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
+    if (k > 0 && left <= refined) break;
+    // What nothing resists would follow the round-off of forces far.
+    for (double& r : residual) r = std::abs(r) > round_off_share * rates.force_scale ? r : 0;
+    solver.solve(residual);
+    const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
+    rates.lambda += lambda;
+    for (std::size_t m = 0; m < residual.size(); ++m)
+      rates.motion[m] += residual[m] + (driving.by_motion ? lambda * along[m] : 0);
+    const double now = residual_of.evaluate(rates, residual);
+    if (k > 1 && !(now < 0.8 * left)) {
+      if (now < left) best = rates, left = now;
+      break;
+    }
+    left = now;
+    best = rates;
+  }
+  rates = std::move(best);
+  return left;
+}
+
+/// The contacts on limits whose rates ask for another status.
+std::vector<std::pair<std::size_t, ContactStatus>> inconsistent(const RateProblem& problem, const RateAnswer& answer) {
+  std::vector<std::pair<std::size_t, ContactStatus>> wrong;
+  const double none = answer.rates.negligible;
+  for (const LimitContact& at : problem.limits) {
+    const ContactStatus present = answer.status[at.contact];
+    const ContactStatus wanted =
+        status_after(problem.laws[at.contact], at, answer.rates.deformation[at.contact], present, none);
+    if (wanted != present) wrong.emplace_back(at.contact, wanted);
+  }
+  return wrong;
+}
+
+}  // namespace
+
+Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
+               const Driving& driving) {
+  const RateResidual residual_of(contacts, tangents, driving);
+  const auto& held = contacts.unknowns().held;
+  const std::vector<double>& prescribed = driving.pattern->prescribed;
+  solver.set(tangents);
+  Rates rates;
+  for (int attempt = 0;; ++attempt) {
+    rates = {};
+    rates.lambda = driving.by_motion ? 0 : driving.rate;
+    rates.motion.assign(contacts.components(), 0.0);
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      if (held[k] != 0 && !prescribed.empty()) rates.motion[k] = rates.lambda * prescribed[k];
+    }
+    const double left = refine(contacts, residual_of, solver, driving, rates);
+    rates.balanced = left <= balanced;
+    if (rates.balanced || attempt > 0) return rates;
+    solver.refresh();
+  }
+}
+
+std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status) {
+  std::vector<ContactTangent> tangents;
+  tangents.reserve(laws.size());
+  for (std::size_t c = 0; c < laws.size(); ++c) tangents.push_back(laws[c].tangent(status[c]));
+  return tangents;
+}
+
+double negligible_rate(const RateProblem& problem, const Rates& rates) {
+  double largest = 0;
+  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
+    const ContactDeformation& d = rates.deformation[c];
+    const SpringConstants& k = problem.laws[c].k;
+    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
+  }
+  return 1e-9 * rates.force_scale + 1e-11 * largest;
+}
+
+bool agree(const RateProblem& problem, const RateAnswer& answer) {
+  return inconsistent(problem, answer).empty();
+}
+
+RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {
+  RateAnswer answer;
+  answer.status = std::move(status);
+  std::set<std::vector<ContactStatus>> seen;
+  const auto on_limits = [&] {
+    std::vector<ContactStatus> chosen;
+    for (const LimitContact& at : problem.limits) chosen.push_back(answer.status[at.contact]);
+    return chosen;
+  };
+  bool one_at_a_time = false;
+  const std::size_t most = 60 + 20 * problem.limits.size();
+  for (std::size_t k = 0; k < most; ++k) {
+    answer.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, answer.status), problem.driving);
+    answer.rates.negligible = negligible_rate(problem, answer.rates);
+    const auto wrong = inconsistent(problem, answer);
+    if (wrong.empty()) {
+      answer.agrees = true;
+      return answer;
+    }
+    if (!seen.insert(on_limits()).second) {
+      if (one_at_a_time) return answer;
+      one_at_a_time = true;
+      seen.clear();
+    }
+    const std::size_t changes = one_at_a_time ? 1 : wrong.size();
+    for (std::size_t m = 0; m < changes; ++m) answer.status[wrong[m].first] = wrong[m].second;
+  }
+  return answer;
+}
+
+}  // namespace equidem

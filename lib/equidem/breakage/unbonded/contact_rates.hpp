@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The rates at which a network with unbonded contacts goes on: motions, load factor and deformations, per unit of a
+/// parameter that grows along the path.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/breakage/unbonded/contact_operator.hpp"
+#include "equidem/breakage/unbonded/tangent_solver.hpp"
+#include "equidem/statics/stiffness_solver.hpp"
+
+namespace equidem {
+
+/// The cause of a motion: the pattern times the rate of lambda, and forces beside it.
+struct Driving {
+  const RightHandSide* pattern = nullptr;
+  std::span<const ContactDeformation> affine{};  ///< of the pattern's mean gradient; empty: none
+  std::span<const double> beside{};              ///< N/m per component and unit; empty: none
+  bool by_motion = false;  ///< the motion f . u of the pattern's loads f is prescribed, and lambda follows
+  double rate = 0;         ///< of lambda, or of f . u
+};
+
+struct Rates {
+  std::vector<double> motion;                   ///< per component
+  std::vector<ContactDeformation> deformation;  ///< per contact, that of a mean gradient included
+  double lambda = 0;
+  double force_scale = 0;  ///< the largest rate of a contact force or load
+  double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
+  bool balanced = false;   ///< false: loads drive a motion that nothing resists
+};
+
+/// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing
+/// resists: those motions are then the least ones.
+Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
+               const Driving& driving);
+
+struct RateProblem {
+  const ContactOperator& contacts;
+  std::span<const UnbondedLaw> laws;
+  std::span<const LimitContact> limits;
+  Driving driving;
+};
+
+struct RateAnswer {
+  bool agrees = false;                ///< false: no set of statuses was found that agrees with its rates
+  std::vector<ContactStatus> status;  ///< per contact
+  Rates rates;
+};
+
+std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
+
+/// Rates::negligible of these rates.
+double negligible_rate(const RateProblem& problem, const Rates& rates);
+
+/// Whether the rates ask for no other status of a contact on a limit.
+bool agree(const RateProblem& problem, const RateAnswer& answer);
+
+/// The statuses of the contacts on limits that agree with the rates which follow from them: Newton's method on the
+/// piecewise linear problem from the statuses given, then changes one at a time, the contact of least number first
+/// (Murty's least-index method of linear complementarity, finite where the answer is unique for all loads).
+RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status);
+
+}  // namespace equidem

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/unbonded/rate_branches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/breakage/unbonded/dense_lu.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double same_rates = 1e-6;        // relative, of answers that differ by round-off
+constexpr double singular = 1e-10;         // least pivot of a combination that has rates at all
+constexpr std::size_t most_pivoted = 400;  // contacts on limits, of complementary pivots
+
+std::vector<ContactStatus> choices_of(const RateProblem& problem, const LimitContact& at) {
+  using enum ContactStatus;
+  if (at.limit == OnLimit::friction) return {stuck, slipping(at.direction)};
+  if (!problem.laws[at.contact].rough()) return {stuck, open};
+  return {stuck, open, slips_forward, slips_backward};
+}
+
+/// All combinations of the choices of several contacts, one after another.
+class Combinations {
+ public:
+  Combinations(const RateProblem& problem, std::vector<LimitContact> limits) : limits_(std::move(limits)) {
+    for (const LimitContact& at : limits_) choices_.push_back(choices_of(problem, at));
+    digits_.assign(limits_.size(), 0);
+  }
+  [[nodiscard]] double count() const {
+    double product = 1;
+    for (const auto& choices : choices_) product *= static_cast<double>(choices.size());
+    return product;
+  }
+  [[nodiscard]] const std::vector<LimitContact>& limits() const { return limits_; }
+  [[nodiscard]] ContactStatus of(std::size_t k) const { return choices_[k][digits_[k]]; }
+  /// \return false behind the last one
+  bool next() {
+    for (std::size_t k = 0; k < digits_.size(); ++k) {
+      if (++digits_[k] < choices_[k].size()) return true;
+      digits_[k] = 0;
+    }
+    return false;
+  }
+
+ private:
+  std::vector<LimitContact> limits_;
+  std::vector<std::vector<ContactStatus>> choices_;
+  std::vector<std::size_t> digits_;
+};
+
+/// C of the contacts on limits, 2 rows and columns each.
+std::vector<double> compliance(const RateProblem& problem, const TangentSolver& solver) {
+  const ContactOperator& contacts = problem.contacts;
+  const auto& held = contacts.unknowns().held;
+  const std::vector<double>& load = problem.driving.pattern->force;
+  const std::size_t m = problem.limits.size(), n = 2 * m;
+  std::vector<double> c(n * n), along;
+  const auto dot = [&](std::span<const double> x) {
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
+    return sum;
+  };
+  const auto solve = [&](std::vector<double>& x) {
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = held[k] != 0 ? 0 : x[k];
+    solver.solve(x);
+  };
+  if (problem.driving.by_motion) solve(along = load);
+  for (std::size_t q = 0; q < n; ++q) {
+    std::vector<double> z(contacts.components(), 0.0);
+    contacts.add_internal(problem.limits[q / 2].contact, q % 2 == 0 ? ContactForce{1, 0} : ContactForce{0, 1}, z);
+    solve(z);
+    if (problem.driving.by_motion) {
+      const double by = dot(z) / dot(along);
+      for (std::size_t k = 0; k < z.size(); ++k) z[k] -= by * along[k];
+    }
+    for (std::size_t p = 0; p < m; ++p) {
+      const ContactDeformation d = contacts.deformation(problem.limits[p].contact, z);
+      c[2 * p * n + q] = d.normal;
+      c[(2 * p + 1) * n + q] = d.tangential;
+    }
+  }
+  return c;
+}
+
+/// An opening or a slip of a contact on a limit.
+struct Multiplier {
+  std::size_t place;  // in RateProblem::limits
+  bool opens;
+  double sign;  // of the slip
+};
+
+}  // namespace
+
+Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
+                       std::span<const std::size_t> fresh) {
+  Branches result;
+  Combinations all(problem, {problem.limits.begin(), problem.limits.end()});
+  std::vector<std::size_t> place;  // in problem.limits, of the contacts that are tried
+  for (std::size_t p = 0; p < problem.limits.size(); ++p) place.push_back(p);
+  result.all_tried = all.count() <= static_cast<double>(most_branches);
+  if (!result.all_tried) {
+    std::erase_if(place,
+                  [&](std::size_t p) { return std::ranges::find(fresh, problem.limits[p].contact) == fresh.end(); });
+    std::vector<LimitContact> some;
+    for (const std::size_t p : place) some.push_back(problem.limits[p]);
+    all = Combinations(problem, std::move(some));
+    if (all.count() > static_cast<double>(most_branches)) return result;
+    result.some_tried = true;
+  }
+  if (place.empty()) return result;
+  const std::size_t n = 2 * problem.limits.size();
+  const std::vector<double> c = compliance(problem, solver);
+  std::vector<double> d0(n);
+  double largest = 0;
+  for (std::size_t p = 0; p < problem.limits.size(); ++p) {
+    const std::size_t contact = problem.limits[p].contact;
+    d0[2 * p] = answer.rates.deformation[contact].normal;
+    d0[2 * p + 1] = answer.rates.deformation[contact].tangential;
+    largest = std::max({largest, std::abs(d0[2 * p]), std::abs(d0[2 * p + 1])});
+  }
+  const double none = answer.rates.negligible;
+  std::vector<double> system(n * n), d;
+  std::vector<std::size_t> pivots;
+  do {
+    std::fill(system.begin(), system.end(), 0.0);
+    for (std::size_t r = 0; r < n; ++r) system[r * n + r] = 1;
+    bool differs = false;
+    for (std::size_t k = 0; k < place.size(); ++k) {
+      const std::size_t contact = problem.limits[place[k]].contact, q = 2 * place[k];
+      const ContactTangent now = problem.laws[contact].tangent(answer.status[contact]);
+      const ContactTangent then = problem.laws[contact].tangent(all.of(k));
+      differs = differs || !(now == then);
+      for (std::size_t r = 0; r < n; ++r) {
+        system[r * n + q] += c[r * n + q] * (then.nn - now.nn) + c[r * n + q + 1] * (then.tn - now.tn);
+        system[r * n + q + 1] += c[r * n + q + 1] * (then.tt - now.tt);
+      }
+    }
+    if (!differs || factorize_dense(system, pivots) < singular) continue;
+    d = d0;
+    solve_dense(system, pivots, d);
+    double change = 0, size = largest;
+    bool agrees = true;
+    for (std::size_t p = 0, k = 0; p < problem.limits.size() && agrees; ++p) {
+      const LimitContact& at = problem.limits[p];
+      const bool tried = k < place.size() && place[k] == p;
+      const ContactStatus status = tried ? all.of(k++) : answer.status[at.contact];
+      agrees = status_after(problem.laws[at.contact], at, {d[2 * p], d[2 * p + 1]}, status, none) == status;
+      for (const std::size_t r : {2 * p, 2 * p + 1}) {
+        change = std::max(change, std::abs(d[r] - d0[r]));
+        size = std::max(size, std::abs(d[r]));
+      }
+    }
+    if (!agrees || change <= same_rates * size) continue;
+    if (++result.others > 1) continue;
+    result.other = answer.status;
+    for (std::size_t k = 0; k < place.size(); ++k) result.other[problem.limits[place[k]].contact] = all.of(k);
+  } while (all.next());
+  return result;
+}
+
+std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
+                                      std::vector<ContactStatus> status) {
+  const std::size_t contacts = problem.limits.size();
+  if (contacts == 0 || contacts > most_pivoted) return {};
+  for (const LimitContact& at : problem.limits) status[at.contact] = ContactStatus::stuck;
+  const Rates base = rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving);
+  const std::vector<double> c = compliance(problem, solver);
+  std::vector<Multiplier> unknowns;
+  for (std::size_t p = 0; p < contacts; ++p) {
+    const LimitContact& at = problem.limits[p];
+    if (at.limit == OnLimit::apex) unknowns.push_back({p, true, 1});
+    if (!problem.laws[at.contact].rough()) continue;
+    if (at.limit == OnLimit::friction) unknowns.push_back({p, false, at.direction});
+    if (at.limit == OnLimit::apex) unknowns.push_back({p, false, 1}), unknowns.push_back({p, false, -1});
+  }
+  const auto law = [&](const Multiplier& m) -> const UnbondedLaw& {
+    return problem.laws[problem.limits[m.place].contact];
+  };
+  // w of a multiplier where the contact deforms by d beside its own eigenstrain.
+  const auto slack = [&](const Multiplier& m, double normal, double tangential) {
+    const UnbondedLaw& l = law(m);
+    const double n = l.k.kN * normal, t = l.k.kT * tangential;
+    return m.opens ? -n : -(m.sign * t + l.friction * n);
+  };
+  const std::size_t n = unknowns.size(), width = 2 * contacts;
+  std::vector<double> matrix(n * n), q(n);
+  double stiffest = 0, unit = 0;
+  for (std::size_t r = 0; r < n; ++r) {
+    const ContactDeformation& d = base.deformation[problem.limits[unknowns[r].place].contact];
+    q[r] = slack(unknowns[r], d.normal, d.tangential);
+    unit = std::max(unit, std::abs(q[r]));
+    stiffest = std::max(stiffest, law(unknowns[r]).k.kN);
+  }
+  if (unit == 0) return {};
+  for (std::size_t k = 0; k < n; ++k) {
+    const Multiplier& by = unknowns[k];
+    const std::size_t column = 2 * by.place + (by.opens ? 0 : 1);
+    const double stress = by.opens ? law(by).k.kN : law(by).k.kT * by.sign;
+    for (std::size_t r = 0; r < n; ++r) {
+      const std::size_t p = 2 * unknowns[r].place;
+      const bool own = unknowns[r].place == by.place;
+      const double normal = c[p * width + column] * stress - (own && by.opens ? 1 : 0);
+      const double tangential = c[(p + 1) * width + column] * stress - (own && !by.opens ? by.sign : 0);
+      matrix[r * n + k] = slack(unknowns[r], normal, tangential) / stiffest;
+    }
+  }
+  for (double& x : q) x = std::abs(x) > 1e-12 * unit ? x / unit : 0;
+  const std::optional<std::vector<double>> z = solve_complementarity(matrix, q);
+  if (!z) return {};
+  const double largest = *std::ranges::max_element(*z);
+  for (std::size_t k = 0; k < n; ++k) {
+    ContactStatus& now = status[problem.limits[unknowns[k].place].contact];
+    if ((*z)[k] <= 1e-10 * largest || now == ContactStatus::open) continue;
+    now = unknowns[k].opens ? ContactStatus::open : slipping(unknowns[k].sign);
+  }
+  RateAnswer answer = solve_rates(problem, solver, std::move(status));
+  if (!answer.agrees || !answer.rates.balanced) return {};
+  return answer;
+}
+
+}  // namespace equidem

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Other answers of the rate problem of contacts on their limits: with friction it need not have just one.
+///
+/// Relative to an answer with the tangents A, another choice of statuses with the tangents A + dA has the deformations
+///
+///   (I + C dA) D = D_0,   C = G K^-1 G^T over the contacts on limits,
+///
+/// so that all combinations can be tried in the space of those contacts, without the network.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "equidem/breakage/unbonded/contact_rates.hpp"
+
+namespace equidem {
+
+/// Combinations of statuses that are tried, at most.
+inline constexpr std::int64_t most_branches = 4096;
+
+struct Branches {
+  bool all_tried = false;              ///< every combination of the contacts on limits; false: they are too many
+  bool some_tried = false;             ///< every combination of the contacts given as `fresh`, the others as they are
+  std::int64_t others = 0;             ///< answers with other rates than the one given
+  std::vector<ContactStatus> other{};  ///< per contact, of the first of them; empty: none
+};
+
+/// \param solver with the tangents of the answer, which it keeps
+/// \param fresh the contacts whose statuses are tried where those of all are too many
+Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
+                       std::span<const std::size_t> fresh);
+
+/// An answer by complementary pivots, from the network in which all contacts on limits stick: with the openings a, the
+/// slips s forward and backward,
+///
+///   0 <= a  _|_  -N' >= 0,   0 <= s  _|_  -mu N' -+ T' >= 0.
+///
+/// \return none where the pivots find none, where the contacts on limits are too many, or where the answer that they
+///         find does not agree with its rates
+std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
+                                      std::vector<ContactStatus> status);
+
+}  // namespace equidem

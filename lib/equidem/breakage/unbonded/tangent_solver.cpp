@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/unbonded/tangent_solver.hpp"
+
+#include <algorithm>
+
+#include "equidem/breakage/unbonded/dense_lu.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/linear/umfpack_factorization.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t most_changed = 32;  // contacts, after which a new factorization is cheaper
+constexpr double least_pivot = 1e-7;      // of the capacity matrix: below, too few digits are left
+
+ContactForce product(const ContactTangent& a, const ContactTangent& base, double normal, double tangential) {
+  return {(a.nn - base.nn) * normal, (a.tn - base.tn) * normal + (a.tt - base.tt) * tangential};
+}
+
+}  // namespace
+
+TangentSolver::TangentSolver(const ContactOperator& contacts, double ground) : contacts_(contacts), ground_(ground) {}
+
+void TangentSolver::factorize() {
+  base_ = now_;
+  changed_.clear();
+  columns_.clear();
+  factor_ = umfpack_lu(contacts_.matrix(base_, ground_), 1);
+  ++factorizations_;
+  if (factor_ != nullptr) return;
+  computation_failed("the tangent of the contacts has a zero pivot", "springs that slip have lost all stiffness",
+                     "Check the friction and the springs");
+}
+
+void TangentSolver::refresh() {
+  if (!changed_.empty()) factorize();
+}
+
+void TangentSolver::set(std::span<const ContactTangent> tangents) {
+  now_.assign(tangents.begin(), tangents.end());
+  changed_.clear();
+  if (factor_ != nullptr) {
+    for (std::size_t c = 0; c < now_.size(); ++c) {
+      if (!(now_[c] == base_[c])) changed_.push_back(c);
+    }
+  }
+  if (factor_ == nullptr || changed_.size() > most_changed || !update()) factorize();
+}
+
+const TangentSolver::Columns& TangentSolver::columns_of(std::size_t contact) {
+  const auto known = columns_.find(contact);
+  if (known != columns_.end()) return known->second;
+  Columns columns{std::vector<double>(contacts_.components(), 0.0), std::vector<double>(contacts_.components(), 0.0)};
+  contacts_.add_internal(contact, {1, 0}, columns.normal);
+  contacts_.add_internal(contact, {0, 1}, columns.tangential);
+  factor_->solve(columns.normal, 1);
+  factor_->solve(columns.tangential, 1);
+  const auto& held = contacts_.unknowns().held;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    if (held[k] != 0) columns.normal[k] = columns.tangential[k] = 0;
+  }
+  ++updates_;
+  return columns_.emplace(contact, std::move(columns)).first->second;
+}
+
+bool TangentSolver::update() {
+  const std::size_t n = 2 * changed_.size();
+  capacity_.assign(n * n, 0.0);
+  for (std::size_t q = 0; q < changed_.size(); ++q) {
+    const std::size_t contact = changed_[q];
+    const Columns& z = columns_of(contact);
+    const ContactForce by_n = product(now_[contact], base_[contact], 1, 0);
+    const ContactForce by_t = product(now_[contact], base_[contact], 0, 1);
+    for (std::size_t p = 0; p < changed_.size(); ++p) {
+      const ContactDeformation n_of = contacts_.deformation(changed_[p], z.normal);
+      const ContactDeformation t_of = contacts_.deformation(changed_[p], z.tangential);
+      double* row = &capacity_[2 * p * n + 2 * q];
+      row[0] = n_of.normal * by_n.normal + t_of.normal * by_n.tangential;
+      row[1] = n_of.normal * by_t.normal + t_of.normal * by_t.tangential;
+      row[n] = n_of.tangential * by_n.normal + t_of.tangential * by_n.tangential;
+      row[n + 1] = n_of.tangential * by_t.normal + t_of.tangential * by_t.tangential;
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) capacity_[k * n + k] += 1;
+  return factorize_dense(capacity_, pivots_) > least_pivot || n == 0;
+}
+
+void TangentSolver::solve(std::span<double> x) const {
+  factor_->solve(x, 1);
+  if (changed_.empty()) return;
+  std::vector<double> w(2 * changed_.size());
+  for (std::size_t p = 0; p < changed_.size(); ++p) {
+    const ContactDeformation d = contacts_.deformation(changed_[p], x);
+    w[2 * p] = d.normal;
+    w[2 * p + 1] = d.tangential;
+  }
+  solve_dense(capacity_, pivots_, w);
+  for (std::size_t p = 0; p < changed_.size(); ++p) {
+    const std::size_t contact = changed_[p];
+    const ContactForce f = product(now_[contact], base_[contact], w[2 * p], w[2 * p + 1]);
+    const Columns& z = columns_.at(contact);
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] -= z.normal[k] * f.normal + z.tangential[k] * f.tangential;
+  }
+}
+
+}  // namespace equidem

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/unbonded/unbonded_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "equidem/breakage/unbonded/rate_branches.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double ground = 1e-9;     // of the stiffest spring: holds what nothing resists
+constexpr double same_time = 1e-10;  // of the parameter: events at once
+
+std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
+  std::vector<UnbondedLaw> laws(scene.assembly.contacts.size());
+  for (std::size_t c = 0; c < laws.size(); ++c) {
+    laws[c] = {scene.springs[c], options.friction, options.rest.empty() ? ContactForce{} : options.rest[c]};
+  }
+  return laws;
+}
+
+bool is_bond(const ContactStrengths& strengths, std::size_t contact) {
+  return strengths.tension[contact] > 0 || strengths.shear[contact] > 0;
+}
+
+std::vector<ContactStatus> first_status(const BreakageScene& scene, std::span<const UnbondedLaw> laws) {
+  std::vector<ContactStatus> status(laws.size());
+  for (std::size_t c = 0; c < laws.size(); ++c) {
+    status[c] = is_bond(scene.strengths, c) ? ContactStatus::bonded
+                : laws[c].rest.normal > 0   ? ContactStatus::open
+                                            : ContactStatus::stuck;
+  }
+  return status;
+}
+
+void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
+  if (scene.springs.any_negative()) {
+    bad_input("a tangential spring is negative, and contacts slip",
+              "with kT < 0 a contact gains energy as it sticks: the limit of friction has no meaning",
+              "Take kT >= 0, or contacts that are gone when they break");
+  }
+  if (!(options.friction >= 0) || !std::isfinite(options.friction))
+    bad_input(fmt::format("the friction of contacts without a bond is {}", options.friction),
+              "it must be finite and not negative", "Correct it");
+  const LoadPath& path = scene.path;
+  if (path.control == LoadControl::path) {
+    bad_input("lambda may fall from event to event, and contacts close and slip",
+              "their state depends on the path by which lambda falls, which this control leaves open",
+              "Take control = \"load\" or \"motion\"");
+  }
+  if (path.control == LoadControl::load && path.driven_by != DrivenBy::loads) {
+    bad_input("the load is held, and a motion is imposed", "the motion would have to follow the load, not lambda",
+              "Take control = \"motion\", or drive by loads");
+  }
+}
+
+}  // namespace
+
+struct UnbondedRun::Next {
+  double t = infinite;
+  std::size_t contact = 0;
+  std::optional<BreakMode> breaks;  ///< none: another event
+  std::int64_t ties = 0;
+  double gap = infinite;
+};
+
+UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
+                         UnbondedOptions options)
+    : scene_(scene),
+      options_(std::move(options)),
+      unknowns_(number_unknowns(scene.assembly, scene.springs, effects, supports)),
+      contacts_(scene.assembly, unknowns_),
+      solver_(contacts_, ground * scene.springs.largest()),
+      laws_(laws_of(scene, options_)),
+      affine_(contacts_.affine(scene.path.pattern.gradient)) {
+  check_scene(scene_, options_);
+  state_ = std::make_unique<UnbondedState>(scene_.assembly, scene_.springs, scene_.path, unknowns_, contacts_, laws_,
+                                           first_status(scene_, laws_));
+  dead_done_ = !scene_.path.dead;
+  if (dead_done_) points_.push_back({0, 0, state_->load(), state_->mean_motion()});
+}
+
+double UnbondedRun::direction(std::int64_t leg) const {
+  const std::vector<double>& legs = scene_.path.legs;
+  const auto k = static_cast<std::size_t>(leg);
+  if (k >= legs.size()) return 1;
+  return legs[k] - (k == 0 ? 0 : legs[k - 1]) < 0 ? -1 : 1;
+}
+
+bool UnbondedRun::by_motion() const {
+  return dead_done_ && scene_.path.driven_by == DrivenBy::loads && scene_.path.control == LoadControl::motion;
+}
+
+UnbondedCounters UnbondedRun::counters() const {
+  UnbondedCounters all = counters_;
+  all.factorizations = solver_.factorizations();
+  all.updates = solver_.updates();
+  return all;
+}
+
+Driving UnbondedRun::driving() const {
+  Driving d;
+  const LoadPath& path = scene_.path;
+  d.pattern = dead_done_ ? &path.pattern : &*path.dead;
+  if (dead_done_) d.affine = affine_;
+  d.by_motion = by_motion();
+  if (releasing()) {
+    d.beside = beside_;
+  } else if (d.by_motion) {
+    d.rate = direction(leg_) * path.size;
+  } else {
+    d.rate = dead_done_ ? direction(leg_) : 1;
+  }
+  return d;
+}
+
+std::vector<LimitContact> UnbondedRun::contacts_on_limits() const {
+  const double none = state_->negligible_force();
+  std::vector<LimitContact> limits;
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const ContactStatus status = state_->status()[c];
+    if (status == ContactStatus::bonded) continue;
+    const double n = state_->normal_coordinate(c);
+    if (n > none || (status != ContactStatus::open && n < -none && !laws_[c].rough())) continue;
+    // What a broken bond has yet to give up is no part of the law.
+    const ContactForce f = state_->law_force(c);
+    if (std::abs(n) <= none) {
+      limits.push_back({c, OnLimit::apex, 1});
+    } else if (is_slipping(status)) {
+      limits.push_back({c, OnLimit::friction, direction_of(status)});
+    } else if (std::abs(f.tangential) + laws_[c].friction * n >= -none) {
+      limits.push_back({c, OnLimit::friction, f.tangential < 0 ? -1.0 : 1.0});
+    }
+  }
+  return limits;
+}
+
+bool UnbondedRun::find_rates() {
+  if (releasing()) beside_ = state_->unreleased();
+  const std::vector<LimitContact> limits = contacts_on_limits();
+  const RateProblem problem{contacts_, laws_, limits, driving()};
+  RateAnswer answer = solve_rates(problem, solver_, state_->status());
+  if (!answer.agrees || !answer.rates.balanced) {
+    std::optional<RateAnswer> other = pivot_rates(problem, solver_, state_->status());
+    if (!other) {
+      if (answer.agrees) record_changes(answer.status);
+      end(PathEnd::load_moves_part, sentence_on(answer));
+      return false;
+    }
+    answer = std::move(*other);
+  }
+  const std::size_t first = events_.size();
+  record_changes(answer.status);
+  if (events_.size() > first || !checked_) look_for_branches(problem, answer, first);
+  for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
+  rates_ = std::move(answer.rates);
+  return true;
+}
+
+/// Looks for other answers of an increment that begins with these events, and tells them.
+void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first) {
+  std::vector<std::size_t> fresh;
+  for (const LimitContact& at : problem.limits) {
+    if (!is_slipping(state_->status()[at.contact]) || answer.status[at.contact] != state_->status()[at.contact])
+      fresh.push_back(at.contact);
+  }
+  const Branches branches = find_branches(problem, solver_, answer, fresh);
+  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
+  checked_ = true;
+  if (!branches.all_tried) {
+    for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
+  }
+  if (branches.others == 0) return;
+  const Rates other = rates_of(contacts_, solver_, tangents_of(laws_, branches.other), problem.driving);
+  solver_.set(tangents_of(laws_, answer.status));
+  double size = 0, change = 0;
+  for (std::size_t k = 0; k < other.motion.size(); ++k) {
+    size = std::max(size, std::abs(answer.rates.motion[k]));
+    change = std::max(change, std::abs(other.motion[k] - answer.rates.motion[k]));
+  }
+  const double by_motion = size > 0 ? change / size : infinite;
+  const double load = load_rate_of(answer.rates, answer.status), other_load = load_rate_of(other, branches.other);
+  const double by_load = load != 0 ? std::abs(other_load / load - 1) : other_load != 0 ? infinite : 0;
+  counters_.largest_motion_difference = std::max(counters_.largest_motion_difference, by_motion);
+  counters_.largest_load_difference = std::max(counters_.largest_load_difference, by_load);
+  for (std::size_t k = first; k < events_.size(); ++k) {
+    events_[k].other_answers = branches.others;
+    events_[k].motion_difference = by_motion;
+    events_[k].load_difference = by_load;
+  }
+}
+
+/// Rate of LoadPath::load.
+double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const {
+  const LoadPath& path = scene_.path;
+  if (path.driven_by == DrivenBy::loads) return rates.lambda * path.size;
+  std::vector<double> internal(contacts_.components(), 0.0);
+  double sum = 0;
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const ContactTangent a = laws_[c].tangent(status[c]);
+    const ContactDeformation& d = rates.deformation[c];
+    const ContactForce f{a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
+    contacts_.add_internal(c, f, internal);
+    if (!affine_.empty()) sum += f.normal * affine_[c].normal + f.tangential * affine_[c].tangential;
+  }
+  if (path.driven_by == DrivenBy::strain) return sum / (path.size * scene_.assembly.area());
+  for (std::size_t k = 0; k < internal.size(); ++k) sum += path.pattern.prescribed[k] * internal[k];
+  return sum / path.size;
+}
+
+std::string UnbondedRun::sentence_on(const RateAnswer& answer) const {
+  if (!answer.agrees) {
+    return "no statuses of the contacts on their limits were found that balance what acts on them: with friction "
+           "the increment may have no answer";
+  }
+  std::size_t fastest = 0;
+  for (std::size_t k = 0; k < answer.rates.motion.size(); ++k) {
+    if (std::abs(answer.rates.motion[k]) > std::abs(answer.rates.motion[fastest])) fastest = k;
+  }
+  const auto disc = fastest / static_cast<std::size_t>(unknowns_.per_disc);
+  return fmt::format("nothing resists the motion of the part around {} any more: its contacts are open or slip",
+                     describe_disc(scene_.assembly, disc));
+}
+
+double UnbondedRun::stage_end() const {
+  if (releasing()) return 1;
+  if (!dead_done_) return 1 - state_->dead();
+  const auto k = static_cast<std::size_t>(leg_);
+  if (k >= scene_.path.legs.size()) return infinite;
+  const double left = scene_.path.legs[k] - state_->lambda();
+  return left * rates_->lambda > 0 ? left / rates_->lambda : left * direction(leg_) <= 0 ? 0 : infinite;
+}
+
+UnbondedRun::Next UnbondedRun::next_event() const {
+  const double none = rates_->negligible, tolerance = state_->negligible_force();
+  std::vector<double> times(laws_.size(), infinite);
+  std::vector<std::optional<BreakMode>> modes(laws_.size());
+  const auto reach = [&](std::size_t c, double a, double b, std::optional<BreakMode> mode) {
+    double t = infinite;
+    if (a > tolerance && mode) {
+      t = 0;
+    } else if (b > none) {
+      t = std::max(0.0, -a / b);
+    }
+    if (t < times[c]) times[c] = t, modes[c] = mode;
+  };
+  const double mu = scene_.strengths.friction;
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const ContactStatus status = state_->status()[c];
+    const ContactTangent a = laws_[c].tangent(status);
+    const ContactDeformation& d = rates_->deformation[c];
+    const ContactForce f = state_->law_force(c);
+    const double n1 = a.nn * d.normal, t1 = a.tn * d.normal + a.tt * d.tangential;
+    switch (status) {
+      case ContactStatus::bonded:
+        reach(c, f.normal - scene_.strengths.tension[c], n1, BreakMode::tension);
+        for (const double sign : {1.0, -1.0})
+          reach(c, sign * f.tangential + mu * f.normal - scene_.strengths.shear[c], sign * t1 + mu * n1,
+                BreakMode::shear);
+        break;
+      case ContactStatus::stuck:
+        if (!laws_[c].rough()) {
+          reach(c, f.normal, n1, {});
+          break;
+        }
+        for (const double sign : {1.0, -1.0})
+          reach(c, sign * f.tangential + laws_[c].friction * f.normal, sign * t1 + laws_[c].friction * n1, {});
+        break;
+      case ContactStatus::slips_forward:
+      case ContactStatus::slips_backward:
+        reach(c, f.normal, n1, {});
+        break;
+      case ContactStatus::open:
+        reach(c, -state_->normal_coordinate(c), -laws_[c].k.kN * d.normal, {});
+        break;
+    }
+  }
+  Next next;
+  for (std::size_t c = 0; c < times.size(); ++c) {
+    if (times[c] < next.t) next.t = times[c];
+  }
+  if (next.t == infinite) return next;
+  bool first = true;
+  double second = infinite;
+  for (std::size_t c = 0; c < times.size(); ++c) {
+    if (times[c] > next.t * (1 + same_time)) {
+      second = std::min(second, times[c]);
+    } else if (first) {
+      next.contact = c;
+      next.breaks = modes[c];
+      first = false;
+    } else {
+      ++next.ties;
+    }
+  }
+  next.gap = next.t > 0 ? second / next.t - 1 : second;
+  return next;
+}
+
+BreakEvent UnbondedRun::event_of(std::size_t contact, BreakMode mode) const {
+  const ContactLedger& ledger = state_->ledger();
+  return {.leg = leg_,
+          .lambda = state_->lambda(),
+          .contact = static_cast<std::int64_t>(contact),
+          .mode = mode,
+          .gap = infinite,
+          .load = state_->load(),
+          .motion = state_->mean_motion(),
+          .stress = state_->stress(),
+          .energy_before = ledger.elastic,
+          .energy_after = ledger.elastic,
+          .work = ledger.work,
+          .load_rate = load_rate_,
+          .motion_rate = motion_rate_,
+          .unstable_modes = -1,
+          .relative_residual = state_->relative_residual(),
+          .friction = ledger.friction};
+}
+
+void UnbondedRun::record_changes(std::span<const ContactStatus> after) {
+  const std::size_t first = events_.size();
+  for (std::size_t c = 0; c < after.size(); ++c) {
+    const ContactStatus before = state_->status()[c];
+    if (before == after[c]) continue;
+    const BreakMode mode = after[c] == ContactStatus::open    ? BreakMode::open
+                           : before == ContactStatus::open    ? BreakMode::close
+                           : after[c] == ContactStatus::stuck ? BreakMode::stick
+                                                              : BreakMode::slip;
+    events_.push_back(event_of(c, mode));
+  }
+  for (std::size_t k = first; k < events_.size(); ++k)
+    events_[k].ties = static_cast<std::int64_t>(events_.size() - first - 1);
+}
+
+void UnbondedRun::break_bond(const Next& next) {
+  BreakEvent event = event_of(next.contact, *next.breaks);
+  event.ties = next.ties;
+  event.gap = next.gap;
+  const std::size_t c = next.contact;
+  const double n = state_->normal_coordinate(c), t = state_->forces()[c].tangential;
+  ContactStatus status = ContactStatus::stuck;
+  if (n >= 0) {
+    status = ContactStatus::open;
+  } else if (laws_[c].rough() && std::abs(t) > -laws_[c].friction * n) {
+    status = slipping(t);
+  }
+  state_->break_bond(c, status);
+  breaking_.push_back(events_.size());
+  events_.push_back(event);
+  share_ = 1;
+}
+
+void UnbondedRun::finish_stage() {
+  rates_.reset();
+  if (releasing()) {
+    state_->end_release();
+    for (const std::size_t k : breaking_) {
+      events_[k].energy_after = state_->ledger().elastic;
+      events_[k].energy_released = state_->released_by(static_cast<std::size_t>(events_[k].contact));
+      events_[k].work = state_->ledger().work;
+    }
+    breaking_.clear();
+    return;
+  }
+  if (!dead_done_) {
+    dead_done_ = true;
+    points_.push_back({std::ssize(events_), 0, state_->load(), state_->mean_motion()});
+    return;
+  }
+  points_.push_back({std::ssize(events_), state_->lambda(), state_->load(), state_->mean_motion()});
+  if (++leg_ == std::ssize(scene_.path.legs))
+    end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
+}
+
+void UnbondedRun::end(PathEnd why, std::string sentence) {
+  end_ = why;
+  why_ = std::move(sentence);
+}
+
+bool UnbondedRun::advance() {
+  const std::size_t before = events_.size();
+  still_ = 0;
+  const std::int64_t most_still = 1000 + 20 * std::ssize(laws_);
+  while (end_ == PathEnd::none) {
+    if (!releasing() && events_.size() > before) return true;
+    if (scene_.path.max_events > 0 && std::ssize(events_) >= scene_.path.max_events && !releasing()) {
+      end(PathEnd::most_events,
+          fmt::format("{} are done, as many as asked for", counted(scene_.path.max_events, "event")));
+      break;
+    }
+    if (!rates_) {
+      if (!find_rates()) break;
+      if (!releasing() && events_.size() > before) return true;
+    }
+    const Next next = next_event();
+    const double stage = stage_end(), t = std::min(stage, next.t);
+    if (t == infinite) {
+      end(PathEnd::never_breaks, "no contact changes any more at any lambda");
+      break;
+    }
+    if (++still_ > most_still) {
+      end(PathEnd::load_moves_part, "contacts change without end at the same lambda");
+      break;
+    }
+    if (t > 0) {
+      const double load = state_->load(), motion = state_->mean_motion(), lambda = state_->lambda();
+      if (releasing()) state_->release_to(share_ * (1 - t));
+      state_->move(t, *rates_, !dead_done_, by_motion(), solver_);
+      if (releasing()) share_ *= 1 - t;
+      const double by = state_->lambda() - lambda;
+      load_rate_ = by != 0 ? (state_->load() - load) / by : 0;
+      motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
+      counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());
+    }
+    rates_.reset();
+    if (next.t <= stage && next.breaks) {
+      break_bond(next);
+    } else if (stage <= next.t) {
+      finish_stage();
+    }
+  }
+  return events_.size() > before;
+}
+
+}  // namespace equidem

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Contacts that open, close, slip and stick, and bonds that break and go on as such, event by event along a path of
+/// loading: states of equilibrium without inertia.
+///
+/// The answer depends on the path: dead loads come first, then lambda goes along its legs. Between two events all
+/// forces are linear in lambda. At an event the rates of all contacts on a limit of their law are found together
+/// (contact_rates.hpp), and other answers of that problem are looked for (rate_branches.hpp). A bond that breaks gives
+/// up its force in proportion while lambda is held; bonds that reach their strength meanwhile join it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "equidem/breakage/breakage_run.hpp"
+#include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/breakage/unbonded/contact_rates.hpp"
+#include "equidem/breakage/unbonded/unbonded_state.hpp"
+
+namespace equidem {
+
+struct UnbondedOptions {
+  double friction = 0;               ///< mu of contacts without a bond
+  std::vector<ContactForce> rest{};  ///< N/m, per contact: forces at rest, balanced by loads that stay; empty: none
+};
+
+struct UnbondedCounters {
+  std::int64_t factorizations = 0, updates = 0;
+  std::int64_t unique = 0;      ///< increments of which no other answer exists
+  std::int64_t not_unique = 0;  ///< of which another answer was found
+  std::int64_t unchecked = 0;   ///< with too many contacts on their limits to try all combinations
+  /// Relative, of the rates of motion and of load of the first other answer.
+  double largest_motion_difference = 0, largest_load_difference = 0;
+  double largest_residual = 0;
+};
+
+class UnbondedRun : public EventPath {
+ public:
+  /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
+  /// \throws Error (bad_input) where a tangential spring is negative, where the control is none of those that a path
+  ///         with a history has, or where forces at rest pull or are beyond friction
+  UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
+
+  bool advance() override;
+  [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
+  [[nodiscard]] PathEnd end() const override { return end_; }
+  [[nodiscard]] const std::string& why() const override { return why_; }
+  [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
+  [[nodiscard]] double direction(std::int64_t leg) const override;
+  /// None: contacts that carry nothing at first may close.
+  [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
+  [[nodiscard]] double lambda() const override { return state_->lambda(); }
+  [[nodiscard]] bool has_history() const override { return true; }
+  [[nodiscard]] double load_left(double) const override { return state_->load(); }
+  [[nodiscard]] double elastic_energy() const override { return state_->ledger().elastic; }
+  [[nodiscard]] double released() const override { return state_->ledger().released; }
+  [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
+  [[nodiscard]] const UnbondedState& state() const { return *state_; }
+  [[nodiscard]] UnbondedCounters counters() const;
+
+ private:
+  struct Next;
+  [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
+  [[nodiscard]] bool by_motion() const;
+  [[nodiscard]] Driving driving() const;
+  [[nodiscard]] std::vector<LimitContact> contacts_on_limits() const;
+  bool find_rates();
+  void look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first);
+  [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
+  [[nodiscard]] std::string sentence_on(const RateAnswer& answer) const;
+  [[nodiscard]] Next next_event() const;
+  [[nodiscard]] double stage_end() const;
+  void finish_stage();
+  void break_bond(const Next& next);
+  BreakEvent event_of(std::size_t contact, BreakMode mode) const;
+  void record_changes(std::span<const ContactStatus> after);
+  void end(PathEnd why, std::string sentence);
+
+  BreakageScene scene_;
+  UnbondedOptions options_;
+  DegreesOfFreedom unknowns_;
+  ContactOperator contacts_;
+  TangentSolver solver_;
+  std::vector<UnbondedLaw> laws_;
+  std::vector<ContactDeformation> affine_;
+  std::unique_ptr<UnbondedState> state_;
+  std::vector<BreakEvent> events_;
+  std::vector<LegPoint> points_;
+  std::vector<std::int32_t> idle_;
+  std::vector<std::size_t> breaking_;  // events whose energy behind them is not known yet
+  std::vector<double> beside_;         // per component, of a release
+  std::optional<Rates> rates_;
+  bool dead_done_ = false, checked_ = false;
+  std::int64_t leg_ = 0, still_ = 0;
+  double load_rate_ = 0, motion_rate_ = 0, share_ = 0;
+  PathEnd end_ = PathEnd::none;
+  std::string why_;
+  UnbondedCounters counters_;
+};
+
+}  // namespace equidem

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/breakage/unbonded/unbonded_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/core/threads.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr std::size_t contacts_at_once = 1 << 12;
+constexpr double on_limit = 1e-11;        // of the largest force: a contact is on a limit of its law
+constexpr double rounded_motion = 1e-14;  // of motions, as springs take it for a force
+
+ContactForce operator+(const ContactForce& a, const ContactForce& b) {
+  return {a.normal + b.normal, a.tangential + b.tangential};
+}
+
+ContactForce scaled(const ContactForce& f, double by) {
+  return {by * f.normal, by * f.tangential};
+}
+
+/// Mean force times deformation, of a path along which both are linear.
+double work_of(const ContactForce& from, const ContactForce& to, const ContactDeformation& d0,
+               const ContactDeformation& d1) {
+  return 0.5 * ((from.normal + to.normal) * (d1.normal - d0.normal) +
+                (from.tangential + to.tangential) * (d1.tangential - d0.tangential));
+}
+
+}  // namespace
+
+double ContactLedger::error() const {
+  const double largest = std::max({std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
+  return largest > negligible ? std::abs(work - elastic - friction - released) / largest : 0;
+}
+
+UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
+                             const DegreesOfFreedom& unknowns, const ContactOperator& contacts,
+                             std::span<const UnbondedLaw> laws, std::vector<ContactStatus> status)
+    : assembly_(assembly),
+      springs_(springs),
+      path_(path),
+      unknowns_(unknowns),
+      contacts_(contacts),
+      laws_(laws),
+      graph_(assembly),
+      affine_(contacts.affine(path.pattern.gradient)),
+      status_(std::move(status)),
+      slip_(laws.size(), 0.0),
+      motion_(contacts.components()),
+      rest_load_(contacts.components(), 0.0),
+      kept_(laws.size()),
+      released_by_(laws.size(), 0.0),
+      deformation_(laws.size()),
+      forces_(laws.size()),
+      internal_(contacts.components(), 0.0) {
+  evaluate();
+  for (std::size_t k = 0; k < internal_.size(); ++k) rest_load_[k] = unknowns_.held[k] != 0 ? 0 : internal_[k];
+  rest_energy_ = elastic_energy();
+  std::vector<double> residual(contacts_.components());
+  measure_residual(residual);
+}
+
+void UnbondedState::evaluate() {
+  const SpringNetwork network{assembly_, graph_, springs_, unknowns_};
+  std::optional<Tensor2> gradient;
+  if (path_.pattern.gradient) gradient = lambda_ * *path_.pattern.gradient;
+  parallel_ranges(laws_.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      deformation_[c] = deformation_of(network, motion_, gradient, c);
+      forces_[c] = laws_[c].force(status_[c], deformation_[c], slip_[c]) + scaled(kept_[c], share_);
+    }
+  });
+  internal_force(assembly_, graph_, unknowns_, forces_, internal_);
+}
+
+double UnbondedState::outside(std::size_t k) const {
+  const std::vector<double>& load = path_.pattern.force;
+  double f = rest_load_[k] + (load.empty() ? 0 : lambda_ * load[k]);
+  if (path_.dead) f += dead_ * path_.dead->force[k];
+  return f;
+}
+
+void UnbondedState::measure_residual(std::vector<double>& residual) {
+  double largest = 0, force = 0;
+  for (const ContactForce& f : forces_) force = std::max({force, std::abs(f.normal), std::abs(f.tangential)});
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    const double from_outside = outside(k);
+    force = std::max(force, std::abs(from_outside));
+    residual[k] = unknowns_.held[k] != 0 ? 0 : from_outside - internal_[k];
+    largest = std::max(largest, std::abs(residual[k]));
+  }
+  const double none = round_off_force();
+  force_scale_ = std::max({force_scale_, force, none});
+  residual_ = force_scale_ > none ? largest / force_scale_ : 0;
+}
+
+void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
+  constexpr double good = 4e-15, none = 1e-15;
+  constexpr int most = 6;
+  const std::vector<double>& load = path_.pattern.force;
+  std::vector<double> residual(contacts_.components()), along;
+  const auto dot = [&](std::span<const double> x) {
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
+    return sum;
+  };
+  evaluate();
+  measure_residual(residual);
+  for (int k = 0; k < most && residual_ > good; ++k) {
+    const double before = residual_;
+    const auto kept = std::pair(motion_, lambda_);
+    // Loose discs would follow the round-off of forces far.
+    for (double& r : residual) r = std::abs(r) > none * force_scale_ ? r : 0;
+    solver.solve(residual);
+    if (by_motion) {
+      if (along.empty()) {
+        along = load;
+        for (std::size_t m = 0; m < along.size(); ++m) along[m] = unknowns_.held[m] != 0 ? 0 : along[m];
+        solver.solve(along);
+      }
+      const double by = -dot(residual) / dot(along);
+      for (std::size_t m = 0; m < along.size(); ++m) residual[m] += by * along[m];
+      lambda_ += by;
+    }
+    motion_.add(residual);
+    evaluate();
+    measure_residual(residual);
+    if (residual_ < 0.5 * before) continue;
+    if (residual_ >= before) {
+      motion_ = kept.first;
+      lambda_ = kept.second;
+      evaluate();
+      measure_residual(residual);
+    }
+    break;
+  }
+}
+
+void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion, TangentSolver& solver) {
+  const std::vector<ContactDeformation> deformation = deformation_;
+  const std::vector<ContactForce> forces = forces_;
+  const std::vector<double> slip = slip_, internal = internal_, motion = motion_.high;
+  const double lambda = lambda_, was_kept = kept_share_;
+  std::vector<double> loads(contacts_.components()), step(rates.motion);
+  for (std::size_t k = 0; k < loads.size(); ++k) loads[k] = outside(k);
+  for (double& x : step) x *= t;
+  motion_.add(step);
+  (dead ? dead_ : lambda_) += t * rates.lambda;
+  correct(by_motion, solver);
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    const double by = motion_.high[k] - motion[k];
+    ledger_.work += 0.5 * by * (unknowns_.held[k] != 0 ? internal[k] + internal_[k] : loads[k] + outside(k));
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (is_slipping(status_[c])) {
+      slip_[c] = laws_[c].slip_at(deformation_[c], forces_[c].tangential - share_ * kept_[c].tangential);
+      const double before = forces[c].tangential - was_kept * kept_[c].tangential;
+      const double now = forces_[c].tangential - share_ * kept_[c].tangential;
+      ledger_.friction += 0.5 * (before + now) * (slip_[c] - slip[c]);
+    }
+    if (!affine_.empty()) ledger_.work += work_of(forces[c], forces_[c], {}, affine_[c]) * (lambda_ - lambda);
+  }
+  for (const std::size_t c : releasing_) {
+    const double by = work_of(scaled(kept_[c], was_kept), scaled(kept_[c], share_), deformation[c], deformation_[c]);
+    released_by_[c] += by;
+    ledger_.released += by;
+  }
+  kept_share_ = share_;
+  ledger_.elastic = elastic_energy() - rest_energy_;
+  ledger_.negligible = std::max(ledger_.negligible, round_off_force() * farthest());
+}
+
+double UnbondedState::negligible_force() const {
+  return on_limit * force_scale_ + 4 * round_off_force();
+}
+
+double UnbondedState::farthest() const {
+  double far = 0, strained = 0;
+  for (const double u : motion_.high) far = std::max(far, std::abs(u));
+  for (const ContactDeformation& d : affine_)
+    strained = std::max({strained, std::abs(d.normal), std::abs(d.tangential)});
+  return std::max(far, std::abs(lambda_) * strained);
+}
+
+double UnbondedState::round_off_force() const {
+  return rounded_motion * springs_.largest() * farthest();
+}
+
+void UnbondedState::set_status(std::size_t c, ContactStatus status) {
+  const ContactStatus before = std::exchange(status_[c], status);
+  if (before == status) return;
+  const ContactDeformation& d = deformation_[c];
+  // A contact that closes has no tangential force; where it lets go of a limit it keeps that of the limit.
+  if (before == ContactStatus::open) slip_[c] = laws_[c].slip_at(d, 0);
+}
+
+void UnbondedState::break_bond(std::size_t c, ContactStatus status) {
+  const UnbondedLaw& law = laws_[c];
+  // Bonds that are already letting go begin anew with what they have kept.
+  for (const std::size_t other : releasing_) kept_[other] = scaled(kept_[other], share_);
+  const double bond = linear_spring_energy_of(law.k, forces_[c]);
+  const ContactForce force = forces_[c];
+  status_[c] = status;
+  ContactForce after = law.force(status, deformation_[c], slip_[c]);
+  if (is_slipping(status)) slip_[c] = law.slip_at(deformation_[c], after.tangential);
+  const double left = linear_spring_energy_of(law.k, after);
+  released_by_[c] = bond - left;
+  ledger_.released += bond - left;
+  kept_[c] = {force.normal - after.normal, force.tangential - after.tangential};
+  releasing_.push_back(c);
+  share_ = kept_share_ = 1;
+  ledger_.elastic = elastic_energy() - rest_energy_;
+}
+
+void UnbondedState::end_release() {
+  for (const std::size_t c : releasing_) kept_[c] = {};
+  releasing_.clear();
+  share_ = kept_share_ = 0;
+}
+
+std::vector<double> UnbondedState::unreleased() const {
+  std::vector<double> f(contacts_.components(), 0.0);
+  for (const std::size_t c : releasing_) contacts_.add_internal(c, scaled(kept_[c], share_), f);
+  return f;
+}
+
+double UnbondedState::normal_coordinate(std::size_t c) const {
+  return laws_[c].rest.normal + laws_[c].k.kN * deformation_[c].normal;
+}
+
+double UnbondedState::elastic_energy() const {
+  double sum = 0;
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    sum += linear_spring_energy_of(laws_[c].k, laws_[c].force(status_[c], deformation_[c], slip_[c]));
+  return sum;
+}
+
+double UnbondedState::load() const {
+  if (path_.driven_by == DrivenBy::loads) return lambda_ * path_.size;
+  double sum = 0;
+  if (path_.driven_by == DrivenBy::motions) {
+    const std::vector<double>& moved = path_.pattern.prescribed;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      if (unknowns_.held[k] != 0) sum += moved[k] * (internal_[k] - outside(k));
+    }
+    return sum / path_.size;
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    sum += forces_[c].normal * affine_[c].normal + forces_[c].tangential * affine_[c].tangential;
+  return sum / (path_.size * assembly_.area());
+}
+
+double UnbondedState::mean_motion() const {
+  if (path_.driven_by != DrivenBy::loads) return lambda_ * path_.size;
+  double sum = 0;
+  for (std::size_t k = 0; k < motion_.high.size(); ++k) sum += path_.pattern.force[k] * motion_.high[k];
+  return sum / path_.size;
+}
+
+Tensor2 UnbondedState::stress() const {
+  const double area = assembly_.periodic() || !assembly_.cell_areas.empty() ? assembly_.area() : 0;
+  Tensor2 sum;
+  if (area <= 0) return sum;
+  for (std::size_t c = 0; c < laws_.size(); ++c)
+    sum += outer(force_on_i(frame_of(assembly_, c), forces_[c]), assembly_.branch(assembly_.contacts[c]));
+  return (1 / area) * sum;
+}
+
+}  // namespace equidem

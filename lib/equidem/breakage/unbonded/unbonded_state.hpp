@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The state of a network with unbonded contacts: motions, and the history of each contact that its force depends on.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/breakage/load_path.hpp"
+#include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/breakage/unbonded/contact_operator.hpp"
+#include "equidem/breakage/unbonded/contact_rates.hpp"
+#include "equidem/breakage/unbonded/tangent_solver.hpp"
+#include "equidem/core/vector.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/internal_force.hpp"
+
+namespace equidem {
+
+/// Work of everything from outside, and where it went, N, from the start.
+struct ContactLedger {
+  double work = 0;
+  double elastic = 0;     ///< the energy of the springs now, less that at rest
+  double friction = 0;    ///< lost by slip
+  double released = 0;    ///< by bonds that broke
+  double negligible = 0;  ///< energy of forces that are round-off
+
+  /// The sum that should vanish, over the largest of its terms.
+  [[nodiscard]] double error() const;
+};
+
+class UnbondedState {
+ public:
+  /// Forces at rest are balanced by loads that stay. All arguments must outlive the state.
+  UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
+                const DegreesOfFreedom& unknowns, const ContactOperator& contacts, std::span<const UnbondedLaw> laws,
+                std::vector<ContactStatus> status);
+
+  /// Everything moves on by t of these rates, with the statuses as they are, and is corrected until forces balance.
+  /// \param dead whether lambda of the rates multiplies the dead loads
+  void move(double t, const Rates& rates, bool dead, bool by_motion, TangentSolver& solver);
+  /// The share of what broken bonds still carry falls from 1 to this.
+  void release_to(double share) { share_ = share; }
+  void set_status(std::size_t contact, ContactStatus status);
+  /// A bond breaks: it keeps its force beside the law of an unbonded contact until it is released.
+  void break_bond(std::size_t contact, ContactStatus status);
+  /// Nothing is left of the forces of broken bonds.
+  void end_release();
+
+  [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
+  [[nodiscard]] std::span<const ContactDeformation> deformation() const { return deformation_; }
+  /// Per contact, N/m, those of broken bonds included.
+  [[nodiscard]] std::span<const ContactForce> forces() const { return forces_; }
+  /// Without what a broken bond has yet to give up, N/m.
+  [[nodiscard]] ContactForce law_force(std::size_t contact) const {
+    return laws_[contact].force(status_[contact], deformation_[contact], slip_[contact]);
+  }
+  /// N_r + kN dn of a contact: its normal force where it is closed, kN times its gap where it is open.
+  [[nodiscard]] double normal_coordinate(std::size_t contact) const;
+  /// Forces per component that a broken bond has yet to give up, and their contacts.
+  [[nodiscard]] std::vector<double> unreleased() const;
+  [[nodiscard]] const std::vector<std::size_t>& releasing() const { return releasing_; }
+  [[nodiscard]] double released_by(std::size_t contact) const { return released_by_[contact]; }
+
+  [[nodiscard]] const PreciseMotion& motion() const { return motion_; }
+  [[nodiscard]] double lambda() const { return lambda_; }
+  [[nodiscard]] double dead() const { return dead_; }
+  [[nodiscard]] double load() const;         ///< LoadPath
+  [[nodiscard]] double mean_motion() const;  ///< LoadPath::motion
+  [[nodiscard]] Tensor2 stress() const;      ///< Pa; 0 where the area is not known
+  [[nodiscard]] const ContactLedger& ledger() const { return ledger_; }
+  /// The largest unbalanced force over the largest contact force or load.
+  [[nodiscard]] double relative_residual() const { return residual_; }
+  /// N/m: forces, and gaps times kN, below are round-off.
+  [[nodiscard]] double negligible_force() const;
+  /// Reactions of held components and loads together, N/m; of free ones the internal force.
+  [[nodiscard]] std::span<const double> internal() const { return internal_; }
+
+ private:
+  void evaluate();
+  void measure_residual(std::vector<double>& residual);
+  void correct(bool by_motion, TangentSolver& solver);
+  [[nodiscard]] double outside(std::size_t component) const;
+  [[nodiscard]] double elastic_energy() const;
+  /// The largest motion, or deformation by the mean strain, m.
+  [[nodiscard]] double farthest() const;
+  /// Forces that rounding of the motions may leave, N/m.
+  [[nodiscard]] double round_off_force() const;
+
+  const Assembly& assembly_;
+  const ContactSprings& springs_;
+  const LoadPath& path_;
+  const DegreesOfFreedom& unknowns_;
+  const ContactOperator& contacts_;
+  std::span<const UnbondedLaw> laws_;
+  ContactGraph graph_;
+  std::vector<ContactDeformation> affine_;
+  std::vector<ContactStatus> status_;
+  std::vector<double> slip_;  // m, plastic, per contact
+  PreciseMotion motion_;
+  double lambda_ = 0, dead_ = 0;
+  std::vector<double> rest_load_;  // per component: what balances the forces at rest
+  std::vector<std::size_t> releasing_;
+  std::vector<ContactForce> kept_;     // of broken bonds, times share_
+  double share_ = 0, kept_share_ = 0;  // now, and before the last move
+  std::vector<double> released_by_;    // N, per contact
+  std::vector<ContactDeformation> deformation_;
+  std::vector<ContactForce> forces_;
+  std::vector<double> internal_;
+  ContactLedger ledger_;
+  double rest_energy_ = 0, residual_ = 0, force_scale_ = 0;
+};
+
+}  // namespace equidem

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contacts without bonds against closed forms.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "equidem/core/error.hpp"
+
+#include "breakage/unbonded_scenes.hpp"
+#include "support/assemblies.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+constexpr double kN = 1000, kT = 300;
+const ContactSprings stiff_and_soft(SpringConstants{kN, kT});
+
+/// A disc on a held one, pressed on it by 1 N/m and pushed sideways by lambda.
+Unbonded on_the_ground(double friction, std::vector<double> legs, LoadControl control = LoadControl::load) {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", {}, {}, 0}};
+  options.dead_loads = {{"last", LoadKind::per_disc, {-1, 0}, 0}};
+  options.loads = {{"last", LoadKind::per_disc, {0, 1}, 0}};
+  options.control = control;
+  options.legs = std::move(legs);
+  return {chain_of_discs(2, 1), stiff_and_soft, options, friction};
+}
+
+/// The same disc, moved sideways to and fro by 1 mm.
+Unbonded to_and_fro(double friction, double tension, double shear, std::vector<double> legs) {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", {}, 1e-3, 0}};
+  options.dead_loads = {{"last", LoadKind::per_disc, {-1, 0}, 0}};
+  options.control = LoadControl::motion;
+  options.legs = std::move(legs);
+  const Assembly pair = chain_of_discs(2, 1);
+  return {pair, stiff_and_soft, equal_strengths(pair, tension, shear), options, {friction, {}}};
+}
+
+std::vector<std::string> modes_of(const Unbonded& scene) {
+  std::vector<std::string> modes;
+  for (const BreakEvent& event : scene.events()) modes.push_back(to_string(event.mode));
+  return modes;
+}
+
+std::string refusal(const ContactSprings& springs, LoadPathOptions options, double friction) {
+  options.supports = {{"first", 0, 0, 0}, {"last", {}, {}, 0}};
+  options.loads = {{"last", LoadKind::per_disc, {-1, 0}, 0}};
+  try {
+    Unbonded(chain_of_discs(2, 1), springs, options, friction).all();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("a_disc_slips_where_the_tangent_of_the_slope_is_the_friction") {
+  for (const double friction : {0.1, 0.5, 3.0, 10.0}) {
+    CAPTURE(friction);
+    Unbonded disc = on_the_ground(friction, {20});
+    disc.all();
+    REQUIRE(disc.events().size() == 1);
+    CHECK(disc.event(0).mode == BreakMode::slip);
+    CHECK(disc.event(0).lambda == Approx(friction).epsilon(1e-12));
+    CHECK(disc.event(0).motion == Approx(friction / kT).epsilon(1e-12));
+    CHECK(disc.run().end() == PathEnd::load_moves_part);
+    CHECK_THAT(disc.run().why(), Catch::Contains("nothing resists"));
+  }
+  Unbonded smooth = on_the_ground(0, {20});
+  CHECK(smooth.all().events().empty());
+  CHECK(smooth.run().end() == PathEnd::load_moves_part);
+}
+
+TEST_CASE("a_load_that_friction_holds_back_unloads_elastically_and_keeps_its_slip") {
+  // Under control of the motion the load stays at its limit, and falls as the motion turns back.
+  Unbonded disc = on_the_ground(0.5, {0.4, -0.4, 0.4});
+  disc.all();
+  CHECK(disc.events().empty());
+  CHECK(disc.run().end() == PathEnd::legs_done);
+  CHECK(disc.run().state().ledger().friction == 0);
+  CHECK(disc.run().energy_error() < 1e-12);
+}
+
+TEST_CASE("to_and_fro_a_contact_loses_the_area_of_its_loop") {
+  // Slip begins where kT u = mu N; the loop of a cycle of the amplitude A has the area 4 mu N (A - mu N/kT).
+  const double friction = 0.1, amplitude = 1e-3, slip = amplitude - friction / kT;
+  Unbonded disc = to_and_fro(friction, 0, 0, {1, -1, 1, -1, 1});
+  disc.all();
+  CHECK(modes_of(disc) == std::vector<std::string>{"slip", "stick", "slip", "stick", "slip", "stick", "slip", "stick",
+                                                   "slip"});
+  CHECK(disc.event(0).lambda == Approx(friction / (kT * amplitude)).epsilon(1e-12));
+  CHECK(disc.event(2).lambda == Approx(1 - 2 * friction / (kT * amplitude)).epsilon(1e-12));
+  CHECK(disc.run().state().ledger().friction == Approx(friction * slip * (1 + 4 * 2)).epsilon(1e-12));
+  CHECK(disc.event(8).friction - disc.event(4).friction == Approx(4 * friction * slip).epsilon(1e-12));
+  CHECK(disc.run().energy_error() < 1e-12);
+  for (const BreakEvent& event : disc.events()) CHECK(event.other_answers == 0);
+}
+
+TEST_CASE("a_bond_that_breaks_in_shear_goes_on_with_friction") {
+  const double friction = 0.1, shear = 0.2;
+  Unbonded disc = to_and_fro(friction, 5, shear, {1, 0});
+  disc.all();
+  CHECK(modes_of(disc) == std::vector<std::string>{"shear", "stick", "slip"});
+  CHECK(disc.event(0).lambda == Approx(shear / (kT * 1e-3)).epsilon(1e-12));
+  CHECK(disc.event(0).load == Approx(shear).epsilon(1e-12));
+  CHECK(disc.event(0).energy_released == Approx((shear * shear - friction * friction) / (2 * kT)).epsilon(1e-12));
+  CHECK(disc.event(1).load == Approx(friction).epsilon(1e-12));
+  CHECK(disc.run().energy_error() < 1e-12);
+}
+
+TEST_CASE("a_gap_closes_where_the_disc_has_crossed_it") {
+  // The middle of three discs hangs on a bond and meets the other one behind a gap: from there on both resist.
+  const double gap = 2e-3;
+  Assembly chain = chain_of_discs(3, 1);
+  chain.groups["middle"] = {{1}, {}};
+  ContactStrengths strengths = equal_strengths(chain, 0, 0);
+  strengths.tension[0] = strengths.shear[0] = 1e9;
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 0, 0, 0}, {"middle", {}, 0, 0}};
+  options.loads = {{"middle", LoadKind::per_disc, {1, 0}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {2 * kN * gap, 0};
+  Unbonded walls(chain, stiff_and_soft, strengths, options, {0.3, {{0, 0}, {kN * gap, 0}}});
+  walls.all();
+  CHECK(modes_of(walls) == std::vector<std::string>{"close", "open"});
+  for (const BreakEvent& event : walls.events()) {
+    CHECK(event.lambda == Approx(kN * gap).epsilon(1e-12));
+    CHECK(event.motion == Approx(gap).epsilon(1e-12));
+  }
+  CHECK(walls.run().leg_points()[1].motion == Approx(1.5 * gap).epsilon(1e-12));
+  CHECK(walls.run().energy_error() < 1e-12);
+}
+
+TEST_CASE("a_disc_in_a_wedge_sticks_or_slips_at_once") {
+  for (const double angle : {0.5, 0.9, 1.2}) {
+    for (const double friction : {0.0, 0.1, 0.3, 10.0}) {
+      CAPTURE(angle, friction);
+      Assembly wedge;
+      const double c = std::cos(angle), s = std::sin(angle);
+      wedge.centres = {{-2 * c, -2 * s}, {2 * c, -2 * s}, {0, 0}};
+      wedge.radii.assign(3, 1.0);
+      wedge.contacts = {{0, 2, 0, 0, 1, 1}, {1, 2, 0, 0, 1, 1}};
+      wedge.groups["walls"] = {{0, 1}, {}};
+      wedge.groups["disc"] = {{2}, {}};
+      LoadPathOptions options;
+      options.supports = {{"walls", 0, 0, {}}};
+      options.loads = {{"disc", LoadKind::per_disc, {0, -1}, 0}};
+      options.control = LoadControl::load;
+      options.legs = {1};
+      Unbonded scene(wedge, stiff_and_soft, options, friction);
+      scene.all();
+      REQUIRE(scene.run().end() == PathEnd::legs_done);
+      const bool slips = friction > 0 && kT * c > friction * kN * s;
+      const double sticks = 2 * (kN * s * s + kT * c * c), slides = 2 * kN * s * (s + friction * c);
+      CHECK(scene.run().leg_points().back().motion ==
+            Approx(1 / (slips || friction == 0 ? slides : sticks)).epsilon(1e-10));
+      CHECK(scene.events().size() == (slips ? 2 : 0));
+      CHECK(scene.run().energy_error() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a_cut_section_in_bending_opens_contact_by_contact") {
+  // Two bodies that touch at the heights y_k, pressed by P and bent by lambda: plane sections stay plane, and the
+  // contacts that are left carry N_k = -P/m + (P c - lambda) (y_k - c)/I, c their mean height, I = sum (y_k - c)².
+  const std::vector<double> heights{-2.5, -1.5, -0.5, 0.5, 1.5, 2.5};
+  const double pressed = 6;
+  Assembly section;
+  section.centres = {{0, 0}, {2, 0}};
+  section.radii.assign(2, 1.0);
+  for (const double y : heights) {
+    section.contacts.push_back({0, 1, 0, 0, 1, 1});
+    section.contact_arms.push_back({{1, 0}, y, -y});
+  }
+  section.groups["first"] = {{0}, {}};
+  section.groups["last"] = {{1}, {}};
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}};
+  options.dead_loads = {{"last", LoadKind::per_disc, {-pressed, 0}, 0}};
+  options.loads = {{"last", LoadKind::per_disc, {0, 0}, 1}};
+  options.control = LoadControl::load;
+  options.legs = {100};
+  Unbonded beam(section, stiff_and_soft, options, 0.4);
+  beam.all();
+  REQUIRE(beam.events().size() == 5);
+  for (std::size_t k = 0; k < 4; ++k) {
+    CAPTURE(k);
+    double mean = 0, inertia = 0;
+    const double m = static_cast<double>(heights.size() - k);
+    for (std::size_t p = k; p < heights.size(); ++p) mean += heights[p] / m;
+    for (std::size_t p = k; p < heights.size(); ++p) inertia += std::pow(heights[p] - mean, 2);
+    CHECK(beam.event(k).mode == BreakMode::open);
+    CHECK(beam.event(k).contact == static_cast<std::int64_t>(k));
+    CHECK(beam.event(k).lambda ==
+          Approx(pressed * mean - inertia * pressed / (m * (heights[k] - mean))).epsilon(1e-10));
+  }
+  CHECK(beam.run().end() == PathEnd::load_moves_part);  // it turns about the last contact
+}
+
+TEST_CASE("a_contact_that_is_pulled_opens") {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 1e-3, 0, 0}};
+  options.control = LoadControl::motion;
+  options.legs = {-1, 1, -1};
+  Unbonded pair(chain_of_discs(2, 1), stiff_and_soft, options, 0.5);
+  pair.all();
+  CHECK(modes_of(pair) == std::vector<std::string>{"open", "close"});
+  CHECK(pair.event(0).lambda == Approx(0).margin(1e-12));
+  CHECK(pair.event(1).lambda == Approx(0).margin(1e-12));
+  CHECK(pair.run().leg_points().back().load == Approx(-kN * 1e-3).epsilon(1e-12));
+  CHECK(pair.run().end() == PathEnd::legs_done);
+}
+
+TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
+  // A disc on the ground that a spring at 45 degrees ties to a held disc: its slip presses it on the ground, so that
+  // beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the oblique spring) the
+  // stiffness against slip is negative. At the limit there is no answer onward, and two on the way back.
+  Assembly scene = chain_of_discs(2, 1);
+  const double r = std::sqrt(2.0);
+  scene.centres.push_back(scene.centres[1] + Vec2{r, r});
+  scene.radii.push_back(1);
+  scene.contacts.push_back({1, 2, 0, 0, 1, 1});
+  scene.groups["held"] = {{0, 2}, {}};
+  scene.groups["disc"] = {{1}, {}};
+  const ContactSprings springs(std::vector<SpringConstants>{{kN, kT}, {kN, 0}});
+  for (const double friction : {0.5, 2.0}) {
+    for (const double side : {1.0, -1.0}) {
+      CAPTURE(friction, side);
+      ContactStrengths strengths = equal_strengths(scene, 0, 0);
+      strengths.tension[1] = strengths.shear[1] = 1e9;
+      LoadPathOptions options;
+      options.supports = {{"held", 0, 0, 0}, {"disc", {}, {}, 0}};
+      options.dead_loads = {{"disc", LoadKind::per_disc, {-1, 0}, 0}};
+      options.loads = {{"disc", LoadKind::per_disc, {0, side}, 0}};
+      options.control = LoadControl::load;
+      options.legs = {100};
+      Unbonded onward(scene, springs, strengths, options, {friction, {}});
+      onward.all();
+      if (friction < 1) {
+        CHECK(onward.run().end() == PathEnd::legs_done);
+        for (const BreakEvent& event : onward.events()) CHECK(event.other_answers == 0);
+        continue;
+      }
+      if (onward.run().end() == PathEnd::legs_done) continue;  // this side takes the disc off the ground
+      CHECK_THAT(onward.run().why(), Catch::Contains("may have no answer"));
+      options.legs = {onward.run().lambda(), 0};
+      Unbonded back(scene, springs, strengths, options, {friction, {}});
+      back.all();
+      CHECK(back.run().counters().not_unique > 0);
+      CHECK(back.run().counters().largest_motion_difference > 0.01);
+      CHECK(back.run().counters().largest_load_difference == 0);
+    }
+  }
+}
+
+TEST_CASE("what_has_no_meaning_without_bonds_is_refused") {
+  LoadPathOptions options;
+  options.control = LoadControl::load;
+  CHECK_THAT(refusal(ContactSprings(SpringConstants{kN, -20}), options, 0.5), Catch::Contains("kT < 0"));
+  CHECK_THAT(refusal(stiff_and_soft, options, -1), Catch::Contains("friction"));
+  options.control = LoadControl::path;
+  CHECK_THAT(refusal(stiff_and_soft, options, 0.5), Catch::Contains("depends on the path"));
+  // Without tangential springs contacts carry no friction.
+  options.control = LoadControl::load;
+  options.legs = {1};
+  CHECK(refusal(ContactSprings(SpringConstants{kN, 0}), options, 0.5).empty());
+}
