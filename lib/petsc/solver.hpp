@@ -18,7 +18,7 @@
 namespace equidem::petsc {
 
 /// The rows of K by PETSc: conjugate gradients with its multigrid of aggregates (GAMG) where no spring is negative,
-/// else MUMPS; a method of the case that eliminates means MUMPS, one that iterates GAMG.
+/// else MUMPS. A method of the case that eliminates means MUMPS, multigrid that of equidem (grids.hpp).
 class PetscSolver {
  public:
   /// Assembles K and sets the solver up. Held components have rows of the unit matrix times a spring.
