@@ -162,6 +162,7 @@ void PetscSolver::set_up(SolverMethod method) {
   check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
   check(KSPSetFromOptions(solver_));
   if (has_grids(pc)) build_grids(n, pc);
+  if (n.any_negative()) prepare_to_count(solver_);
   interruption_ = new Interruption{n.ranks()};
   check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
   PetscBool elimination = PETSC_FALSE;

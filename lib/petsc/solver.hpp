@@ -13,7 +13,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
-#include "petsc/network.hpp"
+#include "petsc/inertia.hpp"
 
 namespace equidem::petsc {
 
@@ -35,6 +35,8 @@ class PetscSolver {
   /// \throws Error (computation_failed) on all ranks where the solver does not converge; (interrupted)
   std::int64_t solve(std::span<const double> r, std::span<double> d);
 
+  /// Stability of the assembly.
+  [[nodiscard]] Inertia inertia() const { return inertia_of(network_, solver_, matrix_); }
   /// "PETSc 3.18.5: cg, gamg on 2 ranks".
   [[nodiscard]] std::string name() const;
   /// Sums over all ranks: entries of K, bytes of grids or factor as PETSc tells them (0: not known).

@@ -266,6 +266,39 @@ def the_grids_of_equidem_take_as_many_iterations_on_every_number_of_ranks(folder
         assert all(found["equidem", ranks] < 0.75 * found["gamg", ranks] for ranks in (1, 2, 4)), (name, found)
 
 
+def stability_is_that_of_the_serial_program_on_every_number_of_ranks(folder):
+    """Negative pivots beyond those of rotations, counted by MUMPS beside our own factorization, on both sides of the limit."""
+    cut = ("--set", "assembly.columns=21", "--set", "assembly.rows=23")
+    judged = set()
+    for verb, case, arguments in (("solve", CASES / "abe1996_fig6.toml", cut),
+                                  ("homogenize", CASES / "hexagonal_cell.toml", ("--set", "assembly.columns=12", "--set",
+                                                                                "assembly.rows=10")),
+                                  ("homogenize", CASES / "random_cell.toml", ("--set", "assembly.discs=300"))):
+        for ratio in (-0.1, -0.25, -0.3, -0.4, -0.6):
+            numbers = (*arguments, "--set", "springs.kN=1e9", "--set", f"springs.kT={ratio}e9")
+            expected = json.loads(checked(serial(verb, case, *numbers, "--json", "-"), case).stdout)
+            for ranks in (1, 2, 4):
+                out = folder / "result.json"
+                checked(parallel(ranks, verb, case, *numbers, "--json", out, "--overwrite"), case)
+                found = json.loads(out.read_text(encoding="utf-8"))
+                for key in ("status", "unstable_modes", "negative_pivots"):
+                    assert found[key] == expected[key], (case.name, ratio, ranks, key, found[key], expected[key])
+            judged.add(found["status"])
+            print(f"{case.name}, kT/kN = {ratio}: {found['status']}, {found['negative_pivots']} negative pivots, "
+                  f"{found['unstable_modes']} unstable modes on 1, 2, 4 ranks and in serial")
+    assert judged == {"solved", "unstable"}, judged
+    unstable = parallel(2, "solve", CASES / "abe1996_fig6.toml", *cut, "--set", "springs.kT=-0.4e9", "--require-stable")
+    assert unstable.returncode == 1, (unstable.returncode, unstable.stderr)
+    # No other solver counts, and none is believed.
+    for options in (("-equidem_pc_type", "lu", "-equidem_pc_factor_mat_solver_type", "mumps"),
+                    ("-equidem_mat_mumps_icntl_13", "0")):
+        out = folder / "result.json"
+        checked(parallel(2, "solve", CASES / "abe1996_fig6.toml", *cut, "--set", "springs.kT=-0.1e9", "--json", out, "--overwrite",
+                         *options), options)
+        found = json.loads(out.read_text(encoding="utf-8"))
+        assert found["status"] == "unjudged" and found["unstable_modes"] is None, (options, found["status"])
+
+
 def the_files_of_all_ranks_open_as_one_data_set(folder):
     result = checked(parallel(4, "solve", CASES / "abe1996_fig6.toml", *CUT, "--out", folder / "out"), "solve")
     result = json.loads((folder / "out" / "result.json").read_text(encoding="utf-8"))
