@@ -21,6 +21,9 @@ PartSolver::PartSolver(const Ranks& ranks, const Part& part, const Whole& whole,
   if (!known_to_be_held) check_held(network_, effects);
   times_.add("check", watch.lap());
   solver_.emplace(network_, method, times_);
+  watch.lap();
+  inertia_ = solver_->inertia();
+  times_.add("inertia", watch.lap());
 }
 
 std::vector<double> PartSolver::assemble(const LoadCase& loads) const {
@@ -48,8 +51,8 @@ PartEquilibrium PartSolver::solve(const LoadCase& loads) {
   state.solver = solver_->name();
   state.factor_bytes = solver_->grid_bytes();
   state.unknowns = network_.free_count();
-  state.negative_pivots = -1;
-  state.unstable_modes = network_.any_negative() ? -1 : 0;
+  state.negative_pivots = inertia_.negative_pivots;
+  state.unstable_modes = inertia_.unstable_modes;
   return result;
 }
 

@@ -42,6 +42,7 @@ class PartSolver {
   const Effects& effects_;
   Network network_;
   std::optional<PetscSolver> solver_;
+  Inertia inertia_;
 };
 
 }  // namespace equidem::petsc

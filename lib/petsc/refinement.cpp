@@ -30,7 +30,8 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
   const double at_rest = gradient ? 1e-13 * network.stiffest() * network.whole().mean_branch *
                                         std::sqrt(static_cast<double>(network.whole().discs))
                                   : 0;
-  for (int pass = 0; pass < most_passes && result.residual > at_rest; ++pass) {
+  // A first pass may reach the rest at once; only a second one shows how far the motion is from it.
+  for (int pass = 0; pass < most_passes && (pass == 1 || result.residual > at_rest); ++pass) {
     result.iterations += solver.solve(residual, change);
     result.motion.add(change);
     const double last = result.residual;

@@ -11,6 +11,7 @@
 #include "equidem/core/text.hpp"
 
 #include "petsc/coordinates.hpp"
+#include "petsc/grids.hpp"
 
 namespace equidem::petsc {
 namespace {
@@ -25,6 +26,17 @@ bool is_type(KSP solver, PC pc, const char* ksp_type, const char* pc_type) {
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver), ksp_type, &first));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), pc_type, &second));
   return first == PETSC_TRUE && second == PETSC_TRUE;
+}
+
+/// PETSc 3.18 does not hand the size of blocks on to the part of a matrix by coordinates that a rank holds; its inverse
+/// of the diagonal blocks (PCPBJACOBI) reads it there.
+void set_block_size_of_own_rows(Mat matrix, PetscInt block) {
+  PetscBool parallel = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(matrix), MATMPIAIJ, &parallel));
+  if (parallel == PETSC_FALSE) return;
+  Mat own = nullptr;
+  check(MatMPIAIJGetSeqAIJ(matrix, &own, nullptr, nullptr));
+  check(MatSetBlockSize(own, block));
 }
 
 }  // namespace
@@ -93,6 +105,7 @@ void PetscSolver::assemble() {
   check(MatDuplicate(matrix_, MAT_COPY_VALUES, &copy));
   check(MatDestroy(&matrix_));
   matrix_ = copy;
+  set_block_size_of_own_rows(matrix_, b);
   check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
   if (!n.any_negative()) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
   check(MatCreateVecs(matrix_, &solution_, &load_));
@@ -131,6 +144,7 @@ void PetscSolver::set_near_null_space() {
 void PetscSolver::set_up(SolverMethod method) {
   const Network& n = network_;
   const bool eliminates = method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
+  register_grids();
   check(KSPCreate(n.ranks().communicator(), &solver_));
   check(KSPSetOptionsPrefix(solver_, prefix));
   check(KSPSetOperators(solver_, matrix_, matrix_));
@@ -143,10 +157,12 @@ void PetscSolver::set_up(SolverMethod method) {
   } else {
     check(KSPSetType(solver_, KSPCG));
     check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
-    check(PCSetType(pc, PCGAMG));
+    check(PCSetType(pc, method == SolverMethod::multigrid ? grids_type : PCGAMG));
   }
   check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
   check(KSPSetFromOptions(solver_));
+  if (has_grids(pc)) build_grids(n, pc);
+  if (n.any_negative()) prepare_to_count(solver_);
   interruption_ = new Interruption{n.ranks()};
   check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
   PetscBool elimination = PETSC_FALSE;
@@ -181,7 +197,7 @@ std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) 
                     counted(iterations, "iteration")),
         n.any_negative() ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
                          : "the assembly may have a mechanism, or be close to one",
-        n.any_negative() ? "Take MUMPS: leave -equidem_ksp_type and -equidem_pc_type out"
+        n.any_negative() ? "Take MUMPS: --set solver.method=auto, without -equidem_ksp_type and -equidem_pc_type"
                          : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
                            "--set solver.method=multifrontal takes MUMPS");
   }
@@ -203,8 +219,9 @@ std::string PetscSolver::name() const {
   check(KSPGetPC(solver_, &pc));
   check(KSPGetType(solver_, &method));
   check(PCGetType(pc, &preconditioner));
-  std::string name = fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
-                                 PETSC_VERSION_SUBMINOR, method, preconditioner);
+  std::string name =
+      fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, method,
+                  has_grids(pc) ? "multigrid of equidem" : preconditioner);
   MatSolverType package = nullptr;
   const bool factors = is_type(solver_, pc, method, PCCHOLESKY) || is_type(solver_, pc, method, PCLU);
   if (factors) check(PCFactorGetMatSolverType(pc, &package));
@@ -223,7 +240,7 @@ double PetscSolver::grid_bytes() const {
   check(KSPGetPC(solver_, &pc));
   PetscBool gamg = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &gamg));
-  if (gamg == PETSC_FALSE) return 0;
+  if (gamg == PETSC_FALSE && !has_grids(pc)) return 0;
   PetscReal grids = 0, operators = 0;
   check(PCMGGetGridComplexity(pc, &grids, &operators));
   return operators * entries() * (sizeof(double) + sizeof(PetscInt));

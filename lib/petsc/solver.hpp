@@ -13,12 +13,12 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
-#include "petsc/network.hpp"
+#include "petsc/inertia.hpp"
 
 namespace equidem::petsc {
 
 /// The rows of K by PETSc: conjugate gradients with its multigrid of aggregates (GAMG) where no spring is negative,
-/// else MUMPS; a method of the case that eliminates means MUMPS, one that iterates GAMG.
+/// else MUMPS. A method of the case that eliminates means MUMPS, multigrid that of equidem (grids.hpp).
 class PetscSolver {
  public:
   /// Assembles K and sets the solver up. Held components have rows of the unit matrix times a spring.
@@ -35,6 +35,8 @@ class PetscSolver {
   /// \throws Error (computation_failed) on all ranks where the solver does not converge; (interrupted)
   std::int64_t solve(std::span<const double> r, std::span<double> d);
 
+  /// Stability of the assembly.
+  [[nodiscard]] Inertia inertia() const { return inertia_of(network_, solver_, matrix_); }
   /// "PETSc 3.18.5: cg, gamg on 2 ranks".
   [[nodiscard]] std::string name() const;
   /// Sums over all ranks: entries of K, bytes of grids or factor as PETSc tells them (0: not known).

@@ -53,7 +53,8 @@ Sums sum_up(const Network& network, std::span<const Refined> cases) {
   return sums;
 }
 
-void refuse_floppy(const EffectiveStiffness& result) {
+/// Refuses a cell that some mean strain costs no energy, and counts those that release energy.
+void judge(EffectiveStiffness& result) {
   const StiffnessEigen eigen = eigenstrains(result.stiffness);
   const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
   constexpr double nothing = 1e-12;
@@ -65,6 +66,7 @@ void refuse_floppy(const EffectiveStiffness& result) {
                           e[1], e[2]),
               "It has no modulus. Add contacts, or give the contacts tangential springs (kT > 0)");
   }
+  result.count_unstable_strains();
 }
 
 /// Whether all discs can counter-rotate: neighbours along rows and columns turn the other way.
@@ -126,12 +128,13 @@ EffectiveStiffness CellSolver::solve() {
     result.fluctuations.push_back(disc_motions(network_.unknowns(), cases[k].motion.high));
   result.times.add("stiffness", watch.lap());
   result.unknowns = network_.free_count();
-  result.negative_pivots = -1;
-  result.unstable_modes = network_.any_negative() ? -1 : 0;
+  const Inertia inertia = solver_->inertia();
+  result.negative_pivots = inertia.negative_pivots;
+  result.unstable_modes = inertia.unstable_modes;
   result.self_stresses = -1;
   result.solver = solver_->name();
   result.factor_bytes = solver_->grid_bytes();
-  refuse_floppy(result);
+  judge(result);
   return result;
 }
 

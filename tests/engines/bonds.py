@@ -291,6 +291,36 @@ damping = { local = 0.05 }
 ''')
 
 
+def lammps_moving_wall(program, folder):
+    """A wall of springs that moves into a block along a ramp."""
+    return run_difference(program, folder, '''
+[assembly]
+kind = "hexagonal"
+columns = 6
+rows = 6
+radius = 0.005
+density = 2500.0
+[springs]
+kN = 1e9
+kT = 0.3e9
+[[wall]]
+name = "press"
+point = [0.0, -6.698729810778e-4]
+normal = [0.0, 1.0]
+kN = 1e9
+displacement = 1.0e-5
+direction = [0.0, 1.0]
+schedule = "slowly"
+[[schedule]]
+name = "slowly"
+kind = "ramp"
+end = 4.0e-4
+[run]
+duration = 5e-4
+damping = { local = 0.05 }
+''')
+
+
 def lammps_periodic(program, folder):
     """A pulse in a periodic cell, across whose sides discs are bonded."""
     return run_difference(program, folder, '''

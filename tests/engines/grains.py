@@ -33,10 +33,15 @@ tangential_ratio = 0.5
 {further}
 [run]
 duration = {duration}
-time_step = 5e-5
+time_step = {time_step}
 integrator = "velocity_verlet"
 gravity = [0.0, -9.81]
-''' + WALLS
+{walls}
+'''
+
+
+def box_case(**settings):
+    return BOX.format(**{"further": "", "time_step": 5e-5, "walls": WALLS, **settings})
 
 
 def discs(path, radii):
@@ -54,7 +59,7 @@ class Box:
 
     def __init__(self, program, folder, radii, **settings):
         discs(folder / "discs.csv", radii)
-        case = BOX.format(**{"friction": 0.3, "restitution": 0.4, "further": "", **settings})
+        case = box_case(**{"friction": 0.3, "restitution": 0.4, **settings})
         self.model = Model(program, folder, case)
         self.out = self.model.equidem("run", "run")
         self.end = engines.columns(self.out / "grains.csv", "x_m", "y_m", "angle_rad", "vx_m_per_s", "vy_m_per_s",
@@ -68,7 +73,7 @@ GRADED = [0.0060 + 0.0015 * ((7 * k) % 20) / 19 for k in range(20)]
 def lammps_box(lammps, program, folder, radii, **settings):
     """Positions and velocities at the end of the run."""
     box = Box(program, folder, radii, **settings)
-    out = box.model.export("lammps")
+    out = box.model.export("lammps", "--accept", "friction")
     engines.run_lammps(lammps, out)
     end = engines.dump(out / "end.dump")
     return box, np.stack([end["xu"], end["yu"]], 1), np.stack([end["vx"], end["vy"]], 1)
@@ -94,6 +99,46 @@ def lammps_elastic(program, folder):
     return motion_difference(engines.lammps_with_bonds(), program, folder, EQUAL, duration=0.05, restitution=1.0)
 
 
+#: The left wall pushes the discs: at a constant speed; along a smooth ramp; to and fro.
+PISTONS = {
+    "speed": 'kind = "table"\ntimes = [0.02, 0.08]\nvalues = [0.0, 1.0]',
+    "ramp": 'kind = "ramp"\nstart = 0.01\nend = 0.09',
+    "sine": 'kind = "sine"\nstart = 0.02\nfrequency = 15.0',
+}
+
+
+def piston(kind):
+    """The box of BOX whose left wall moves by up to 6 mm."""
+    moving = 'name = "left"\ndisplacement = 6e-3\ndirection = [1.0, 0.0]\nschedule = "push"'
+    return {"walls": WALLS.replace('name = "left"', moving) + f'[[schedule]]\nname = "push"\n{PISTONS[kind]}\n'}
+
+
+def lammps_piston(program, folder):
+    """At a constant speed both make the same steps."""
+    return motion_difference(engines.lammps(), program, folder, EQUAL, duration=0.05, **piston("speed"))
+
+
+def lammps_curved_pistons(program, folder):
+    """Along curves the speed of the wall, which acts on the dashpots, is a difference over a step in LAMMPS."""
+    def difference(kind):
+        (folder / kind).mkdir()
+        return motion_difference(engines.lammps(), program, folder / kind, EQUAL, duration=0.05, time_step=5e-6, **piston(kind))
+    return max(difference("ramp"), difference("sine"))
+
+
+def yade_piston(program, folder):
+    """Without dashpots, which YADE does not carry here; its leapfrog begins half a step early."""
+    def difference(kind, duration):
+        (folder / kind).mkdir()
+        box = Box(program, folder / kind, EQUAL, duration=duration, friction=0.0, restitution=1.0, time_step=2e-6,
+                  **piston(kind))
+        out = box.model.export("yade")
+        engines.run_yade(engines.yade(), out)
+        places = np.loadtxt(out / "end.txt")[:, :2]
+        return float(np.max(np.abs(places - box.end[:, :2])) / 6e-3)
+    return max(difference("speed", 0.04), difference("ramp", 0.04), difference("sine", 0.025))
+
+
 def lammps_friction(program, folder):
     """Both settle with friction: the levers of LAMMPS are the radii, those of equidem add up to the distance of the
     centres, so that moments differ by overlap over diameter, here 1e-3; which contacts slide decides the rest."""
@@ -107,7 +152,7 @@ class Sliding:
     def __init__(self, program, folder):
         pressed = 2500 * np.pi * 0.0075**2 * 9.81 / STIFFNESS
         (folder / "discs.csv").write_text(f"x,y,radius,vx,vy,spin\n0.01,{0.0075 - pressed!r},0.0075,0.2,0,0\n")
-        case = BOX.format(restitution=1.0, friction=0.3, further="", duration=0.03).replace("5e-5", "2e-6")
+        case = box_case(restitution=1.0, friction=0.3, duration=0.03, time_step=2e-6)
         self.model = Model(program, folder, case)
         table = self.model.equidem("run", "run") / "grains.csv"
         self.end = engines.columns(table, "vx_m_per_s", "spin_rad_per_s")[0]
@@ -119,7 +164,7 @@ class Sliding:
 
 def lammps_sliding(program, folder):
     disc = Sliding(program, folder)
-    out = disc.model.export("lammps")
+    out = disc.model.export("lammps", "--accept", "friction")
     engines.run_lammps(engines.lammps(), out)
     end = engines.dump(out / "end.dump")
     return disc.difference(end["vx"][0], end["omegaz"][0])
@@ -127,7 +172,7 @@ def lammps_sliding(program, folder):
 
 def yade_sliding(program, folder):
     disc = Sliding(program, folder)
-    out = disc.model.export("yade")
+    out = disc.model.export("yade", "--accept", "friction")
     engines.run_yade(engines.yade(), out)
     end = np.loadtxt(out / "end.txt")
     return disc.difference(end[5], end[7])
@@ -164,7 +209,7 @@ def lammps_settled(program, folder):
 def yade_settled(program, folder):
     """A box that equidem has settled: forces of all contacts in the first step."""
     Box(program, folder, GRADED, duration=1.5, friction=0.0)
-    again = Model(program, folder, BOX.format(restitution=1.0, friction=0.0, further="", duration=5e-5)
+    again = Model(program, folder, box_case(restitution=1.0, friction=0.0, duration=5e-5)
                   .replace("discs.csv", "run/grains.csv"), "settled")
     out = again.export("yade")
     engines.run_yade(engines.yade(), out)

@@ -29,6 +29,7 @@ CHECKS = [
     ("lammps_bonds", "LAMMPS", "period of the lowest mode", 1e-4, vibration.lammps_period),
     ("lammps_bonds", "LAMMPS", "a block that falls on a wall of springs, with gravity and local damping", 1e-3,
      bonds.lammps_wall),
+    ("lammps_bonds", "LAMMPS", "a block into which a wall of springs moves", 1e-3, bonds.lammps_moving_wall),
     ("lammps_bonds", "LAMMPS", "a pulse in a periodic cell", 1e-3, bonds.lammps_periodic),
     ("yade_bonds", "YADE", "forces and moments of discs displaced at random, 1e-4 of the spacing", 1e-6,
      bonds.yade_forces),
@@ -39,6 +40,9 @@ CHECKS = [
     ("yade_bonds", "YADE", "at rest, discs of two radii, contact points off the middle", 1e-6, bonds.yade_unequal),
     ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, vibration.yade_period),
     ("lammps_grains", "LAMMPS", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.lammps_motion),
+    ("lammps_grains", "LAMMPS", "places of 20 discs that a wall pushes at a constant speed", 1e-6,
+     grains.lammps_piston),
+    ("lammps_grains", "LAMMPS", "the same along a ramp, and to and fro", 1e-3, grains.lammps_curved_pistons),
     ("lammps_grains", "LAMMPS", "overlaps and normal forces when they have settled", 1e-6, grains.lammps_settled),
     ("lammps_grains", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls", 1e-4,
      grains.lammps_sliding),
@@ -50,6 +54,8 @@ CHECKS = [
      grains.lammps_elastic),
     ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,
      grains.yade_settled),
+    ("yade_grains", "YADE", "places of 20 discs that a wall pushes, steadily, along a ramp, to and fro", 1e-3,
+     grains.yade_piston),
     ("yade_grains", "YADE", "speed and spin of a disc that slides on a floor until it rolls", 1e-3, grains.yade_sliding),
 ]
 

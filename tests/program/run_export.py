@@ -256,6 +256,30 @@ force = [0.0, -1.0]
         self.check_refused(self.grains(restitution=0.5, collisions="friction = 0.3\ntangential_damping = 0.2\n"
                                        "friction_cap = \"spring_alone\""), ENGINES, "does not carry")
 
+    def test_friction_is_exported_only_where_its_levers_are_accepted(self):
+        case = self.grains(collisions="friction = 0.3")
+        self.check_refused(case, ENGINES, "friction of bodies that overlap, here with the coefficient 0.3", "--accept friction",
+                           "0.7 per cent")
+        for engine in ENGINES:
+            out = self.exported(case, engine, "--accept", "friction", out=f"accepted_{engine}")
+            self.assertIn("Accepted: friction", (out / "README").read_text())
+        self.check_error(self.export(case, "lammps", "--accept", "ellipses"), 2, "ellipses", "--accept friction")
+        self.check_error(self.export(TENSION, "matrix-market", "--accept", "friction"), 2, "--accept", "Leave it out")
+        smooth = self.grains(collisions="friction = 0.0")
+        self.check_done(self.export(smooth, "lammps", out="smooth"))
+
+    def test_walls_that_move(self):
+        moving = 'displacement = 0.01\ndirection = [0.0, 1.0]\nschedule = "push"\n'
+        schedule = '[[schedule]]\nname = "push"\nkind = "{}"\n'
+        def case(text):
+            given = self.grains(text)
+            given.write_text(given.read_text().replace("[run]\n", moving + "[run]\n"))
+            return given
+        self.check_refused(case(schedule.format("ramp") + "end = 1e-3\n"), ["pfc"], "walls that move", "lammps or yade")
+        self.check_refused(case(schedule.format("sine") + "frequency = 50.0\n"), ["pfc"], "walls that move")
+        points = f"times = {[1e-5 * k for k in range(60)]}\nvalues = {[1e-4 * k for k in range(60)]}\n"
+        self.check_refused(case(schedule.format("table") + points), ENGINES, "does not carry", "wall 'floor'")
+
     def test_walls(self):
         self.check_refused(self.grains(normal="[0.1, 1.0]"), ["yade"], "not parallel to an axis", "wall 'floor'")
 

@@ -3,7 +3,8 @@
 """tools/bench/petsc_scaling.py --build FOLDER [--discs N,...] [--repetitions N] [--markdown FILE]
 
 The page data/petsc.md: equidem-mpi on one rank and on two, strong and weak scaling, memory and messages by formula and
-counted, and what a billion discs on a thousand ranks need by these constants."""
+counted, GAMG beside the multigrid of equidem on one, two and four ranks, and what a billion discs on a thousand ranks need by
+these constants. Sizes that the free memory does not bear are left out, with a sentence."""
 
 import argparse
 import json
@@ -32,6 +33,9 @@ stress = 1.0e6
 LATENCY, BANDWIDTH = 2e-6, 10e9  # s, B/s
 SQRT3 = math.sqrt(3)
 LARGE = 4e5  # discs
+# Of a disc at the peak, until larger ones were measured here: B.
+MEMORY_OF_DISC = 4500
+PRECONDITIONERS = {"gamg": "GAMG", "equidem": "equidem"}
 
 
 def shape(discs):
@@ -45,7 +49,24 @@ def processor_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
-def run(build, folder, discs, ranks, options=()):
+def free_memory():
+    for line in Path("/proc/meminfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("MemAvailable:"):
+            return 1024 * int(line.split()[1])
+    return math.inf
+
+
+def refusal(discs, of_a_disc):
+    """A sentence where so many discs, on any number of ranks of this machine, need more than its free memory; else None."""
+    margin = 1.1
+    needed, free = margin * discs * of_a_disc, free_memory()
+    if needed <= free:
+        return None
+    return (f"{discs:.0e} discs were left out: they need about {si(needed)} ({of_a_disc:.0f} B a disc at the peak, a tenth more), and "
+            f"{si(free)} of memory are free. Give smaller --discs, or run this on a larger machine.")
+
+
+def run(build, folder, discs, ranks, kind="gamg"):
     columns, rows = shape(discs)
     case, out = folder / "block.toml", folder / "result.json"
     case.write_text(CASE.format(columns=columns, rows=rows), encoding="utf-8")
@@ -53,7 +74,7 @@ def run(build, folder, discs, ranks, options=()):
                        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
     used = processor_seconds()
     subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
-                    "--json", out, *options], env=environment, check=True, stdout=subprocess.DEVNULL)
+                    "--json", out, "-equidem_pc_type", kind], env=environment, check=True, stdout=subprocess.DEVNULL)
     result = json.loads(out.read_text(encoding="utf-8"))
     used = processor_seconds() - used
     times = result["times"]
@@ -65,18 +86,25 @@ def run(build, folder, discs, ranks, options=()):
             "residual": result["relative_residual"], "processor": used}
 
 
-def least(build, folder, jobs, repetitions):
-    """The fastest of several runs of each job, which take turns; large ones run once."""
-    best = {}
+def least(build, folder, jobs, repetitions, base):
+    """The fastest of several runs of each job, which take turns; large ones run once. And the sentences on those left out."""
+    best, left_out, of_a_disc = {}, {}, MEMORY_OF_DISC
     for _ in range(repetitions):
-        for job in jobs:
-            if job in best and job[0] >= LARGE:
+        for job in sorted(jobs):
+            if job[0] in left_out or (job in best and job[0] >= LARGE):
+                continue
+            sentence = refusal(job[0], of_a_disc)
+            if sentence:
+                left_out[job[0]] = sentence
+                print(sentence, file=sys.stderr)
                 continue
             one = run(build, folder, *job)
+            if one["discs"] >= LARGE / 4:
+                of_a_disc = max(of_a_disc, (one["peak"] - base) / one["owned"])
             if job not in best or one["all"] < best[job]["all"]:
                 best[job] = one
-            print(f"{one['discs']} discs, {one['ranks']} ranks: {one['all']:.1f} s", file=sys.stderr)
-    return best
+            print(f"{one['discs']} discs, {one['ranks']} ranks, {PRECONDITIONERS[job[2]]}: {one['all']:.1f} s", file=sys.stderr)
+    return best, list(left_out.values())
 
 
 def grid(columns, rows, ranks):
@@ -119,7 +147,23 @@ def base_memory(build, folder):
     return run(build, folder, 100, 1)["peak"]
 
 
-def page(command, built, sizes, best, cuts, base):
+def beside_gamg(sizes, best, base):
+    """Rows for both preconditioners on every number of ranks that was run."""
+    rows = []
+    for discs, ranks, kind in sorted(best):
+        if discs not in sizes or kind != "gamg" or (discs, ranks, "equidem") not in best:
+            continue
+        gamg, ours = best[(discs, ranks, "gamg")], best[(discs, ranks, "equidem")]
+        row = [f"{gamg['discs']:,}".replace(",", " "), str(ranks)]
+        for key, form in (("iterations", "{}"), ("set_up", "{:.2f}"), ("solve", "{:.2f}"), ("processor", "{:.1f}")):
+            row.append(", ".join(form.format(r[key]) for r in (gamg, ours)))
+        row.append(", ".join(f"{(r['peak'] - base) / r['owned']:.0f}" for r in (gamg, ours)))
+        row.append(f"{gamg['processor'] / ours['processor']:.2f}")
+        rows.append(row)
+    return rows
+
+
+def page(command, built, sizes, best, cuts, base, left_out):
     lines = ["# Statics on PETSc: measured, and planned past it", "",
              f"`{command}` writes this page. {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the end; equidem-mpi was "
              f"built {built}. Where others work on the machine, times by the clock scatter, and say little; processor times say "
@@ -130,24 +174,30 @@ def page(command, built, sizes, best, cuts, base):
              "## Strong scaling", ""]
     rows = []
     for discs in sizes:
-        one, two = best[(discs, 1)], best[(discs, 2)]
+        one, two = best[(discs, 1, "gamg")], best[(discs, 2, "gamg")]
         for r in (one, two):
             rows.append([f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), f"{r['set_up']:.2f}", f"{r['solve']:.2f}",
                          f"{r['all']:.2f}", f"{r['processor']:.1f}", f"{faster(one, r):.2f}", str(r["iterations"]), f"{r['residual']:.0e}",
                          si(r["peak"]), f"{(r['peak'] - base) / r['owned']:.0f}"])
     table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster by at least", "iterations", "residual", "memory of a rank",
                   f"of it for a disc, B (beyond {si(base)})"], rows)
-    of_a_disc = (best[(max(sizes), 1)]["peak"] - base) / best[(max(sizes), 1)]["owned"]
-    lines += [f"Four million discs would take {si(base + 4e6 * of_a_disc)} at the peak, which is that of the assembly of the matrix: its "
+    of_a_disc = (best[(max(sizes), 1, "gamg")]["peak"] - base) / best[(max(sizes), 1, "gamg")]["owned"]
+    lines += [f"Four million discs take {si(base + 4e6 * of_a_disc)} by the last column. The peak is that of the assembly of the matrix: its "
               "coordinates, places and a copy.", ""]
+    lines += [text for sentence in left_out for text in (sentence, "")]
     lines += ["## Weak scaling", "", "Twice the discs on two ranks take twice the processor time of one where nothing is lost.", ""]
     rows = []
     for discs in sizes:
-        if (2 * discs, 2) in best:
-            one, two = best[(discs, 1)], best[(2 * discs, 2)]
+        if (2 * discs, 2, "gamg") in best:
+            one, two = best[(discs, 1, "gamg")], best[(2 * discs, 2, "gamg")]
             rows.append([f"{discs:.0e}", f"{one['processor']:.1f}", f"{two['processor']:.1f}", f"{2 * one['processor'] / two['processor']:.2f}",
                          f"{one['iterations']}, {two['iterations']}"])
     table(lines, ["discs of a rank", "one rank: processor, s", "two ranks: processors, s", "share kept, at least", "iterations"], rows)
+    lines += ["## The multigrid of equidem", "",
+              "`-equidem_pc_type equidem`: grids over the whole assembly whose nodes carry rigid motions, the same on every number of ranks. "
+              "Pairs are GAMG and this. Times on more ranks than processors say nothing; iterations do.", ""]
+    table(lines, ["discs", "ranks", "iterations", "set up, s", "solve, s", "processors, s", "memory of a disc, B", "GAMG over this, processors"],
+          beside_gamg(sizes, best, base))
     lines += ["## Messages", "",
               "A rank has a block of w columns and h rows. It sends 8 B for each component of the discs that others mirror: the left "
               "column, the lowest row, and every other disc of the right column, which upper left contacts reach: "
@@ -162,14 +212,14 @@ def page(command, built, sizes, best, cuts, base):
 
 
 def plan(sizes, best, cuts, base):
-    runs = [best[(discs, ranks)] for discs in sizes for ranks in (1, 2) if 4 * discs >= max(sizes)]
+    runs = [best[(discs, ranks, "gamg")] for discs in sizes for ranks in (1, 2) if 4 * discs >= max(sizes)]
     large = max(sizes)
     memory = [(r["peak"] - base) / r["owned"] for r in runs]
     # Of one rank, less what others took of its processor.
     alone = [(r, min(1, r["processor"] / r["all"]) / r["discs"]) for r in runs if r["ranks"] == 1]
     set_up = [(r["before"] + r["set_up"]) * share for r, share in alone]
     step = [r["solve"] * share / r["iterations"] for r, share in alone]
-    small, big = best[(min(sizes), 1)], best[(large, 1)] if (large, 1) in best else best[(large, 2)]
+    small, big = best[(min(sizes), 1, "gamg")], best[(large, 1, "gamg")]
     decades = math.log10(big["discs"] / small["discs"])
     growth = (big["iterations"] - small["iterations"]) / decades if decades > 0 else 0
     discs, ranks = 1e9, 1000
@@ -222,20 +272,24 @@ def main():
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--markdown", type=Path, help="the page; left out: stdout")
     request = parser.parse_args()
-    sizes = [int(float(word)) for word in request.discs.split(",")]
+    sizes = sorted(int(float(word)) for word in request.discs.split(","))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        base = base_memory(request.build.resolve(), folder)
-        jobs = [(discs, ranks) for discs in sizes for ranks in (1, 2)]
-        jobs += [(2 * discs, 2) for discs in sizes if 2 * discs <= max(sizes) and (2 * discs, 2) not in jobs]
-        best = least(request.build.resolve(), folder, jobs, request.repetitions)
-        cuts = [best[(discs, 2)] for discs in sizes]
-        cuts += [run(request.build.resolve(), folder, sizes[0], ranks) for ranks in (4, 9)]
-    build = request.build.resolve()
+        build = request.build.resolve()
+        base = base_memory(build, folder)
+        jobs = {(discs, ranks, kind) for discs in sizes for ranks in (1, 2) for kind in PRECONDITIONERS}
+        jobs |= {(2 * discs, 2, "gamg") for discs in sizes if 2 * discs <= max(sizes)}
+        jobs |= {(min(sizes), 4, kind) for kind in PRECONDITIONERS}
+        best, left_out = least(build, folder, jobs, request.repetitions, base)
+        sizes = [discs for discs in sizes if (discs, 1, "gamg") in best]
+        if not sizes:
+            sys.exit(1)
+        cuts = [best[(discs, 2, "gamg")] for discs in sizes]
+        cuts += [best[(sizes[0], 4, "gamg")], run(build, folder, sizes[0], 9)]
     about = subprocess.run([build / "tools" / "equidem-mpi", "--version"], capture_output=True, text=True, check=True).stdout
     built = about.splitlines()[1].partition(", compiler")[0] + f" (preset {build.name})"
     command = f"tools/bench/petsc_scaling.py --build build/{build.name} --discs {request.discs} --markdown data/petsc.md"
-    text = page(command, built, sizes, best, cuts, base)
+    text = page(command, built, sizes, best, cuts, base, left_out)
     if request.markdown:
         request.markdown.write_text(text, encoding="utf-8")
     else:

@@ -82,8 +82,7 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   all.set("strain_of_states", strain_of_states);
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
-  const char* status = result.unstable_modes < 0 ? "unjudged" : "solved";
-  deliver(options, status, std::move(all), std::move(times),
+  deliver(options, status_of(result), std::move(all), std::move(times),
           [&](Results&) { write_case(options, p.problem.resolved); });
 }
 

@@ -115,7 +115,7 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   return result;
 }
 
-/// A mean strain whose energy is lost in its error; else mean strains that release energy count as unstable modes.
+/// A mean strain whose energy is lost in its error; else counts those that release energy.
 std::optional<WeakStrain> judge(EffectiveStiffness& result) {
   const StiffnessEigen eigen = eigenstrains(result.stiffness);
   const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
@@ -123,11 +123,7 @@ std::optional<WeakStrain> judge(EffectiveStiffness& result) {
   for (int k = 0; k < 3; ++k) {
     if (!(std::abs(eigen.values[k]) > nothing * largest + 2 * result.error_bound)) return eigen.strains[k];
   }
-  result.unstable_strains = std::count_if(eigen.values.begin(), eigen.values.end(), [](double v) { return v < 0; });
-  // The inertia of motions and mean strain together is that of K and that of C, its Schur complement (Haynsworth 1968).
-  if (result.unstable_strains > 0) {
-    result.unstable_modes = std::max<std::int64_t>(result.unstable_modes, 0) + result.unstable_strains;
-  }
+  result.count_unstable_strains();
   return {};
 }
 
@@ -168,6 +164,13 @@ void EffectiveStiffness::scale(double factor) {
   prestress_part = factor * prestress_part;
   gradient_stiffness = factor * gradient_stiffness;
   error_bound *= factor;
+}
+
+void EffectiveStiffness::count_unstable_strains() {
+  const StiffnessEigen eigen = eigenstrains(stiffness);
+  unstable_strains = std::count_if(eigen.values.begin(), eigen.values.end(), [](double v) { return v < 0; });
+  // The inertia of motions and mean strain together is that of K and that of C, its Schur complement (Haynsworth 1968).
+  if (unstable_strains > 0) unstable_modes = std::max<std::int64_t>(unstable_modes, 0) + unstable_strains;
 }
 
 void check_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {

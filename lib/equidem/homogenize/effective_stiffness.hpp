@@ -89,6 +89,8 @@ struct EffectiveStiffness {
 
   /// All springs `factor` times as stiff: the motions stay.
   void scale(double factor);
+  /// Counts the mean strains that release energy, as unstable modes too.
+  void count_unstable_strains();
 };
 
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.

@@ -26,6 +26,10 @@ void check_harmonic(const ContactSprings& springs, const Viscoelasticity& viscoe
               "an assembly with kT < 0 rests in a balance that no dashpot keeps: every rotation grows",
               "Use kT >= 0, or elastic springs");
   }
+  if (springs.prestressed()) {
+    bad_input("forces at rest count, and the springs are viscoelastic",
+              "their geometric stiffness is that of elastic springs alone", "Use effects.prestress = \"off\"");
+  }
   if (options.boundary == Boundary::traction) {
     bad_input("the boundary is traction, and the springs are viscoelastic",
               "complex stiffness is computed from mean strains", "Use boundary = \"periodic\" or \"displacement\"");

@@ -31,9 +31,10 @@ struct CaseModel {
 
 /// Refuses what the engine does not carry, then chooses the step: a motion that grows has none.
 template <typename Step>
-void finish(EngineModel& model, Engine engine, const std::string& where, const Step& step) {
+void finish(EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where,
+            const Step& step) {
   try {
-    require_carried(model.found, engine);
+    require_carried(model.found, engine, options.accept);
   } catch (const Error& error) {
     throw error.at(where);
   }
@@ -64,7 +65,7 @@ Problem problem_to_export(Case resolved) {
   return build_problem(std::move(resolved));
 }
 
-CaseModel bonded_model(const CommonOptions& options, Engine engine) {
+CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   constexpr double damping_to_rest = 0.2;
   const auto problem = std::make_shared<const Problem>(problem_to_export(read_case(options)));
   const Case& resolved = problem->resolved;
@@ -83,7 +84,7 @@ CaseModel bonded_model(const CommonOptions& options, Engine engine) {
     model.found.emplace(EngineFeature::given_at_start, model.found.at(EngineFeature::given_displacements));
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;
   if (run) model.duration = run->duration.value_or(0);
-  finish(model, engine, resolved.document.where(), [&] {
+  finish(model, engine, options, resolved.document.where(), [&] {
     TimeStepOptions wanted = run ? run->time_step : TimeStepOptions{};
     if (run) wanted.duration = run->duration.value_or(0);
     const double step = choose_time_step(scene, settings, wanted).step;
@@ -97,19 +98,19 @@ CaseModel bonded_model(const CommonOptions& options, Engine engine) {
   return made;
 }
 
-CaseModel grain_model(const CommonOptions& options, Engine engine) {
+CaseModel grain_model(const ExportOptions& options, Engine engine) {
   const auto resolved = std::make_shared<const GrainCase>(read_grain_case(options.case_file, options.set));
   const double step = choose_grain_step(*resolved).step;
   const GrainScene scene = build_grain_scene(*resolved, step);
   CaseModel made{.model = engine_model(scene, grain_options(*resolved, step), resolved->body)};
   made.model.title = resolved->title;
   made.model.duration = resolved->duration;
-  finish(made.model, engine, resolved->document.where(), [&] { return step; });
+  finish(made.model, engine, options, resolved->document.where(), [&] { return step; });
   made.write_case = [resolved](const CommonOptions& into) { write_case(into, resolved->document); };
   return made;
 }
 
-Exported export_to(const CommonOptions& options, Engine engine,
+Exported export_to(const ExportOptions& options, Engine engine,
                    std::vector<EngineFile> (*files_of)(const EngineModel& model)) {
   const bool grains = describes_grains(casefile::read_document(options.case_file, options.set));
   CaseModel made = grains ? grain_model(options, engine) : bonded_model(options, engine);
@@ -123,6 +124,10 @@ Exported export_to(const CommonOptions& options, Engine engine,
   exported.results.add("steps", "", steps_of(model), "step", {Shown::count});
   if (model.to_rest) exported.results.note(" at most, to rest");
   for (const std::string& note : made.notes) exported.results.line("", note);
+  for (const auto& [feature, instance] : model.found) {
+    const EngineFeatureRow& row = entry_of(feature);
+    if (!row.carried_by(engine)) exported.results.line("accepted", fmt::format("{}: {}", row.name, row.why));
+  }
   for (EngineFile& file : files_of(model))
     exported.files.push_back({file.name, [text = std::move(file.text)] { return text; }});
   exported.times = std::move(made.times);
@@ -132,15 +137,15 @@ Exported export_to(const CommonOptions& options, Engine engine,
 
 }  // namespace
 
-Exported export_to_lammps(const CommonOptions& options) {
+Exported export_to_lammps(const ExportOptions& options) {
   return export_to(options, Engine::lammps, lammps_files);
 }
 
-Exported export_to_yade(const CommonOptions& options) {
+Exported export_to_yade(const ExportOptions& options) {
   return export_to(options, Engine::yade, yade_files);
 }
 
-Exported export_to_pfc(const CommonOptions& options) {
+Exported export_to_pfc(const ExportOptions& options) {
   return export_to(options, Engine::pfc, pfc_files);
 }
 

@@ -9,6 +9,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/export/engine_features.hpp"
 
 #include "command.hpp"
 #include "export/formats.hpp"
@@ -17,11 +18,7 @@
 namespace equidem {
 namespace {
 
-struct ExportVerb : CommonOptions {
-  std::string to;
-};
-
-int export_case(const ExportVerb& options) {
+int export_case(const ExportOptions& options) {
   prepare(options);
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
   if (!options.out && !options.dry_run)
@@ -46,16 +43,22 @@ int export_case(const ExportVerb& options) {
 }  // namespace
 
 Run declare_export(CLI::App& command) {
-  const auto options = std::make_shared<ExportVerb>();
+  const auto options = std::make_shared<ExportOptions>();
   add_common_options(command, *options);
   command.add_option("--to", options->to, "the program or format: " + help_of(export_formats))
       ->required()
       ->type_name("FORMAT");
+  command
+      .add_option("--accept", options->accept,
+                  fmt::format("export this although the program computes it otherwise, as its refusal says: {}",
+                              joined(acceptable_features(), ", ")))
+      ->type_name("WHAT");
   command.footer(
       "Examples:\n"
       "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"
       "  equidem export data/cases/delaunay_tension.toml --to yade --out tension    then yade run_equidem.py\n"
       "  equidem export data/cases/grains_cradle.toml --set collisions.law=linear_dashpot --to yade --out cradle\n"
+      "  equidem export data/cases/grains_settle.toml --accept friction --to lammps --out settle\n"
       "  equidem export data/cases/cantilever.toml --to matrix-market --out beam    then python3 beam/solve.py");
   return [options] { return export_case(*options); };
 }

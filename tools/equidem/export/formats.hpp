@@ -31,14 +31,19 @@ struct Exported {
   std::function<void(const CommonOptions&)> write_case = {};  ///< write_case of the resolved case
 };
 
+struct ExportOptions : CommonOptions {
+  std::string to;
+  std::vector<std::string> accept;  ///< words of EngineFeatureRow::accept
+};
+
 /// Reads the case of the options and makes the files; writes nothing.
 /// \throws Error (bad_input) as the reader of the case does, and on what the format cannot carry
-using ExportFunction = Exported (*)(const CommonOptions& options);
+using ExportFunction = Exported (*)(const ExportOptions& options);
 
-Exported export_to_lammps(const CommonOptions& options);
-Exported export_to_yade(const CommonOptions& options);
-Exported export_to_pfc(const CommonOptions& options);
-Exported export_to_matrix_market(const CommonOptions& options);
+Exported export_to_lammps(const ExportOptions& options);
+Exported export_to_yade(const ExportOptions& options);
+Exported export_to_pfc(const ExportOptions& options);
+Exported export_to_matrix_market(const ExportOptions& options);
 
 struct ExportFormat {
   const char* name;  ///< as --to takes it

@@ -142,7 +142,10 @@ LinearSystem equations_of(const Problem& problem) {
 
 }  // namespace
 
-Exported export_to_matrix_market(const CommonOptions& options) {
+Exported export_to_matrix_market(const ExportOptions& options) {
+  if (!options.accept.empty())
+    bad_input("--accept with --to matrix-market", "the matrices leave nothing out and approximate nothing",
+              "Leave it out");
   Case resolved = read_case(options);
   const bool loaded = acts(resolved);
   const auto problem =

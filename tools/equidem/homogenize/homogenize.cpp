@@ -192,17 +192,13 @@ int homogenize(const HomogenizeVerb& options) {
     results.line("files", "without states: those are of prescribed strains");
   else if (common.out)
     results.line("files", fmt::format("states are those of strains of {}", written_strain));
-  deliver(common,
-          result.unstable_modes > 0   ? "unstable"
-          : result.unstable_modes < 0 ? "unjudged"
-                                      : "solved",
-          std::move(results), std::move(times), [&](Results& out) {
-            if (!common.out) return;
-            if (harmonic) out.block(write_harmonic(common, problem.resolved.title, harmonic->stiffness));
-            write_assembly(common, problem.resolved.output, problem.assembly);
-            write_states(common, problem.resolved.output, problem, result);
-            write_case(common, problem.resolved);
-          });
+  deliver(common, status_of(result), std::move(results), std::move(times), [&](Results& out) {
+    if (!common.out) return;
+    if (harmonic) out.block(write_harmonic(common, problem.resolved.title, harmonic->stiffness));
+    write_assembly(common, problem.resolved.output, problem.assembly);
+    write_states(common, problem.resolved.output, problem, result);
+    write_case(common, problem.resolved);
+  });
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));

@@ -273,6 +273,10 @@ std::optional<RelationBeside> relation_beside(const SpringConstants& springs, co
   }
 }
 
+const char* status_of(const EffectiveStiffness& result) {
+  return result.unstable_modes > 0 ? "unstable" : result.unstable_modes < 0 ? "unjudged" : "solved";
+}
+
 Results homogenized_results(const Problem& problem, const BoundedStiffness& h,
                             const std::optional<RelationBeside>& relation) {
   return homogenized_results(problem, problem_results(problem, h.result.effects), problem.assembly.periodic(), h,

@@ -22,6 +22,9 @@ struct RelationBeside {
   double shear_modulus = 0;
 };
 
+/// "solved"; "unstable" where the network would give way; "unjudged" where the solver cannot tell.
+const char* status_of(const EffectiveStiffness& result);
+
 /// Report and JSON of the verb.
 Results homogenized_results(const Problem& problem, const BoundedStiffness& homogenized,
                             const std::optional<RelationBeside>& relation);

@@ -13,7 +13,7 @@
 namespace equidem::multigrid {
 namespace {
 
-Grid grid_over(const Assembly& assembly, double a, double spacing) {
+Grid grid_of_discs(const Assembly& assembly, double a, double spacing) {
   double sum = 0;
   for (const Contact& contact : assembly.contacts) sum += norm(assembly.branch(contact));
   const bool periodic = assembly.periodic();
@@ -23,12 +23,13 @@ Grid grid_over(const Assembly& assembly, double a, double spacing) {
     low = {std::min(low.x, x.x), std::min(low.y, x.y)};
     high = {std::max(high.x, x.x), std::max(high.y, x.y)};
   }
-  const Vec2 extent = (1 / a) * (high - low);
-  const auto discs = static_cast<double>(assembly.size());
-  // Pieces far apart: no more cells than discs.
-  const double h = std::max({spacing * sum / static_cast<double>(assembly.contacts.size()) / a,
-                             std::sqrt(extent.x) * std::sqrt(extent.y / discs), extent.x / discs, extent.y / discs});
-  return {divide(low.x / a, extent.x, h, periodic), divide(low.y / a, extent.y, h, periodic)};
+  return grid_over({.low = low,
+                    .high = high,
+                    .periodic = periodic,
+                    .discs = static_cast<double>(assembly.size()),
+                    .distance = sum / static_cast<double>(assembly.contacts.size()),
+                    .unit = a},
+                   spacing);
 }
 
 /// The matrix of few discs, for elimination.
@@ -97,7 +98,7 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
   const auto& [assembly, graph, springs, unknowns] = network;
   const double a = unknowns.rotation_scale;
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
-  auto grid = std::make_unique<Grid>(grid_over(assembly, a, options.spacing));
+  auto grid = std::make_unique<Grid>(grid_of_discs(assembly, a, options.spacing));
   std::vector<Place> places(assembly.size());
   std::vector<double> masses(places.size());
   constexpr std::size_t discs_at_once = 1 << 13;

@@ -159,6 +159,14 @@ Shape Grid::shape(const Place& place) const {
   return shape;
 }
 
+Grid grid_over(const GridRegion& region, double spacing) {
+  const Vec2 low = (1 / region.unit) * region.low, extent = (1 / region.unit) * (region.high - region.low);
+  const double h =
+      std::max({spacing * region.distance / region.unit, std::sqrt(extent.x) * std::sqrt(extent.y / region.discs),
+                extent.x / region.discs, extent.y / region.discs});
+  return {divide(low.x, extent.x, h, region.periodic), divide(low.y, extent.y, h, region.periodic)};
+}
+
 Buckets sort_into_buckets(std::span<const std::int32_t> bucket_of_item, std::size_t buckets) {
   Buckets result{std::vector<std::int32_t>(buckets + 1, 0), std::vector<std::int32_t>(bucket_of_item.size())};
   for (const std::int32_t bucket : bucket_of_item) ++result.first[bucket + 1];

@@ -90,6 +90,18 @@ class Grid {
   std::vector<std::uint8_t> full_;  // per cell
 };
 
+/// What a grid has to cover.
+struct GridRegion {
+  Vec2 low, high;         ///< m: corners of the rectangle around the centres, or of the cell
+  bool periodic = false;  ///< along both axes
+  double discs = 0;
+  double distance = 0;  ///< m, of the centres of discs in contact, mean
+  double unit = 1;      ///< m: a, the length of rotations
+};
+
+/// \param spacing of the nodes over the distance; larger where pieces lie far apart: no more cells than discs
+Grid grid_over(const GridRegion& region, double spacing);
+
 /// Items sorted by a number that each has, for example points by their cell; items with the same number keep their
 /// order.
 struct Buckets {

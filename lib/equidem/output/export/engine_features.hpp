@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "equidem/core/names.hpp"
 
@@ -44,6 +45,7 @@ enum class EngineFeature {
   oblique_walls,
   shaped_walls,
   moving_walls,
+  recorded_walls,
   shapes,
   grain_bonds,
   other_laws,
@@ -55,6 +57,7 @@ enum class EngineFeature {
   unequal_pairs,
   rigid_friction,
   friction_of_spring,
+  friction_levers,
   breakage,
 };
 
@@ -65,6 +68,8 @@ struct EngineFeatureRow {
   bool lammps = false, yade = false, pfc = false;
   const char* why;     ///< of what is not carried
   const char* remedy;  ///< a sentence without its full stop
+  /// The word of --accept that exports a model all the same, approximated as `why` says; null: nothing does.
+  const char* accept = nullptr;
 
   [[nodiscard]] bool carried_by(Engine engine) const {
     switch (engine) {
@@ -125,8 +130,10 @@ struct EnumNames<EngineFeature> {
       {oblique_walls, "walls that are not parallel to an axis", true, false, true, "its walls are", "Export to lammps"},
       {shaped_walls, "segments and arcs as walls", false, false, false, "its walls are planes",
        "Take lines, or 'equidem run'"},
-      {moving_walls, "walls that move", false, false, false, "they would need its programming",
-       "Take the motion out, and write it into the script"},
+      {moving_walls, "walls that move", true, true, false, "they would need its programming",
+       "Export to lammps or yade, or take the motion out"},
+      {recorded_walls, "walls that follow a record or a table of more than 50 points", false, false, false,
+       "their motion is one formula there", "Give a ramp, a sine or a shorter table"},
       {shapes, "ellipses and clumps", false, false, false, "their contact laws are others",
        "Take discs, or 'equidem run'"},
       {grain_bonds, "bonds of dashpots", false, false, false, "it has no such bonds", "Take [[bond]] out"},
@@ -148,6 +155,12 @@ struct EnumNames<EngineFeature> {
        "its friction limits the force of a spring", "Set tangential_ratio, such as 2/7"},
       {friction_of_spring, "friction that limits the spring alone", false, false, false,
        "it limits spring and dashpot together", "Set friction_cap = \"whole_force\""},
+      {friction_levers, "friction of bodies that overlap", false, false, false,
+       "its levers differ by parts of the overlap (LAMMPS: the radii, YADE: to the middle, walls otherwise; here: "
+       "parts "
+       "of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
+       "(data/interop.md)",
+       "Give --accept friction to export it with these levers, or set friction = 0", "friction"},
       {breakage, "strengths, notches and dead loads of quasistatic", false, false, false,
        "its bonds are written without strength", "Take [strength], [[notch]] and [[dead_load]] out"},
   };
@@ -156,8 +169,13 @@ struct EnumNames<EngineFeature> {
 /// The features of a model with an instance of each, such as "contact 3".
 using FoundFeatures = std::map<EngineFeature, std::string>;
 
-/// \throws Error (bad_input) on the first feature that the engine does not carry: name, instance, why, what to do
-void require_carried(const FoundFeatures& found, Engine engine);
+/// \param accepted words of EngineFeatureRow::accept
+/// \throws Error (bad_input) on a word that no feature has; on the first feature that the engine does not carry and
+///         that is not accepted: name, instance, why, what to do
+void require_carried(const FoundFeatures& found, Engine engine, const std::vector<std::string>& accepted);
+
+/// The words of --accept, with the features that they are about.
+std::vector<std::string> acceptable_features();
 
 /// The table in Markdown: a row for each feature, a column for each engine.
 std::string engine_features_table();

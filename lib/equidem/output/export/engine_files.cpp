@@ -49,6 +49,10 @@ EngineFile readme_of(const EngineModel& model, Engine engine) {
   text += fmt::format("Time step {} s, stable; {}.\n", exact(model.time_step),
                       model.bonded ? "motions are finite here, bonds neither break nor carry forces at the start"
                                    : "tangential springs are without force at the start");
+  for (const auto& [feature, instance] : model.found) {
+    const EngineFeatureRow& row = entry_of(feature);
+    if (!row.carried_by(engine) && row.accept != nullptr) text += fmt::format("Accepted: {}; {}.\n", row.name, row.why);
+  }
   return {"README", text};
 }
 

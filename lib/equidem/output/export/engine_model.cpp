@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "equidem/assembly/touching.hpp"
@@ -13,6 +14,8 @@ namespace equidem {
 namespace {
 
 using enum EngineFeature;
+
+constexpr std::size_t most_points_of_motion = 50;  // each is a term of a formula
 
 void add(FoundFeatures& found, EngineFeature feature, const std::string& instance) {
   found.emplace(feature, instance);
@@ -124,6 +127,9 @@ void find_features_of_walls(const std::vector<Wall>& walls, FoundFeatures& found
     const std::string name = "wall '" + wall.name + "'";
     if (wall.shape != Wall::Shape::line) add(found, shaped_walls, name);
     if (wall.moves()) add(found, moving_walls, name);
+    for (const Schedule* move : {&wall.move_x, &wall.move_y})
+      if (move->kind == Schedule::Kind::smooth_table || move->times.size() > most_points_of_motion)
+        add(found, recorded_walls, name);
     if (wall.normal.x != 0 && wall.normal.y != 0) add(found, oblique_walls, name);
   }
 }
@@ -207,6 +213,7 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
       if (zeta >= 1 && !equal_masses(model))
         add(model.found, strong_dashpots, fmt::format("damping ratio {:.6g}", zeta));
       if (pair.friction > 0) {
+        add(model.found, friction_levers, fmt::format("with the coefficient {:.6g}", pair.friction));
         if (pair.tangential_ratio == 0) add(model.found, rigid_friction, "");
         if (pair.cap != FrictionCap::whole_force && pair.tangential_damping > 0)
           add(model.found, friction_of_spring, "");
@@ -232,6 +239,42 @@ std::optional<double> common_mass(const EngineModel& model) {
 
 std::string exact(double value) {
   return fmt::format("{}", value);
+}
+
+std::string formula_of(const Schedule& schedule, const std::string& time) {
+  const auto negative = [](double value) { return value < 0 ? "(" + exact(value) + ")" : exact(value); };
+  const auto since = [&](double start) { return fmt::format("({0}-{1}+abs({0}-{1}))/2", time, negative(start)); };
+  // The time between two instants, from 0 to their distance.
+  const auto between = [&](double start, double end) {
+    return fmt::format("(abs({0}-{1})-abs({0}-{2})+{3})/2", time, negative(start), negative(end), exact(end - start));
+  };
+  switch (schedule.kind) {
+    case Schedule::Kind::constant:
+      return exact(schedule.value);
+    case Schedule::Kind::ramp:
+      return fmt::format("{}*(1-cos({}*({})))", negative(0.5 * schedule.value),
+                         exact(std::numbers::pi / (schedule.end - schedule.start)),
+                         between(schedule.start, schedule.end));
+    case Schedule::Kind::sine:
+      return fmt::format("{}*sin({}*({}))", negative(schedule.value), exact(2 * std::numbers::pi * schedule.frequency),
+                         since(schedule.start));
+    case Schedule::Kind::cycles:
+      return fmt::format("{}*(1-cos({}*({})))", negative(schedule.value),
+                         exact(2 * std::numbers::pi * schedule.frequency), between(schedule.start, schedule.end));
+    case Schedule::Kind::table: {
+      std::string sum = exact(schedule.values.front());
+      for (std::size_t k = 0; k + 1 < schedule.times.size(); ++k) {
+        const double slope =
+            (schedule.values[k + 1] - schedule.values[k]) / (schedule.times[k + 1] - schedule.times[k]);
+        if (slope != 0)
+          sum += fmt::format("+{}*{}", negative(slope), between(schedule.times[k], schedule.times[k + 1]));
+      }
+      return sum;
+    }
+    case Schedule::Kind::smooth_table:
+      break;
+  }
+  return "0";  // refused: EngineFeature::recorded_walls
 }
 
 double tangential_mass_share(Body body) {

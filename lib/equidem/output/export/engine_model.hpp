@@ -87,4 +87,8 @@ double tangential_mass_share(Body body);
 /// A number in the shortest form that reads back to the same bits.
 std::string exact(double value);
 
+/// A schedule as a formula that LAMMPS and Python read, with abs, sin and cos.
+/// \param time the name of the time in it, s
+std::string formula_of(const Schedule& schedule, const std::string& time);
+
 }  // namespace equidem

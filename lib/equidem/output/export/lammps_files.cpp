@@ -226,10 +226,16 @@ class LammpsWriter {
   /// The walls: each by a fix for each kind of bodies.
   [[nodiscard]] std::string walls() const {
     std::string text;
+    if (std::ranges::any_of(model_.walls, &Wall::moves)) text += "variable t equal step*dt\n";
     for (std::size_t k = 0; k < model_.walls.size(); ++k) {
       const Wall& wall = model_.walls[k];
-      line(text, "region wall_{} plane {} {} 0 {} {} 0 side in", k, exact(wall.point.x), exact(wall.point.y),
-           exact(wall.normal.x), exact(wall.normal.y));
+      if (wall.moves()) {
+        line(text, "variable move_{}_x equal {}\nvariable move_{}_y equal {}", k, formula_of(wall.move_x, "v_t"), k,
+             formula_of(wall.move_y, "v_t"));
+      }
+      line(text, "region wall_{} plane {} {} 0 {} {} 0 side in{}", k, exact(wall.point.x), exact(wall.point.y),
+           exact(wall.normal.x), exact(wall.normal.y),
+           wall.moves() ? fmt::format(" move v_move_{}_x v_move_{}_y NULL", k, k) : "");
       for (const auto& [kind, type] : types_) {
         line(text, "group kind_{} type {}", type, type);
         text += fmt::format("fix wall_{}_{} kind_{} wall/gran/region ", k, type, type);

@@ -77,6 +77,18 @@ O.engines = [
 ]
 )";
 
+constexpr std::string_view move_walls = R"(
+
+def move_walls():
+    """The velocity by which each wall is in its place after the step."""
+    for number, place_at in MOVING_WALLS:
+        now, then = (place_at(step * O.dt) for step in (O.iter, O.iter + 1))
+        O.bodies[number].state.vel = ((then[0] - now[0]) / O.dt, (then[1] - now[1]) / O.dt, 0)
+
+
+O.engines = O.engines[:-1] + [PyRunner(command='move_walls()', iterPeriod=1)] + O.engines[-1:]
+)";
+
 constexpr std::string_view run_to_rest = R"(
 
 def unbalanced():
@@ -143,7 +155,8 @@ class YadeWriter {
 
   [[nodiscard]] std::string script() const {
     std::string text = fmt::format(
-        "# Written by equidem. SI units, {}.\n# yade -n -x run_equidem.py\nimport math\n\nfrom yade import utils\n\n",
+        "# Written by equidem. SI units, {}.\n# yade -n -x run_equidem.py\nimport math\nfrom math import cos, "
+        "sin\n\nfrom yade import utils\n\n",
         model_.body == Body::disc ? "masses and forces per metre of depth" : "spheres");
     text += fmt::format("STEPS = {}\n", steps_of(model_));
     text += fmt::format("DAMPING = {}  # share of the resultant that acts against the velocity\n",
@@ -157,7 +170,9 @@ class YadeWriter {
     text += make_bodies;
     if (!model_.bonded) text += walls();
     text += model_.bonded ? make_bonds : make_contacts;
-    text += fmt::format("O.dt = {}\n# Motion\n", exact(model_.time_step));
+    text += fmt::format("O.dt = {}\n", exact(model_.time_step));
+    if (std::ranges::any_of(model_.walls, &Wall::moves)) text += moving_walls();
+    text += "# Motion\n";
     text += model_.to_rest ? run_to_rest : run_steps;
     text += write_end;
     return text;
@@ -215,6 +230,18 @@ class YadeWriter {
                           sense, wall.kind);
     }
     return text;
+  }
+
+  /// Walls follow the bodies.
+  [[nodiscard]] std::string moving_walls() const {
+    std::string text = "# number, place at the time t\nMOVING_WALLS = [\n";
+    for (std::size_t k = 0; k < model_.walls.size(); ++k) {
+      const Wall& wall = model_.walls[k];
+      if (!wall.moves()) continue;
+      text += fmt::format("    ({}, lambda t: ({}, {})),\n", model_.bodies.size() + k, formula_of(wall.move_x, "t"),
+                          formula_of(wall.move_y, "t"));
+    }
+    return text + "]\n" + std::string(move_walls);
   }
 
   const EngineModel& model_;
