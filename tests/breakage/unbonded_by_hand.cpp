@@ -91,8 +91,8 @@ TEST_CASE("to_and_fro_a_contact_loses_the_area_of_its_loop") {
   const double friction = 0.1, amplitude = 1e-3, slip = amplitude - friction / kT;
   Unbonded disc = to_and_fro(friction, 0, 0, {1, -1, 1, -1, 1});
   disc.all();
-  CHECK(modes_of(disc) == std::vector<std::string>{"slip", "stick", "slip", "stick", "slip", "stick", "slip", "stick",
-                                                   "slip"});
+  CHECK(modes_of(disc) ==
+        std::vector<std::string>{"slip", "stick", "slip", "stick", "slip", "stick", "slip", "stick", "slip"});
   CHECK(disc.event(0).lambda == Approx(friction / (kT * amplitude)).epsilon(1e-12));
   CHECK(disc.event(2).lambda == Approx(1 - 2 * friction / (kT * amplitude)).epsilon(1e-12));
   CHECK(disc.run().state().ledger().friction == Approx(friction * slip * (1 + 4 * 2)).epsilon(1e-12));

@@ -12,7 +12,7 @@
 namespace equidem {
 namespace {
 
-constexpr BondProperty properties[] = {
+constexpr BondProperty properties_of_bonds[] = {
     {"normal_dashpot", &GrainBond::normal_dashpot, "N s/m (discs: per m of depth)",
      "C_n along the line of centres: a pair stops as exp(-C_n t/m), m the reduced mass; a steady pull N makes it creep "
      "at N/C_n"},
@@ -35,7 +35,7 @@ std::size_t grain_number(std::string_view cell, const TableFile& file) {
 }  // namespace
 
 std::span<const BondProperty> bond_properties() {
-  return properties;
+  return properties_of_bonds;
 }
 
 BondRows read_bonds(const std::filesystem::path& path, const GrainBond& common) {
@@ -51,8 +51,8 @@ BondRows read_bonds(const std::filesystem::path& path, const GrainBond& common) 
     bond.i = grain_number(cells[0], file);
     bond.j = grain_number(cells.size() > 1 ? cells[1] : "", file);
     for (std::size_t c = 2; c < std::min(cells.size(), names.size()); ++c) {
-      const auto property = std::ranges::find(properties, names[c], &BondProperty::name);
-      if (property == std::end(properties) || cells[c].empty()) continue;
+      const auto property = std::ranges::find(properties_of_bonds, names[c], &BondProperty::name);
+      if (property == std::end(properties_of_bonds) || cells[c].empty()) continue;
       const auto value = number_from<double>(cells[c]);
       if (!value || !std::isfinite(*value) || *value < 0)
         file.fail(fmt::format("'{}' is no {}", cells[c], property->name), "a number >= 0 is needed", "Correct it");

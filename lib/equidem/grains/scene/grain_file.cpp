@@ -17,8 +17,8 @@ namespace {
 
 /// Columns of a file of grains. The last two are text.
 enum Column { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
-constexpr std::array<const char*, columns> names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
-                                                    "spin", "angle", "density", "discs",           "group"};
+constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
+                                                           "spin", "angle", "density", "discs",           "group"};
 /// Columns that a run also writes, ignored by this reader.
 constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
 
@@ -41,7 +41,7 @@ constexpr std::array<const char*, columns> with_units = {"x_m",
 /// The column of a name with or without its unit; `columns` where there is none.
 std::size_t column_of(std::string_view name) {
   std::size_t c = 0;
-  while (c < columns && name != names[c] && name != with_units[c]) ++c;
+  while (c < columns && name != column_names[c] && name != with_units[c]) ++c;
   return c;
 }
 
@@ -107,19 +107,20 @@ class GrainFile {
         if (bare != columns)
           file_.fail(fmt::format("the column '{}' is in a unit of its own", cells[c]),
                      "lengths are in m, times in s, angles in rad",
-                     fmt::format("Convert it, and name it '{}'", names[bare]));
-        const auto meant = nearest(cells[c], std::vector<std::string>(names.begin(), names.end()));
-        file_.fail(fmt::format("'{}' is no column of grains", cells[c]),
-                   fmt::format("they are {}", joined(std::vector<std::string>(names.begin(), names.end()))),
-                   meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
+                     fmt::format("Convert it, and name it '{}'", column_names[bare]));
+        const auto meant = nearest(cells[c], std::vector<std::string>(column_names.begin(), column_names.end()));
+        file_.fail(
+            fmt::format("'{}' is no column of grains", cells[c]),
+            fmt::format("they are {}", joined(std::vector<std::string>(column_names.begin(), column_names.end()))),
+            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
       }
       std::size_t& at = at_[column];
-      if (at != width_) file_.fail(fmt::format("the column '{}' is there twice", names[column]), "", "Keep one");
+      if (at != width_) file_.fail(fmt::format("the column '{}' is there twice", column_names[column]), "", "Keep one");
       at = c;
     }
     for (const Column needed : {x, y, radius}) {
       if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
-      file_.fail(fmt::format("the column '{}' is missing", names[needed]), "every grain has a place and a size",
+      file_.fail(fmt::format("the column '{}' is missing", column_names[needed]), "every grain has a place and a size",
                  "Add it");
     }
   }
@@ -130,7 +131,7 @@ class GrainFile {
     if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
     const auto value = number_from<double>(text);
     if (!value || !std::isfinite(*value))
-      file_.fail(fmt::format("'{}' is no {}", text, names[column]), "a finite number is needed", "Correct it");
+      file_.fail(fmt::format("'{}' is no {}", text, column_names[column]), "a finite number is needed", "Correct it");
     return *value;
   }
 
