@@ -44,6 +44,7 @@ class UpdatedSystem final : public SolvedStates {
         moved_(std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; })),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
+                      .memory_limit = network_.solver.memory_limit,
                       .force_moments = area_of_stress(network_.assembly) > 0}) {
     energy_ = first_energy_ = energy();
     measured(equilibrium_.estimated_residual());
@@ -281,9 +282,9 @@ class UpdatedSystem final : public SolvedStates {
 }  // namespace
 
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network) {
-  const SolverOptions& solver = network.solver;
-  const bool asked_for = (solver.method == SolverMethod::automatic || solver.method == SolverMethod::multifrontal) &&
-                         solver.precision != FactorPrecision::single_precision;
+  const SolverOptions solver = breaking_solver(network.solver);
+  const bool asked_for =
+      solver.method == SolverMethod::multifrontal && solver.precision == FactorPrecision::double_precision;
   if (!asked_for || network.springs.any_negative() || network.cases.size() > 2)
     return make_refactorized_system(std::move(network));
   std::vector<std::uint8_t> held = held_or_loaded(network);

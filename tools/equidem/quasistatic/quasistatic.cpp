@@ -139,6 +139,7 @@ int quasistatic(const QuasistaticOptions& given) {
   if (options.dry_run) {
     Results further = path_results(sequence.scene(), sequence.cut.size());
     further.line("", "sizes and time below are those of one event; there are at most as many events as contacts");
+    sequence.problem.resolved.solver = breaking_solver(sequence.problem.resolved.solver);
     deliver(options, "dry_run", dry_run_results(sequence.problem, 1, further), sequence.problem.times);
     return 0;
   }

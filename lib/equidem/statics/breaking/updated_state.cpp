@@ -11,6 +11,7 @@
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 
 namespace equidem {
 namespace {
@@ -38,6 +39,7 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
       cases(std::move(cases_in)),
       options(options_in),
       symbolic_(std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc))) {
+  check_memory(estimate(*symbolic_, unknowns, false), options.memory_limit);
   factor = std::make_unique<UpdatedCholesky>(symbolic_);
   blocks_ = std::make_unique<MotionBlocks>(network(), *symbolic_);
   path_offset_.assign(symbolic_->fronts(), -1);
