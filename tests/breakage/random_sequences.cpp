@@ -239,10 +239,10 @@ TEST_CASE("paths_have_the_same_bits_on_every_number_of_threads") {
 
 TEST_CASE("networks_of_springs_far_apart_and_what_hardly_holds_are_solved_alone") {
   std::int64_t events = 0, alone = 0;
-  for (const std::uint64_t seed : {5, 6, 7, 9}) {
+  for (const std::uint64_t seed : {5, 6, 7, 11, 15, 19, 23}) {
     Drawn d = draw(seed, 150);
     Random random(seed);
-    const double decades = seed == 7 ? 9 : 5;
+    const double decades = seed == 7 ? 9 : 5.6;
     std::vector<SpringConstants> springs;
     for (std::size_t c = 0; c < d.assembly.contacts.size(); ++c) {
       const double k = std::pow(10, random.uniform(-decades, 0));
