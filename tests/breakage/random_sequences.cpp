@@ -236,3 +236,42 @@ TEST_CASE("paths_have_the_same_bits_on_every_number_of_threads") {
     CHECK(std::memcmp(found[0].data(), found[2].data(), found[0].size() * sizeof(double)) == 0);
   }
 }
+
+TEST_CASE("networks_of_springs_far_apart_and_what_hardly_holds_are_solved_alone") {
+  std::int64_t events = 0, alone = 0;
+  for (const std::uint64_t seed : {5, 6, 7, 11, 15, 19, 23}) {
+    Drawn d = draw(seed, 150);
+    Random random(seed);
+    const double decades = seed == 7 ? 9 : 5.6;
+    std::vector<SpringConstants> springs;
+    for (std::size_t c = 0; c < d.assembly.contacts.size(); ++c) {
+      const double k = std::pow(10, random.uniform(-decades, 0));
+      springs.push_back({k, 0.5 * k});
+    }
+    d.springs = ContactSprings(std::move(springs));
+    CAPTURE(d.name, decades);
+    Broken fast(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_breakable_system);
+    Broken slow(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_refactorized_system);
+    CHECK((fast.system().solver_name() == slow.system().solver_name()) == (decades > 6));
+    while (true) {
+      CAPTURE(fast.events().size());
+      bool more = false;
+      try {
+        more = slow.run().advance();
+      } catch (const Error&) {
+        break;
+      }
+      REQUIRE(fast.run().advance() == more);
+      if (!more) break;
+      const BreakEvent &a = fast.events().back(), &b = slow.events().back();
+      CAPTURE(a.lambda, b.lambda, a.gap, b.gap, a.relative_residual, b.relative_residual);
+      REQUIRE(a.contact == b.contact);
+      CHECK(a.lambda == Approx(b.lambda).epsilon(1e-6));
+      ++events;
+    }
+    alone += fast.system().counters().mended > 0 ? 1 : 0;
+  }
+  CAPTURE(events, alone);
+  CHECK(events > 300);
+  CHECK(alone > 0);
+}

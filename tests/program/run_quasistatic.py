@@ -127,6 +127,7 @@ class Quasistatic(ProgramTest):
     def test_a_dry_run_tells_sizes_and_breaks_nothing(self):
         result = self.run_notch("--dry-run")
         self.assertEqual(result["status"], "dry_run")
+        self.assertEqual(result["method"], "multifrontal")
         self.assertGreater(result["peak_bytes"], 0)
         self.assertNotIn("events", result)
         contacts = result["contacts"]

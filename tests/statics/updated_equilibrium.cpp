@@ -378,6 +378,11 @@ TEST_CASE("updates_refuse_networks_that_are_not_positive_definite") {
   CHECK(refusal_of([&] { static_cast<void>(negative.updated()); }).says("negative tangential spring"));
   loose.unknowns = all_free(assembly, 3);
   CHECK(refusal_of([&] { static_cast<void>(loose.updated()); }).says("mechanism"));
+  const auto in_little_memory = [&] {
+    const UpdatedEquilibrium none(scene.assembly, scene.springs, scene.unknowns, scene.cases, scene.strengths,
+                                  {.memory_limit = 1000});
+  };
+  CHECK(refusal_of(in_little_memory).says("needs about"));
   UpdatedEquilibrium state = scene.updated();
   CHECK(refusal_of([&] { static_cast<void>(state.change(0, {2e9, 4e8})); }).says("Weaken springs"));
 }

@@ -33,9 +33,7 @@ class RefactorizedSystem final : public SolvedStates {
         scale_(network_.assembly.mean_radius()),
         broken_(network_.assembly.contacts.size(), 0),
         held_(held_or_loaded(network_)) {
-    if (network_.solver.method == SolverMethod::automatic) network_.solver.method = SolverMethod::multifrontal;
-    if (network_.solver.precision == FactorPrecision::automatic)
-      network_.solver.precision = FactorPrecision::double_precision;
+    network_.solver = breaking_solver(network_.solver);
     solve();
   }
 
@@ -227,6 +225,12 @@ void RefactorizedSystem::take(const Rest& rest, const StiffnessSolver& solver, c
 }
 
 }  // namespace
+
+SolverOptions breaking_solver(SolverOptions options) {
+  if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
+  if (options.precision == FactorPrecision::automatic) options.precision = FactorPrecision::double_precision;
+  return options;
+}
 
 std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network) {
   const Assembly& whole = network.assembly;

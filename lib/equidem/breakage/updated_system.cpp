@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include "equidem/breakage/network_response.hpp"
@@ -45,6 +47,7 @@ class UpdatedSystem final : public SolvedStates {
         moved_(std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; })),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
+                      .memory_limit = network_.solver.memory_limit,
                       .force_moments = area_of_stress(network_.assembly) > 0}) {
     check_held_free();
     energy_ = first_energy_ = energy();
@@ -53,8 +56,18 @@ class UpdatedSystem final : public SolvedStates {
 
   /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
   std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
+    if (alone_) {
+      const std::vector<std::int32_t> loosened = alone_->remove(contacts);
+      copy_alone();
+      return loosened;
+    }
     std::vector<std::int32_t> gone;
     for (const std::size_t contact : contacts) {
+      if (alone_) {
+        const std::vector<std::int32_t> loosened = remove({&contact, 1});
+        gone.insert(gone.end(), loosened.begin(), loosened.end());
+        continue;
+      }
       const std::vector<std::int32_t> loosened = remove(contact);
       gone.insert(gone.end(), loosened.begin(), loosened.end());
     }
@@ -65,32 +78,37 @@ class UpdatedSystem final : public SolvedStates {
 
   [[nodiscard]] std::optional<NextBreak> next_break(const ContactStrengths& strengths,
                                                     const LoadFactorSearch& search) override {
+    if (alone_) return alone_->next_break(strengths, search);
     if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
     CriticalContact found = equilibrium_.critical(search);
     for (const HeldMechanism& mechanism : found.mechanisms) judge(mechanism);
     found_late_ = found_late_ || !found.mechanisms.empty();
-    if (why_not_.empty()) measured(equilibrium_.estimated_residual());
-    return next_break_of(found, search);
+    judge_residual();
+    return alone_ ? alone_->next_break(strengths, search) : next_break_of(found, search);
   }
   [[nodiscard]] const OpenedContact* opened() const override { return opened_; }
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
+    if (alone_) return alone_->forces(k);
     take();
     return SolvedStates::forces(k);
   }
   [[nodiscard]] std::span<const double> motion(std::size_t k) const override {
+    if (alone_) return alone_->motion(k);
     take();
     return SolvedStates::motion(k);
   }
   [[nodiscard]] std::span<const double> reactions(std::size_t k) const override {
+    if (alone_) return alone_->reactions(k);
     take();
     return SolvedStates::reactions(k);
   }
 
-  [[nodiscard]] std::int64_t unstable_modes() const override { return 0; }
+  [[nodiscard]] std::int64_t unstable_modes() const override { return alone_ ? alone_->unstable_modes() : 0; }
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
-    return {c.factorizations, c.updates, c.mended, largest_residual()};
+    const std::int64_t more = alone_ ? alone_->counters().factorizations : 0;
+    return {c.factorizations + more, c.updates, c.mended + more, largest_residual()};
   }
   [[nodiscard]] std::string solver_name() const override { return "multifrontal Cholesky, updated"; }
 
@@ -123,7 +141,7 @@ class UpdatedSystem final : public SolvedStates {
       opened_ = nullptr;
       energy_ = energy();
     }
-    if (why_not_.empty()) measured(equilibrium_.estimated_residual());
+    judge_residual();
     return gone;
   }
 
@@ -139,6 +157,28 @@ class UpdatedSystem final : public SolvedStates {
         computation_failed("a load moves a part that nothing holds", "the updated factor holds it", "Factorize anew");
       }
     }
+  }
+
+  /// Where hardly anything is left, refinement with a new factor may not serve either: from there on every network is
+  /// solved alone, with the refusals of its solver.
+  void judge_residual() {
+    if (!why_not_.empty()) return;
+    if (equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual)
+      return measured(equilibrium_.estimated_residual());
+    std::vector<std::size_t> contacts;
+    for (std::size_t c = 0; c < broken_.size(); ++c) {
+      if (broken_[c] != 0) contacts.push_back(c);
+    }
+    alone_ = make_refactorized_system(network_);
+    static_cast<void>(alone_->remove(contacts));
+    opened_ = nullptr;
+    copy_alone();
+  }
+  void copy_alone() {
+    for (std::size_t p = 0; p < states_.size(); ++p) states_[p].carried = alone_->carries(p);
+    why_not_ = alone_->why_not();
+    left_.assign(alone_->left().begin(), alone_->left().end());
+    measured(alone_->relative_residual());
   }
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
@@ -288,7 +328,8 @@ class UpdatedSystem final : public SolvedStates {
   std::vector<std::uint8_t> held_, broken_;
   bool moved_;  // by imposed motions or a mean strain alone
   mutable UpdatedEquilibrium equilibrium_;
-  mutable bool taken_ = false;  // whether states_ are those of the network as it is
+  mutable bool taken_ = false;                // whether states_ are those of the network as it is
+  std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
   const OpenedContact* opened_ = nullptr;
   bool found_late_ = false;  // mechanisms by the last search
   double energy_ = 0, first_energy_ = 0;
@@ -298,14 +339,25 @@ class UpdatedSystem final : public SolvedStates {
 }  // namespace
 
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network) {
-  const SolverOptions& solver = network.solver;
-  const bool asked_for = (solver.method == SolverMethod::automatic || solver.method == SolverMethod::multifrontal) &&
-                         solver.precision != FactorPrecision::single_precision;
+  const SolverOptions solver = breaking_solver(network.solver);
+  const bool asked_for =
+      solver.method == SolverMethod::multifrontal && solver.precision == FactorPrecision::double_precision;
   if (!asked_for || network.springs.any_negative() || network.cases.size() > 2)
     return make_refactorized_system(std::move(network));
   std::vector<std::uint8_t> held = held_or_loaded(network);
   const LoadBearingNetwork found = load_bearing_network(network.assembly, network.springs, network.effects, held);
   if (found.part || found.removed() > 0) return make_refactorized_system(std::move(network));
+  // Of springs further apart, residuals that are refined to round-off of the loads leave the forces of the soft ones
+  // uncertain.
+  constexpr double most_apart = 1e6;
+  double softest = std::numeric_limits<double>::infinity(), stiffest = 0;
+  for (std::size_t c = 0; c < network.assembly.contacts.size(); ++c) {
+    for (const double k : {network.springs[c].kN, network.springs[c].kT}) {
+      if (k > 0) softest = std::min(softest, k);
+      stiffest = std::max(stiffest, k);
+    }
+  }
+  if (stiffest > most_apart * softest) return make_refactorized_system(std::move(network));
   try {
     return std::make_unique<UpdatedSystem>(network, std::move(held));
   } catch (const Error& error) {  // a mechanism that discs take part in which carry load, or that a load moves

@@ -15,7 +15,7 @@
 namespace equidem::sukegawa2010 {
 namespace {
 
-constexpr double longest_fall = 2;   // s
+constexpr double longest_time = 2;   // s
 constexpr double noticeable = 0.01;  // overlap, over the radius
 
 /// Overlaps by the exact contact, whatever test the motion had.
@@ -50,7 +50,7 @@ FallenEllipses drop(const Fill& fill) {
   const Stopwatch watch;
   GrainSimulation simulation(scene, options_of(scene, fill));
   try {
-    while (simulation.time() < longest_fall && !box.at_rest) {
+    while (simulation.time() < longest_time && !box.at_rest) {
       simulation.advance(200);
       box.at_rest = simulation.time() > 0.5 && simulation.energy().kinetic < 1e-6 * weight * smallest_radius;
     }
@@ -91,7 +91,7 @@ std::string report_of(const std::vector<FallenEllipses>& boxes) {
              "Contact tests of ellipses in a box: {} ellipses with springs 25 times softer fall for at most {:g} s. "
              "Overlaps are those\nof the exact contact, over the radius of the disc of the same area; pairs that "
              "overlap by more than 0.01, per ellipse;\nthe void ratio over the whole width.\n",
-             boxes.front().ellipses, longest_fall) +
+             boxes.front().ellipses, longest_time) +
          table.text() + reasons;
 }
 

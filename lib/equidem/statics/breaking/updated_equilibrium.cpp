@@ -22,9 +22,9 @@ struct UpdatedEquilibrium::Implementation {
   int interval = 4;   // changes after which it is looked at again
   bool carried = true;
   bool lost_digits = true;  // since the last refinement: nothing is claimed before another one
-  double measured = 0;  // relative residual after the last refinement
-  double reacted = 0;   // the largest reaction since then of what holds a mechanism, over the load
-  double caution = 1;   // factor on what rounding is taken to leave, more where a residual was found above it
+  double measured = 0;      // relative residual after the last refinement
+  double reacted = 0;       // the largest reaction since then of what holds a mechanism, over the load
+  double caution = 1;       // factor on what rounding is taken to leave, more where a residual was found above it
   LargeVector<double> left{};
   std::optional<OpenedContact> opened{};
 

@@ -28,6 +28,7 @@ struct UpdatedEquilibriumOptions {
   /// may have left so much.
   double watched_residual = 1e-12;
   int most_changes_unwatched = 256;  ///< after which the residual is looked at in any case
+  double memory_limit = 0;           ///< bytes; 0: what the machine has
   bool force_moments = false;        ///< follow the sums of OpenedContact::moment
 };
 
@@ -74,7 +75,8 @@ class UpdatedEquilibrium {
  public:
   /// The assembly must outlive the object. \param unknowns holds what supports and free rigid motions need.
   /// \throws Error (bad_input) where a spring is negative, or there are no or more than two right-hand sides;
-  ///         (computation_failed) where K is not positive definite: the network has mechanisms
+  ///         (computation_failed) where K is not positive definite: the network has mechanisms; or where the memory
+  ///         does not suffice
   UpdatedEquilibrium(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom unknowns,
                      std::vector<RightHandSide> cases, std::vector<ContactStrength> strengths,
                      const UpdatedEquilibriumOptions& options = {});
