@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
@@ -33,9 +34,7 @@ class RefactorizedSystem final : public SolvedStates {
         scale_(network_.assembly.mean_radius()),
         broken_(network_.assembly.contacts.size(), 0),
         held_(held_or_loaded(network_)) {
-    if (network_.solver.method == SolverMethod::automatic) network_.solver.method = SolverMethod::multifrontal;
-    if (network_.solver.precision == FactorPrecision::automatic)
-      network_.solver.precision = FactorPrecision::double_precision;
+    network_.solver = factor_to_update(network_.solver);
     solve();
   }
 
