@@ -212,8 +212,8 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
       "1971).\n\n";
   text += fits_text(notches);
   text += fmt::format(
-      "\n![Strength of notched plates](breakage/notches.svg)\n\nShort notches are stronger than the formula says: the "
-      "lattice has no crack below some d. {} plates in {:.1f} s.\n\n",
+      "\n![Strength of notched plates](breakage/notches.svg)\n\nPlates with notches of a few d are weaker than the "
+      "formula says: they cannot be stronger than without a notch. {} plates in {:.1f} s.\n\n",
       notches.plates.size(), notches.seconds);
   text += fmt::format(
       "## Scatter and size by Weibull's law\n\nA share exp(-x^m) of the contacts is more than x f_t strong; f_s = 2 "
