@@ -18,6 +18,7 @@ class QuickBreakage(ProgramTest):
             self.assertTrue((out / name).exists(), name)
         # Strength falls as the root of the length.
         for fit in result["fits"]:
+            self.assertGreater(fit["toughness"], fit["griffith"], fit)
             if fit["columns"] == 41:
                 self.assertLess(abs(fit["exponent"] + 0.5), 0.05, fit)
         for chain in result["chains"]:

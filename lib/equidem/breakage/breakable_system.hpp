@@ -88,10 +88,6 @@ class BreakableSystem {
   [[nodiscard]] virtual std::string solver_name() const = 0;
 };
 
-/// With a method and a precision where they are left to the library: a factor in double precision, which alone tells
-/// the stability of each network and can be updated.
-SolverOptions breaking_solver(SolverOptions options);
-
 /// Discs that never leave the network, per disc: those held, and those on which a force acts.
 std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network);
 

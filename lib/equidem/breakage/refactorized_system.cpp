@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
@@ -33,7 +34,7 @@ class RefactorizedSystem final : public SolvedStates {
         scale_(network_.assembly.mean_radius()),
         broken_(network_.assembly.contacts.size(), 0),
         held_(held_or_loaded(network_)) {
-    network_.solver = breaking_solver(network_.solver);
+    network_.solver = factor_to_update(network_.solver);
     solve();
   }
 
@@ -225,12 +226,6 @@ void RefactorizedSystem::take(const Rest& rest, const StiffnessSolver& solver, c
 }
 
 }  // namespace
-
-SolverOptions breaking_solver(SolverOptions options) {
-  if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
-  if (options.precision == FactorPrecision::automatic) options.precision = FactorPrecision::double_precision;
-  return options;
-}
 
 std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network) {
   const Assembly& whole = network.assembly;

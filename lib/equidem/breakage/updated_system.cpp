@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
@@ -339,7 +340,7 @@ class UpdatedSystem final : public SolvedStates {
 }  // namespace
 
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network) {
-  const SolverOptions solver = breaking_solver(network.solver);
+  const SolverOptions solver = factor_to_update(network.solver);
   const bool asked_for =
       solver.method == SolverMethod::multifrontal && solver.precision == FactorPrecision::double_precision;
   if (!asked_for || network.springs.any_negative() || network.cases.size() > 2)

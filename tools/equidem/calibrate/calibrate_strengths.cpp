@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
+#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -46,9 +47,10 @@ std::vector<SeededSample> build_samples(const Problem& first) {
   return samples;
 }
 
-int dry_run_strengths(const CommonOptions& options, const Problem& problem) {
+int dry_run_strengths(const CommonOptions& options, Problem& problem) {
   // As for a path of quasistatic, with a tenth of the contacts; calibrations took eight values of the unknown.
   constexpr double event = 0.13, broken_share = 0.1, values = 8;
+  problem.resolved.solver = factor_to_update(problem.resolved.solver);
   const StrengthTargetCase& target = *problem.resolved.strength_target;
   const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
   const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
@@ -102,11 +103,12 @@ struct Sequence {
 };
 
 /// Size, memory and time of a path, of which only the number of events is not known before.
-int dry_run_path(const CommonOptions& options, const Sequence& sequence) {
+int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   // Measured on lattices of 2e3 to 1e4 discs: s of an event over that of a solution with its error bound. Samples under
   // tension broke 1 to 10 % of their contacts, those under compression up to half.
   constexpr double event = 0.13, broken_share = 0.1;
-  const Problem& problem = sequence.problem;
+  Problem& problem = sequence.problem;
+  problem.resolved.solver = factor_to_update(problem.resolved.solver);
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
   const std::int64_t guess = std::llround(broken_share * static_cast<double>(contacts));
   const std::int64_t events = most > 0 ? std::min(most, contacts) : guess;

@@ -31,8 +31,9 @@ struct NotchedPlate {
 struct NotchFit {
   std::int64_t columns = 0;
   double ratio = 0;
+  double griffith = 0;                      ///< the least toughness that the energy of the broken contacts allows
   double exponent = 0, exponent_error = 0;  ///< standard error from the scatter about the line
-  MeanEstimate toughness;
+  MeanEstimate toughness = {};
 };
 
 struct Notches {

@@ -14,7 +14,7 @@ namespace equidem::breakage {
 namespace {
 
 /// Lengths between which the continuum is that of a plate: distances of neighbours, and the share of the width.
-constexpr double least_length = 8, largest_share = 0.6;
+constexpr double least_length = 12, largest_share = 0.6;
 
 NotchedPlate plate_of(std::int64_t columns, double ratio, int cut) {
   const double radius = 0.5;
@@ -40,8 +40,15 @@ NotchedPlate plate_of(std::int64_t columns, double ratio, int cut) {
           .energy_error = found.energy_error};
 }
 
+/// Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least, so that
+/// K² = E G >= E f_t²/(kN d), E = 4 K G/(K + G) in the plane, G = sqrt3/4 (kN + kT), K = sqrt3/2 kN.
+double griffith_toughness(double ratio) {
+  const double shear = 0.25 * std::sqrt(3.0) * (1 + ratio), bulk = 0.5 * std::sqrt(3.0);
+  return std::sqrt(4 * bulk * shear / (bulk + shear));
+}
+
 NotchFit fit_of(const std::vector<NotchedPlate>& plates, std::int64_t columns, double ratio) {
-  NotchFit fit{.columns = columns, .ratio = ratio, .exponent = 0, .exponent_error = 0, .toughness = {}};
+  NotchFit fit{.columns = columns, .ratio = ratio, .griffith = griffith_toughness(ratio)};
   std::vector<double> x, y, toughness;
   for (const NotchedPlate& one : plates) {
     if (one.columns != columns || one.ratio != ratio) continue;
@@ -65,7 +72,7 @@ NotchFit fit_of(const std::vector<NotchedPlate>& plates, std::int64_t columns, d
 
 Notches notched_plates(bool quick) {
   const std::vector<std::int64_t> sizes =
-      quick ? std::vector<std::int64_t>{21, 41} : std::vector<std::int64_t>{41, 81, 161};
+      quick ? std::vector<std::int64_t>{21, 41} : std::vector<std::int64_t>{41, 81, 121};
   const std::vector<int> cuts{2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
   struct Job {
     std::int64_t columns;
@@ -89,7 +96,10 @@ Notches notched_plates(bool quick) {
     progress.update(static_cast<double>(k + 1) / static_cast<double>(jobs.size()));
   }
   for (const double ratio : {0.0, 0.4}) {
-    for (const std::int64_t columns : sizes) found.fits.push_back(fit_of(found.plates, columns, ratio));
+    for (const std::int64_t columns : sizes) {
+      NotchFit fit = fit_of(found.plates, columns, ratio);
+      if (fit.toughness.samples > 0) found.fits.push_back(std::move(fit));
+    }
   }
   found.seconds = watch.seconds();
   return found;

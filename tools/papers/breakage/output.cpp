@@ -105,6 +105,7 @@ Table fits_table(const Notches& notches) {
   table.add("exponent", notches.fits, &NotchFit::exponent);
   table.add("exponent_error", notches.fits, &NotchFit::exponent_error);
   table.add("toughness", notches.fits, [](const NotchFit& fit) { return fit.toughness.mean; });
+  table.add("griffith", notches.fits, &NotchFit::griffith);
   return table;
 }
 
@@ -134,11 +135,12 @@ std::string with_error(double value, double error) {
 }
 
 std::string fits_text(const Notches& notches) {
-  std::string text = header({"discs wide", "kT/kN", "exponent", "K_Ic sqrt(d)/f_t"});
+  std::string text = header({"discs wide", "kT/kN", "exponent", "K_Ic sqrt(d)/f_t", "least by energy", "over it"});
   for (const NotchFit& fit : notches.fits)
     text += cells({fmt::format("{}", fit.columns), fmt::format("{:g}", fit.ratio),
                    with_error(fit.exponent, fit.exponent_error),
-                   with_error(fit.toughness.mean, fit.toughness.standard_error)});
+                   with_error(fit.toughness.mean, fit.toughness.standard_error), fmt::format("{:.4f}", fit.griffith),
+                   fmt::format("{:.3f}", fit.toughness.mean / fit.griffith)});
   return text;
 }
 
@@ -196,17 +198,22 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
   text +=
       "Samples are pulled apart between frictionless ends, contact after contact in exact equilibrium, under control "
       "of "
-      "the motion; the\nstrength is the largest load over the width. d is the distance of neighbours, f_t the strength "
+      "the motion; the\nstrength is the largest load over the width until it has fallen to 90 % of it (scattered "
+      "plates: 70 %). d is the distance of neighbours, f_t the strength "
       "of a contact in tension.\n\n"
       "## Strength against the length of a notch\n\n"
       "Hexagonal plates twice as high as wide, equal strengths, tension alone; a straight cut of length 2a along a "
       "close-packed row in the\nmiddle. Linear elastic fracture mechanics: sigma sqrt(sec(pi a/W)) falls as a^(-1/2), "
-      "K_Ic = sigma sqrt(pi a sec(pi a/W)) (Feddersen\n1966, finite width). Fits and means are over notches of 8 d and "
-      "more, up to 0.6 W.\n\n";
+      "K_Ic = sigma sqrt(pi a sec(pi a/W)) (Feddersen\n1966, finite width). Fits and means are over notches of 12 d "
+      "and "
+      "more, up to 0.6 W.\nA crack that grows by d breaks two contacts, which takes f_t²/kN at "
+      "least (Griffith): K_Ic sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher\n(lattice trapping: Thomson, Hsieh & "
+      "Rana "
+      "1971).\n\n";
   text += fits_text(notches);
   text += fmt::format(
-      "\n![Strength of notched plates](breakage/notches.svg)\n\nShort notches are stronger than the formula says: the "
-      "lattice has no crack below some d. {} plates in {:.1f} s.\n\n",
+      "\n![Strength of notched plates](breakage/notches.svg)\n\nPlates with notches of a few d are weaker than the "
+      "formula says: they cannot be stronger than without a notch. {} plates in {:.1f} s.\n\n",
       notches.plates.size(), notches.seconds);
   text += fmt::format(
       "## Scatter and size by Weibull's law\n\nA share exp(-x^m) of the contacts is more than x f_t strong; f_s = 2 "
@@ -218,8 +225,9 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
   text += sizes_text(weibull.plates, false);
   text += fmt::format(
       "\n{:.1f} s. A plate holds when its weakest contact breaks: its mean falls much more slowly than the weakest "
-      "link, the more slowly the\nlarger it is (no power law; the published law of such lattices is a logarithm of the "
-      "size), and its scatter falls with the size:\n\n",
+      "link, the more slowly the\nlarger it is: no power law (of diluted networks it is a logarithm: Duxbury, Leath & "
+      "Beale 1987), and its "
+      "scatter falls with the size:\n\n",
       weibull.seconds_of_plates);
   text += weakening_text(weibull);
   text += "\n![Mean strength](breakage/weibull_mean.svg)\n\n![Scatter](breakage/weibull_scatter.svg)\n\n";

@@ -154,11 +154,14 @@ void Search::refuse() const {
     remedy = finds_friction() ? "Take another strength.shear_over_tension"
                               : "Take another friction, a Weibull modulus, or another assembly";
   }
+  const std::string problem = fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit);
+  if (!std::isfinite(least->ratio))
+    computation_failed(problem, "it has no compressive strength: the load never falls, whatever the " + what,
+                       "Load the sample along its other axis, or take one without straight rows of discs");
   const auto shown = [](double ratio) {
-    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound, for the load never falls");
+    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound");
   };
-  if (!std::isfinite(least->ratio)) remedy = "Load the sample along its other axis, or take one without straight rows";
-  computation_failed(fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit),
+  computation_failed(problem,
                      fmt::format("it has {} to {}{}; at the ends, {} of {:g} and {:g}, {} and {}", shown(least->ratio),
                                  shown(most->ratio), unit, what, tried_.front().value, tried_.back().value,
                                  shown(tried_.front().ratio), shown(tried_.back().ratio)),
