@@ -136,7 +136,6 @@ void HarmonicSolver::refine(const Tensor2& gradient, int most, std::span<Complex
     evaluate_residual(gradient, motion, x);
     const double last = motion.residual;
     motion.residual = norm_of_amplitudes(x);
-    motion.refinements = pass;
     if (pass > 0 && !(motion.residual < last)) {  // no better: keep the previous motion
       motion = std::move(before);
       return;

@@ -28,7 +28,6 @@ struct HarmonicMotion {
   PreciseMotion in_phase{0}, out_of_phase{0};
   double residual = 0;  ///< 2-norm over the unknowns, N/m
   double scale = 0;     ///< N/m, reference of relative residuals: the forces that the mean strain causes by itself
-  int refinements = 0;
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
@@ -71,7 +70,7 @@ class HarmonicSolver {
   const SpringNetwork& geometry_;
   const ComplexSprings& springs_;
   std::unique_ptr<LdltFactor<Complex>> factor_;
-  std::vector<double> rows_;  // sum_j |K_ij|, Pa
+  std::vector<double> rows_;  // sum_j |K'_ij| + |K''_ij|, Pa
 };
 
 }  // namespace equidem
