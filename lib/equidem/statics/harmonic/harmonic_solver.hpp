@@ -42,7 +42,7 @@ class HarmonicSolver {
   /// \param mechanisms zero-energy modes that the elastic matrix has beyond those held by unknowns: as many are held
   /// \throws Error (computation_failed) where K is singular beyond that, or the factor would not fit into memory
   HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
-                 std::shared_ptr<const SymbolicFactor> symbolic, std::int64_t mechanisms, double memory_limit,
+                 const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms, double memory_limit,
                  StageTimes& times);
 
   /// Solves and refines against the contact law, evaluated in extended precision.
