@@ -143,7 +143,7 @@ TEST_CASE("a_network_of_unequal_dashpots_oscillates_with_its_complex_modulus") {
       viscoelastic_stiffness(block, springs, law, std::array{frequency}, {.boundary = Boundary::displacement})
           .harmonic[0];
   const Amplitude exact{c.storage[2][2], c.loss[2][2]};
-  // What a run of steps h lacks is a h, removed by halving, and the share of inertia, which falls with the density.
+  // A run of steps h lacks a h, removed by halving, and the share of inertia, which falls with the density.
   const auto at = [&](double highest, int steps) {
     return shear_modulus_of_run(block, springs, law, frequency, density_of(block, springs, tau, highest), steps);
   };

@@ -59,8 +59,8 @@ double complex_difference(const HarmonicStiffness& c, const Matrix3& storage, co
   return difference / size;
 }
 
-/// The same by dense algebra: every contact adds k g g^T with g the derivative of its stretch or slip by the unknowns,
-/// and 1/A (sum k a a^T - f^T K^-1 f) remains of the mean strains a.
+/// Complex stiffness by dense algebra: every contact adds k g g^T with g the derivative of its stretch or slip by the
+/// unknowns, and 1/A (sum k a a^T - f^T K^-1 f) remains of the mean strains a.
 struct DenseStiffness {
   Matrix3 storage{}, loss{};
 };

@@ -17,6 +17,8 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t huge_page = std::size_t{1} << 21;
+/// The allocator of the system reuses buffers of fewer numbers well enough.
+constexpr std::size_t small_buffer = 1 << 14;
 
 bool is_large(std::size_t bytes) {
   return bytes > huge_page;
@@ -60,8 +62,7 @@ void free_large(void* memory, std::size_t bytes) {
 
 template <typename Real>
 LargeVector<Real> BufferPool<Real>::take(std::size_t numbers) {
-  constexpr std::size_t small = 1 << 14;  // the allocator of the system reuses these well enough
-  if (numbers < small) return Buffer(numbers);
+  if (numbers < small_buffer) return Buffer(numbers);
   // Sizes in steps of an eighth, so that a buffer fits again.
   const std::size_t step = std::bit_floor(numbers) / 8;
   const std::size_t size = (numbers + step - 1) / step * step;
@@ -80,7 +81,7 @@ LargeVector<Real> BufferPool<Real>::take(std::size_t numbers) {
 template <typename Real>
 void BufferPool<Real>::give_back(Buffer&& buffer) {
   Buffer taken = std::move(buffer);
-  if (taken.size() == 0) return;
+  if (taken.size() < small_buffer) return;
   const std::lock_guard lock(mutex_);
   idle_.emplace(taken.size(), std::move(taken));
 }

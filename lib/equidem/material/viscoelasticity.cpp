@@ -65,7 +65,7 @@ void check_table(const std::vector<MeasuredSpring>& table, const std::string& of
 }
 
 std::string describe(const ViscoelasticSpring& spring) {
-  const std::string name = to_string(spring.model);
+  std::string name = to_string(spring.model);
   switch (spring.model) {
     case SpringModel::elastic:
       return name;
@@ -142,6 +142,7 @@ std::vector<double> frequencies_of_interest(const Viscoelasticity& springs, int 
   for (const ViscoelasticSpring* one : {&springs.normal, &springs.tangential}) {
     if (one->model != SpringModel::table) continue;
     std::vector<double> frequencies;
+    frequencies.reserve(one->table.size());
     for (const MeasuredSpring& row : one->table) frequencies.push_back(row.frequency);
     return frequencies;
   }

@@ -49,8 +49,8 @@ struct ViscoelasticSpring {
   [[nodiscard]] std::complex<double> factor(double frequency) const;
 };
 
-/// What both springs of every contact are. The springs of each contact are those of elasticity times these factors,
-/// wherever they come from: a weighting, moduli, or springs of its own.
+/// Both springs of every contact: the elastic springs of a contact times these two factors, wherever they come from, a
+/// weighting, moduli, or springs of its own.
 struct Viscoelasticity {
   ViscoelasticSpring normal, tangential;
 };

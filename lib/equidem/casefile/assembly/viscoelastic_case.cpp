@@ -13,8 +13,6 @@
 namespace equidem {
 namespace {
 
-using casefile::fail_at;
-
 constexpr const char* table_header = "frequency,kN_storage,kN_loss,kT_storage,kT_loss";
 
 std::vector<ViscoelasticCase::Row> read_spring_table(const std::filesystem::path& path) {

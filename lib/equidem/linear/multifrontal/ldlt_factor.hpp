@@ -24,7 +24,8 @@ struct IndefiniteOptions {
 
 /// P K P^T = L D L^T with 1 x 1 and 2 x 2 pivots, without conjugation where numbers are complex. Pivots that would grow
 /// are delayed to the parent front, so that the factorization is as stable as a dense one with threshold pivoting.
-/// What no front could eliminate counts as zero_pivots: K is singular. There for double and std::complex<double>.
+/// Unknowns that no front could eliminate count as zero_pivots: K is singular. There for double and
+/// std::complex<double>.
 template <typename Number>
 class LdltFactor {
  public:

@@ -48,12 +48,12 @@ void add_to(HarmonicMotion& motion, std::span<const Complex> x) {
 }  // namespace
 
 HarmonicSolver::HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
-                               std::shared_ptr<const SymbolicFactor> symbolic, std::int64_t mechanisms,
+                               const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms,
                                double memory_limit, StageTimes& times)
     : geometry_(geometry), springs_(springs) {
   Stopwatch watch;
   SolveEstimate size = estimate(*symbolic, geometry.unknowns, true);
-  size.peak_bytes *= sizeof(Complex) / sizeof(double);
+  size.peak_bytes *= 2;  // numbers of two doubles
   check_memory(size, memory_limit);
   const auto& [assembly, graph, unused, unknowns] = geometry;
   const StiffnessMatrixOf<Complex> matrix =
@@ -136,7 +136,6 @@ void HarmonicSolver::refine(const Tensor2& gradient, int most, std::span<Complex
     evaluate_residual(gradient, motion, x);
     const double last = motion.residual;
     motion.residual = norm_of_amplitudes(x);
-    motion.refinements = pass;
     if (pass > 0 && !(motion.residual < last)) {  // no better: keep the previous motion
       motion = std::move(before);
       return;

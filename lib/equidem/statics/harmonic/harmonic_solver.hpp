@@ -28,7 +28,6 @@ struct HarmonicMotion {
   PreciseMotion in_phase{0}, out_of_phase{0};
   double residual = 0;  ///< 2-norm over the unknowns, N/m
   double scale = 0;     ///< N/m, reference of relative residuals: the forces that the mean strain causes by itself
-  int refinements = 0;
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
@@ -43,7 +42,7 @@ class HarmonicSolver {
   /// \param mechanisms zero-energy modes that the elastic matrix has beyond those held by unknowns: as many are held
   /// \throws Error (computation_failed) where K is singular beyond that, or the factor would not fit into memory
   HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
-                 std::shared_ptr<const SymbolicFactor> symbolic, std::int64_t mechanisms, double memory_limit,
+                 const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms, double memory_limit,
                  StageTimes& times);
 
   /// Solves and refines against the contact law, evaluated in extended precision.
@@ -71,7 +70,7 @@ class HarmonicSolver {
   const SpringNetwork& geometry_;
   const ComplexSprings& springs_;
   std::unique_ptr<LdltFactor<Complex>> factor_;
-  std::vector<double> rows_;  // sum_j |K_ij|, Pa
+  std::vector<double> rows_;  // sum_j |K'_ij| + |K''_ij|, Pa
 };
 
 }  // namespace equidem
