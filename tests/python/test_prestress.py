@@ -5,8 +5,8 @@ import pytest
 
 import equidem as eq
 
-CLAMPED = [{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}]
-PRESSED = [{"group": "right", "kind": "total", "force": [-1.0, 0.0]}]
+CLAMPED = [{"group": [0, 16], "ux": 0.0, "uy": 0.0, "rotation": 0.0}]
+PRESSED = [{"group": [15, 31], "kind": "total", "force": [-1.0, 0.0]}]
 
 
 def column():
