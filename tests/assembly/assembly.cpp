@@ -101,6 +101,13 @@ TEST_CASE("what_breaks_an_assembly_is_named") {
        "the contact."},
       {[&](Assembly& a) { a.contact_kT[0] = infinity; },
        "contact 0, of discs 0 and 1, has kT = inf Pa (a tangential spring must be finite). Correct it."},
+      {[](Assembly& a) {
+         a.contact_curvature_i = {2};
+         a.contact_curvature_j = {-2};
+       },
+       "contact 0, of discs 0 and 1, has the curvatures 2 and -2 1/m (they must be finite, and two flat or two "
+       "congruent "
+       "surfaces have no normal of their own). Correct them."},
       {[](Assembly& a) { a.contact_normal_force = {-1}; },
        "0 tangential forces are given for 1 contacts (there must be one for each). Give 1 tangential forces, or none."},
       {[](Assembly& a) {

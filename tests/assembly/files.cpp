@@ -115,7 +115,6 @@ TEST_CASE("files_read_back_to_the_same_bits") {
     }
   }
   const TemporaryFolder folder;
-
   const auto file = folder / "sub" / GENERATE("a.json", "a.h5");
 
   write_assembly(file, a, false);

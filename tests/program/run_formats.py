@@ -112,9 +112,12 @@ class Page(RunTest):
         self.assertEqual(len(done.stdout.splitlines()), len(frames_of(out)))
 
     def test_keys_of_an_assembly_are_those_of_the_page(self):
-        source = (SOURCE / "lib/equidem/assembly/files.cpp").read_text()
-        known = re.search(r"known_keys = \{(.*?)\}", source, re.DOTALL)[1]
-        self.assertEqual(set(re.findall(r'"(\w+)"', known)), names_in_tables(section("Assembly (JSON)")))
+        folder = SOURCE / "lib/equidem/assembly"
+        known = re.search(r"> keys\{(.*?)\}", (folder / "files.cpp").read_text(), re.DOTALL)[1]
+        of_contacts = re.findall(r'\{"(\w+)", ', (folder / "contact_numbers.hpp").read_text())
+        self.assertEqual(len(of_contacts), 4)
+        self.assertEqual(set(re.findall(r'"(\w+)"', known)) | set(of_contacts),
+                         names_in_tables(section("Assembly (JSON)")))
 
 
 class ReadBack(RunTest):

@@ -57,7 +57,8 @@ class Prestress(ProgramTest):
 
     def test_bodies_that_fell_carry_forces_that_balance_their_weight(self):
         packed = self.folder / "fallen"
-        self.done("pack", CASES / "pack_soil.toml", "--set", "packing.grains=60", "--out", packed)
+        self.done("pack", CASES / "pack_soil.toml", "--set", "packing.grains=30", "--set", "packing.box=[0.1, 0.5]",
+                  "--out", packed)
         case = self.case_of(packed / "assembly_with_walls.json",
                             '[[support]]\ngroup = "walls"\nux = true\nuy = true\nrotation = true\n')
         report = self.done("stability", case, "--set", "effects.prestress=on", "--without-critical-ratio")

@@ -10,8 +10,13 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/power_cells.hpp"
+#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/contact/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/load_bearing.hpp"
+
+#include "prestressed.hpp"
 
 namespace equidem {
 namespace {
@@ -27,6 +32,19 @@ std::set<std::string> names_of_measured_sides(const Assembly& assembly) {
       names.insert(name);
   }
   return names;
+}
+
+/// Holds bodies whose forces at rest do not balance: something outside loads them, which the case need not give.
+void hold_loaded_at_rest(const Assembly& assembly, std::vector<std::uint8_t>& held) {
+  std::vector<Vec2> sums(assembly.size());
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+    const Vec2 on_i = force_on_i(frame_of(assembly, c), force_at_rest(assembly, c));
+    sums[static_cast<std::size_t>(assembly.contacts[c].i)] += on_i;
+    sums[static_cast<std::size_t>(assembly.contacts[c].j)] -= on_i;
+  }
+  const double balanced = largest_imbalance * balance_at_rest(assembly).mean_force;
+  for (std::size_t d = 0; d < held.size(); ++d)
+    if (norm(sums[d]) > balanced) held[d] = 1;
 }
 
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
@@ -51,6 +69,7 @@ std::vector<std::uint8_t> held_by_the_case(const Problem& problem) {
   for (const Support& support : problem.resolved.supports) hold(support.group, 2);
   for (const NamedLoads& loads : problem.resolved.load_cases)
     for (const Load& load : loads.loads) hold(load.group, 3);
+  if (prestress_counts(problem)) hold_loaded_at_rest(assembly, held);
   return held;
 }
 

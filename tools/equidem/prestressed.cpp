@@ -1,17 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "prestressed.hpp"
 
+#include <optional>
+
 #include "equidem/contact/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 
 namespace equidem {
 
-Problem prestressed(Problem problem) {
+namespace {
+
+std::optional<PrestressedSprings> choice_for(const Problem& problem) {
   try {
-    problem.prestress = choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
+    return choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
   } catch (const Error& error) {
     throw error.at(problem.resolved.where("effects.prestress"));
   }
+}
+
+}  // namespace
+
+bool prestress_counts(const Problem& problem) {
+  if (!carries_forces(problem.assembly)) return false;
+  const auto choice = choice_for(problem);
+  return choice && choice->springs.prestressed();
+}
+
+Problem prestressed(Problem problem) {
+  problem.prestress = choice_for(problem);
   if (problem.prestress) problem.springs.springs = problem.prestress->springs;
   return problem;
 }

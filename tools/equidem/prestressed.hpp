@@ -14,6 +14,10 @@ namespace equidem {
 /// \throws Error (bad_input) as choose_prestress
 Problem prestressed(Problem problem);
 
+/// Whether the forces at rest of the assembly, if it carries some, count.
+/// \throws Error (bad_input) as choose_prestress
+bool prestress_counts(const Problem& problem);
+
 /// What was decided, or that the verb takes no such forces.
 void add_forces_at_rest(Results& results, const Problem& problem);
 

@@ -200,9 +200,10 @@ void check_numbers_of_contacts(const Assembly& assembly) {
               });
   check_pairs(assembly, "curvatures of i", assembly.contact_curvature_i, "curvatures of j",
               assembly.contact_curvature_j, [&](std::size_t c, double i, double j) {
-                if (i >= 0 && j >= 0 && i + j > 0 && std::isfinite(i + j)) return;
+                if (std::isfinite(i + j) && i + j != 0) return;
                 bad_input(fmt::format("{}, has the curvatures {} and {} 1/m", name(c), i, j),
-                          "they must be finite and not negative, and one of them not 0", "Correct them");
+                          "they must be finite, and two flat or two congruent surfaces have no normal of their own",
+                          "Correct them");
               });
   check_pairs(assembly, "normal springs", assembly.contact_kN, "tangential springs", assembly.contact_kT,
               [&](std::size_t c, double kN, double kT) {

@@ -31,9 +31,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> known_keys = {"schema",   "title",     "cell",   "box",        "discs",
-                                             "sections", "contacts",  "levers", "normals",    "offsets",
-                                             "springs",  "strengths", "forces", "curvatures", "groups"};
+const std::vector<std::string> known_keys = [] {
+  std::vector<std::string> keys{"schema",   "title",  "cell",    "box",     "discs", "sections",
+                                "contacts", "levers", "normals", "offsets", "groups"};
+  for (const ContactNumbers& numbers : contact_numbers) keys.emplace_back(numbers.key);
+  return keys;
+}();
 
 const char* kind_of(const Json& value) {
   switch (value.type()) {

@@ -75,7 +75,9 @@ MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& 
   if (report.others > 0) {
     const std::vector<double> motion = system.factor->softest_motion();
     report.sentences.push_back(fmt::format(
-        "{} in which no contact stretches or slips{}", counted(report.others, "motion"),
+        "{} {}{}", counted(report.others, "motion"),
+        springs.prestressed() ? "that springs and forces at rest together do not resist"
+                              : "in which no contact stretches or slips",
         motion.empty() ? "" : ", such as " + describe_motion(assembly, disc_motions(system.unknowns, motion))));
   }
   if (assembly.periodic() && supports.empty()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem stability: mechanisms, inertia, waves, critical kT/kN, natural frequencies and time step.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -65,11 +66,16 @@ constexpr const char* buckling_suffix = "_buckling";
 
 void draw_mode(const CommonOptions& options, const Problem& problem, const Stability& result) {
   if (!result.critical_load || result.critical_load->motion.empty()) return;
+  const auto [left, right] = std::ranges::minmax(problem.assembly.centres, {}, &Vec2::x);
+  const auto [low, high] = std::ranges::minmax(problem.assembly.centres, {}, &Vec2::y);
+  constexpr double visible = 0.1;  // of the larger side; a mode has no size of its own
   const std::string& title = problem.resolved.title;
   write_state_picture(options, pictures_of(problem.resolved.output), buckling_suffix,
                       {.assembly = problem.assembly, .motions = result.critical_load->motion},
                       {.title = fmt::format("{}{}buckles at {:.6g} times the forces at rest", title,
-                                            title.empty() ? "" : ": ", result.critical_load->factor)});
+                                            title.empty() ? "" : ": ", result.critical_load->factor),
+                       .undeformed = true,
+                       .displacement_scale = visible * std::max(right.x - left.x, high.y - low.y)});
 }
 
 int dry_run_survey(const StabilityCommand& options, const Problem& problem) {
@@ -166,6 +172,7 @@ Run declare_stability(CLI::App& command) {
       "or [test], or as a free body.\n"
       "Examples:\n"
       "  equidem stability data/cases/abe1996_fig6.toml         free edges: stable down to kT/kN = -0.2650\n"
+      "  equidem stability data/cases/column.toml               the load at which a column buckles\n"
       "  equidem stability sample.toml --frequencies 10         the ten lowest natural frequencies\n"
       "  equidem stability cell.toml --out waves                dispersion, critical kT/kN over the zone\n"
       "  equidem stability cell.toml --set springs.kT=-0.1e9    stable in statics, but not in motion");

@@ -79,7 +79,8 @@ void add_critical_load(Results& out, const CriticalLoad& load, const Assembly& a
     return;
   }
   if (!std::isfinite(load.factor)) {
-    out.note("none: forces at rest of any size leave it stable").set("critical_load/factor", nullptr);
+    out.note(fmt::format("none up to {:.1g} times the forces at rest", load.searched));
+    out.set("critical_load/factor", nullptr);
     return;
   }
   out.add("critical_load/factor", "", load.factor, "times the forces at rest", {.digits = 10});

@@ -119,16 +119,24 @@ bool prove(LoadPencil& pencil, double value, CriticalLoad& result) {
   return false;
 }
 
+/// Largest share of the geometric stiffness across a contact in kN, |N0|/(kN l) of discs.
+double largest_geometric_share(const Assembly& assembly, const ContactSprings& springs) {
+  double largest = 0;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c)
+    if (springs[c].kN != 0) largest = std::max(largest, std::abs(springs.prestress(c)->ss) / springs[c].kN);
+  return largest;
+}
+
 void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
   double safe = 0, unstable = 1;
-  while (pencil.stable(unstable)) {
-    safe = unstable;
-    unstable *= 4;
-    if (unstable > largest) {
+  for (; pencil.stable(unstable); unstable *= 4) {
+    safe = result.searched = unstable;
+    if (4 * unstable > largest) {
       result.factor = std::numeric_limits<double>::infinity();
       return;
     }
   }
+  result.searched = unstable;
   constexpr double near = 0.1, narrow = 1e-13;  // widths of the bracket over its place; from the former on
                                                 // inverse iteration may get there
   for (int attempts = 0; safe == 0 || unstable - safe > narrow * unstable;) {
@@ -167,7 +175,8 @@ CriticalLoad find_critical_load(const Assembly& assembly, const ContactSprings& 
   const auto at_zero = pencil.inertia(0);
   if (at_zero.negative > 0) return not_sought("the springs alone are unstable (kT < 0)");
   if (at_zero.zero > 0) return not_sought("the springs alone leave motions that only the forces at rest resist");
-  search(pencil, options.largest, result);
+  const double share = largest_geometric_share(assembly, springs);
+  search(pencil, share > 0 ? options.largest / share : options.largest, result);
   result.factorizations = pencil.factorizations();
   return result;
 }
