@@ -356,10 +356,12 @@ void UnbondedRun::break_bond(const Next& next) {
   breaking_.push_back(events_.size());
   events_.push_back(event);
   share_ = 1;
+  checked_ = false;
 }
 
 void UnbondedRun::finish_stage() {
   rates_.reset();
+  checked_ = false;
   if (releasing()) {
     state_->end_release();
     for (const std::size_t k : breaking_) {
