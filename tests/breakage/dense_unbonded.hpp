@@ -135,7 +135,10 @@ class DenseUnbonded {
   bool stage(const RightHandSide& pattern, double whole, std::size_t most, bool leg) {
     double done = 0;
     const double from = lambda;
-    for (int guard = 0; guard < 20000 && events.size() < most; ++guard) {
+    std::size_t seen = events.size();
+    for (int still = 0; events.size() < most; ++still) {
+      if (events.size() > seen) still = 0, seen = events.size();
+      if (still > 30) return false;  // it changes to and fro at one lambda
       const bool release = releasing();
       if (!find_rates(pattern, release ? 0 : whole > 0 ? 1 : -1, release)) return false;
       const double end = release ? 1 : std::abs(whole) - done;
