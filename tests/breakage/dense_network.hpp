@@ -52,6 +52,23 @@ inline std::vector<double> jacobi(std::vector<double>& a, std::vector<double>& v
   return values;
 }
 
+/// Derivatives of stretch and slip of a contact by the components.
+inline void contact_rows(const Assembly& assembly, const DegreesOfFreedom& unknowns, std::size_t c,
+                         std::vector<double>& normal, std::vector<double>& slip) {
+  const Contact& contact = assembly.contacts[c];
+  const Vec2 l = assembly.branch(contact), n = l / norm(l);
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  normal.assign(unknowns.held.size(), 0.0);
+  slip.assign(unknowns.held.size(), 0.0);
+  const auto i = static_cast<std::size_t>(contact.i) * b, j = static_cast<std::size_t>(contact.j) * b;
+  normal[j] += n.x, normal[j + 1] += n.y, normal[i] -= n.x, normal[i + 1] -= n.y;
+  slip[j] -= n.y, slip[j + 1] += n.x, slip[i] += n.y, slip[i + 1] -= n.x;
+  if (b == 3) {
+    slip[i + 2] -= contact.lever_i / unknowns.rotation_scale;
+    slip[j + 2] -= contact.lever_j / unknowns.rotation_scale;
+  }
+}
+
 class DenseNetwork {
  public:
   struct State {
@@ -138,25 +155,10 @@ class DenseNetwork {
     if (a > 0 || (a == 0 && b >= 0)) return 0;
     return b > 0 ? -a / b : std::numeric_limits<double>::infinity();
   }
-  /// Derivatives of stretch and slip of a contact by the components.
-  void rows(std::size_t c, std::vector<double>& normal, std::vector<double>& slip) const {
-    const Contact& contact = assembly_.contacts[c];
-    const Vec2 l = assembly_.branch(contact), n = l / norm(l);
-    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-    normal.assign(unknowns_.held.size(), 0.0);
-    slip.assign(unknowns_.held.size(), 0.0);
-    const auto i = static_cast<std::size_t>(contact.i) * b, j = static_cast<std::size_t>(contact.j) * b;
-    normal[j] += n.x, normal[j + 1] += n.y, normal[i] -= n.x, normal[i + 1] -= n.y;
-    slip[j] -= n.y, slip[j + 1] += n.x, slip[i] += n.y, slip[i + 1] -= n.x;
-    if (b == 3) {
-      slip[i + 2] -= contact.lever_i / unknowns_.rotation_scale;
-      slip[j + 2] -= contact.lever_j / unknowns_.rotation_scale;
-    }
-  }
   [[nodiscard]] std::pair<double, double> stretch(std::size_t c, const std::vector<double>& u,
                                                   const RightHandSide& given) const {
     std::vector<double> normal, slip;
-    rows(c, normal, slip);
+    contact_rows(assembly_, unknowns_, c, normal, slip);
     double n = 0, t = 0;
     for (std::size_t k = 0; k < u.size(); ++k) n += normal[k] * u[k], t += slip[k] * u[k];
     if (given.gradient) {
@@ -171,7 +173,7 @@ class DenseNetwork {
     std::vector<double> k(n * n, 0.0), normal, slip;
     for (std::size_t c = 0; c < broken_.size(); ++c) {
       if (broken_[c]) continue;
-      rows(c, normal, slip);
+      contact_rows(assembly_, unknowns_, c, normal, slip);
       for (std::size_t p = 0; p < n; ++p) {
         for (std::size_t q = 0; q < n; ++q)
           k[p * n + q] += springs_[c].kN * normal[p] * normal[q] + springs_[c].kT * slip[p] * slip[q];
@@ -216,7 +218,7 @@ class DenseNetwork {
     double load = 0;
     for (std::size_t c = 0; c < broken_.size(); ++c) {
       if (broken_[c]) continue;
-      rows(c, normal, slip);
+      contact_rows(assembly_, unknowns_, c, normal, slip);
       const auto [dn, ds] = stretch(c, state.motion, given);
       for (std::size_t p = 0; p < n; ++p) f[p] -= springs_[c].kN * dn * normal[p] + springs_[c].kT * ds * slip[p];
     }

@@ -13,38 +13,55 @@ namespace equidem::test {
 
 using MakeSystem = std::unique_ptr<BreakableSystem> (*)(BreakableNetwork network);
 
-/// A run that owns its scene.
-class Broken {
+/// Everything that a run refers to.
+class OwnedScene {
  public:
-  Broken(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
-         Rotation rotation = Rotation::from_scene, MakeSystem make = make_breakable_system)
-      : make_(make),
-        assembly_(std::move(assembly)),
+  OwnedScene(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
+             Rotation rotation)
+      : assembly_(std::move(assembly)),
         springs_(std::move(springs)),
         strengths_(std::move(strengths)),
         effects_(derive_effects(assembly_, springs_, rotation)),
         path_(make_load_path(assembly_, springs_, effects_, options)),
-        supports_(options.supports) {
+        supports_(options.supports) {}
+
+  const Assembly& assembly() const { return assembly_; }
+  const ContactSprings& springs() const { return springs_; }
+  const ContactStrengths& strengths() const { return strengths_; }
+  const Effects& effects() const { return effects_; }
+  const LoadPath& path() const { return path_; }
+  const std::vector<Support>& supports() const { return supports_; }
+  BreakageScene scene() const { return {assembly_, springs_, strengths_, path_}; }
+
+ private:
+  Assembly assembly_;
+  ContactSprings springs_;
+  ContactStrengths strengths_;
+  Effects effects_;
+  LoadPath path_;
+  std::vector<Support> supports_;
+};
+
+/// A run that owns its scene.
+class Broken : public OwnedScene {
+ public:
+  Broken(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
+         Rotation rotation = Rotation::from_scene, MakeSystem make = make_breakable_system)
+      : OwnedScene(std::move(assembly), std::move(springs), std::move(strengths), options, rotation), make_(make) {
     begin();
   }
 
   /// Anew, unbroken.
   void begin() {
-    const BreakageScene scene{assembly_, springs_, strengths_, path_};
     run_.reset();
-    system_ = make_(breakable_network(scene, effects_, supports_));
-    run_ = std::make_unique<BreakageRun>(scene, *system_);
+    system_ = make_(breakable_network(scene(), effects(), supports()));
+    run_ = std::make_unique<BreakageRun>(scene(), *system_);
   }
 
   BreakageRun& run() { return *run_; }
   BreakableSystem& system() { return *system_; }
   const std::vector<BreakEvent>& events() const { return run_->events(); }
   const BreakEvent& event(std::size_t k) const { return run_->events().at(k); }
-  const Assembly& assembly() const { return assembly_; }
-  const ContactSprings& springs() const { return springs_; }
-  const ContactStrengths& strengths() const { return strengths_; }
-  const Effects& effects() const { return effects_; }
-  const LoadPath& path() const { return path_; }
 
   Broken& all() {
     while (run_->advance()) {
@@ -54,12 +71,6 @@ class Broken {
 
  private:
   MakeSystem make_;
-  Assembly assembly_;
-  ContactSprings springs_;
-  ContactStrengths strengths_;
-  Effects effects_;
-  LoadPath path_;
-  std::vector<Support> supports_;
   std::unique_ptr<BreakableSystem> system_;
   std::unique_ptr<BreakageRun> run_;
 };

@@ -109,6 +109,90 @@ class Quasistatic(ProgramTest):
         self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
         self.assertEqual((whole / "events.csv").read_bytes(), (part / "events.csv").read_bytes())
 
+    def rubbing(self, discs, contacts, groups, actions, friction):
+        """The result of three or more discs without bonds, kN = 1e9 Pa, kT half of it."""
+        (self.folder / "discs.json").write_text(json.dumps({
+            "schema": "equidem-assembly/1", "discs": discs, "contacts": [[i, j, 0, 0] for i, j in contacts],
+            "springs": [[1e9, 0.5e9]] * len(contacts), "strengths": [[0, 0]] * len(contacts), "groups": groups}))
+        case = self.folder / "static.toml"
+        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "discs.json"\n[strength]\n'
+                        f'friction = {friction}\nafter_breaking = "rubs"\n{actions}[quasistatic]\nlegs = [1.0]\n')
+        done = equidem("quasistatic", case, "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = parse_json(done.stdout)
+        self.assertEqual(result["end"], "legs_done")
+        return result["energies"]
+
+    def slow_run(self, grains, walls, friction, rest):
+        """The energies of the same discs between walls, stepped in time until they are at rest."""
+        case = self.folder / "run.toml"
+        bodies = "".join(f"[[grain]]\nposition = [{x}, {y}]\nradius = {r}\n" for x, y, r in grains)
+        case.write_text(f'schema = "equidem/1"\n[grains]\ndensity = 2500.0\n{bodies}[collisions]\n'
+                        f'law = "linear_dashpot"\ndamping = 0.5\nstiffness = 1e9\nfriction = {friction}\n'
+                        f'tangential_ratio = 0.5\n{walls}[run]\n{rest}[output]\npicture = false\n')
+        done = equidem("run", case, "--json", "-")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return parse_json(done.stdout)["energy"]
+
+    def test_a_pyramid_that_nothing_slips_in_rests_as_a_slow_run_leaves_it(self):
+        r, x, friction = 0.02, 0.021, 0.8
+        top = r + math.sqrt(4 * r * r - x * x)
+        weight = 2500.0 * math.pi * r * r * 9.81
+        moved = self.slow_run([(-x, r, r), (x, r, r), (0, top, r)],
+                              '[[wall]]\nname = "floor"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n', friction,
+                              "duration = 0.02\ngravity = [0.0, -9.81]\n")
+        still = self.rubbing([[-x, r, r], [x, r, r], [0, top, r], [-x, -r, r], [x, -r, r]],
+                             [(3, 0), (4, 1), (0, 2), (1, 2)], {"floor": [3, 4], "discs": [0, 1, 2]},
+                             '[[support]]\ngroup = "floor"\nux = true\nuy = true\nrotation = true\n'
+                             f'[[load]]\ngroup = "discs"\nforce = [0.0, {-weight}]\n', friction)
+        # Energies go with the square of forces.
+        self.assertAlmostEqual(still["elastic"] / moved["elastic"], 1, delta=2e-6)
+        self.assertEqual(still["friction"], 0)
+
+    def test_a_disc_that_a_piston_drives_into_a_corner_slips_as_in_a_slow_run(self):
+        r, way, friction = 0.02, 4e-7, 0.3
+        normal = (-math.cos(math.radians(60)), -math.sin(math.radians(60)))
+        for degrees in (200, 260):
+            along = (math.cos(math.radians(degrees)), math.sin(math.radians(degrees)))
+            walls = "".join(f'[[wall]]\nname = "{name}"\npoint = [{x}, {y}]\nnormal = [{nx}, {ny}]\n{more}'
+                            for name, x, y, nx, ny, more in (
+                                ("floor", 0.0, 0.0, 0.0, 1.0, ""), ("left", 0.0, 0.0, 1.0, 0.0, ""),
+                                ("piston", r - r * normal[0], r - r * normal[1], *normal,
+                                 f'displacement = {way}\ndirection = [{along[0]}, {along[1]}]\nschedule = "push"\n')))
+            moved = self.slow_run([(r, r, r)], walls + '[[schedule]]\nname = "push"\nkind = "ramp"\nstart = 0.0\n'
+                                  "end = 0.2\n", friction, "duration = 0.21\n")
+            still = self.rubbing([[r, r, r], [r, -r, r], [-r, r, r], [r - 2 * r * normal[0], r - 2 * r * normal[1], r]],
+                                 [(1, 0), (2, 0), (3, 0)], {"walls": [1, 2], "piston": [3]},
+                                 '[[support]]\ngroup = "walls"\nux = true\nuy = true\nrotation = true\n'
+                                 f'[[support]]\ngroup = "piston"\nux = {way * along[0]}\nuy = {way * along[1]}\n'
+                                 "rotation = true\n", friction)
+            self.assertGreater(still["friction"], 0.01 * still["elastic"])
+            self.assertAlmostEqual(still["elastic"] / moved["elastic"], 1, delta=0.01)
+            self.assertAlmostEqual(still["friction"] / moved["lost_slip"], 1, delta=0.01)
+
+    def test_broken_contacts_that_rub_open_close_slip_and_stick(self):
+        case = CASES / "rubbing_notch.toml"
+        options = (*NO_PICTURE, "--set", "quasistatic.max_events=150", "--json", "-")
+        out = self.folder / "rubs"
+        done = equidem("quasistatic", case, "--out", out, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = parse_json(done.stdout)
+        self.assertLess(result["energies"]["error"], 1e-10)
+        self.assertGreater(result["energies"]["friction"], 0)
+        self.assertLess(result["relative_residual"], 1e-12)
+        self.assertEqual(result["increments"]["not_unique"], 0)
+        rows = self.events_of(out)
+        self.assertEqual(len(rows), result["event_count"])
+        self.assertLessEqual({"slip", "stick"}, {row["mode"] for row in rows})
+        self.assertIn("other_answers", rows[0])
+        table = (out / "events.csv").read_text()
+        again = equidem("quasistatic", case, "--out", out, "--resume", *options)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((out / "events.csv").read_text(), table)
+        self.check_error(equidem("quasistatic", case, "--set", "quasistatic.control=path"), 2, "depends on the path")
+        self.check_error(equidem("quasistatic", case, "--set", "springs.kT=-1e9"), 2, "kT < 0")
+        self.check_error(equidem("quasistatic", case, "--set", "strength.residual_friction=-1"), 2, "residual_friction")
+
     def test_other_verbs_tell_that_they_take_no_notch(self):
         done = equidem("solve", NOTCH)
         self.check_done(done)

@@ -21,8 +21,8 @@ namespace equidem {
 std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                           FactorReport* report = nullptr);
 
-/// All entries of a matrix that need not be symmetric, over the components of its columns. As above, but for the rows of
-/// components that are held, which are those of a unit matrix times `held_stiffness`.
+/// All entries of a matrix that need not be symmetric, over the components of its columns. As above, but for the rows
+/// of components that are held, which are those of a unit matrix times `held_stiffness`.
 std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness);
 
 }  // namespace equidem

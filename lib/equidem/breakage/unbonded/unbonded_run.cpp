@@ -16,8 +16,7 @@ namespace equidem {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double ground = 1e-9;     // of the stiffest spring: holds what nothing resists
-constexpr double same_time = 1e-10;  // of the parameter: events at once
+constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
 
 std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
   std::vector<UnbondedLaw> laws(scene.assembly.contacts.size());
@@ -63,14 +62,6 @@ void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
 }
 
 }  // namespace
-
-struct UnbondedRun::Next {
-  double t = infinite;
-  std::size_t contact = 0;
-  std::optional<BreakMode> breaks;  ///< none: another event
-  std::int64_t ties = 0;
-  double gap = infinite;
-};
 
 UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
                          UnbondedOptions options)
@@ -122,30 +113,9 @@ Driving UnbondedRun::driving() const {
   return d;
 }
 
-std::vector<LimitContact> UnbondedRun::contacts_on_limits() const {
-  const double none = state_->negligible_force();
-  std::vector<LimitContact> limits;
-  for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const ContactStatus status = state_->status()[c];
-    if (status == ContactStatus::bonded) continue;
-    const double n = state_->normal_coordinate(c);
-    if (n > none || (status != ContactStatus::open && n < -none && !laws_[c].rough())) continue;
-    // What a broken bond has yet to give up is no part of the law.
-    const ContactForce f = state_->law_force(c);
-    if (std::abs(n) <= none) {
-      limits.push_back({c, OnLimit::apex, 1});
-    } else if (is_slipping(status)) {
-      limits.push_back({c, OnLimit::friction, direction_of(status)});
-    } else if (std::abs(f.tangential) + laws_[c].friction * n >= -none) {
-      limits.push_back({c, OnLimit::friction, f.tangential < 0 ? -1.0 : 1.0});
-    }
-  }
-  return limits;
-}
-
 bool UnbondedRun::find_rates() {
   if (releasing()) beside_ = state_->unreleased();
-  const std::vector<LimitContact> limits = contacts_on_limits();
+  const std::vector<LimitContact> limits = contacts_on_limits(*state_, laws_);
   const RateProblem problem{contacts_, laws_, limits, driving()};
   RateAnswer answer = solve_rates(problem, solver_, state_->status());
   if (!answer.agrees || !answer.rates.balanced) {
@@ -239,72 +209,6 @@ double UnbondedRun::stage_end() const {
   return left * rates_->lambda > 0 ? left / rates_->lambda : left * direction(leg_) <= 0 ? 0 : infinite;
 }
 
-UnbondedRun::Next UnbondedRun::next_event() const {
-  const double none = rates_->negligible, tolerance = state_->negligible_force();
-  std::vector<double> times(laws_.size(), infinite);
-  std::vector<std::optional<BreakMode>> modes(laws_.size());
-  const auto reach = [&](std::size_t c, double a, double b, std::optional<BreakMode> mode) {
-    double t = infinite;
-    if (a > tolerance && mode) {
-      t = 0;
-    } else if (b > none) {
-      t = std::max(0.0, -a / b);
-    }
-    if (t < times[c]) times[c] = t, modes[c] = mode;
-  };
-  const double mu = scene_.strengths.friction;
-  for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const ContactStatus status = state_->status()[c];
-    const ContactTangent a = laws_[c].tangent(status);
-    const ContactDeformation& d = rates_->deformation[c];
-    const ContactForce f = state_->law_force(c);
-    const double n1 = a.nn * d.normal, t1 = a.tn * d.normal + a.tt * d.tangential;
-    switch (status) {
-      case ContactStatus::bonded:
-        reach(c, f.normal - scene_.strengths.tension[c], n1, BreakMode::tension);
-        for (const double sign : {1.0, -1.0})
-          reach(c, sign * f.tangential + mu * f.normal - scene_.strengths.shear[c], sign * t1 + mu * n1,
-                BreakMode::shear);
-        break;
-      case ContactStatus::stuck:
-        if (!laws_[c].rough()) {
-          reach(c, f.normal, n1, {});
-          break;
-        }
-        for (const double sign : {1.0, -1.0})
-          reach(c, sign * f.tangential + laws_[c].friction * f.normal, sign * t1 + laws_[c].friction * n1, {});
-        break;
-      case ContactStatus::slips_forward:
-      case ContactStatus::slips_backward:
-        reach(c, f.normal, n1, {});
-        break;
-      case ContactStatus::open:
-        reach(c, -state_->normal_coordinate(c), -laws_[c].k.kN * d.normal, {});
-        break;
-    }
-  }
-  Next next;
-  for (std::size_t c = 0; c < times.size(); ++c) {
-    if (times[c] < next.t) next.t = times[c];
-  }
-  if (next.t == infinite) return next;
-  bool first = true;
-  double second = infinite;
-  for (std::size_t c = 0; c < times.size(); ++c) {
-    if (times[c] > next.t * (1 + same_time)) {
-      second = std::min(second, times[c]);
-    } else if (first) {
-      next.contact = c;
-      next.breaks = modes[c];
-      first = false;
-    } else {
-      ++next.ties;
-    }
-  }
-  next.gap = next.t > 0 ? second / next.t - 1 : second;
-  return next;
-}
-
 BreakEvent UnbondedRun::event_of(std::size_t contact, BreakMode mode) const {
   const ContactLedger& ledger = state_->ledger();
   return {.leg = leg_,
@@ -340,7 +244,7 @@ void UnbondedRun::record_changes(std::span<const ContactStatus> after) {
     events_[k].ties = static_cast<std::int64_t>(events_.size() - first - 1);
 }
 
-void UnbondedRun::break_bond(const Next& next) {
+void UnbondedRun::break_bond(const NextContactEvent& next) {
   BreakEvent event = event_of(next.contact, *next.breaks);
   event.ties = next.ties;
   event.gap = next.gap;
@@ -356,10 +260,12 @@ void UnbondedRun::break_bond(const Next& next) {
   breaking_.push_back(events_.size());
   events_.push_back(event);
   share_ = 1;
+  checked_ = false;
 }
 
 void UnbondedRun::finish_stage() {
   rates_.reset();
+  checked_ = false;
   if (releasing()) {
     state_->end_release();
     for (const std::size_t k : breaking_) {
@@ -400,7 +306,7 @@ bool UnbondedRun::advance() {
       if (!find_rates()) break;
       if (!releasing() && events_.size() > before) return true;
     }
-    const Next next = next_event();
+    const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_);
     const double stage = stage_end(), t = std::min(stage, next.t);
     if (t == infinite) {
       end(PathEnd::never_breaks, "no contact changes any more at any lambda");

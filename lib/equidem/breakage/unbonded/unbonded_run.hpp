@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "equidem/breakage/breakage_run.hpp"
+#include "equidem/breakage/unbonded/contact_events.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
 #include "equidem/breakage/unbonded/unbonded_state.hpp"
@@ -63,19 +64,16 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] UnbondedCounters counters() const;
 
  private:
-  struct Next;
   [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
   [[nodiscard]] bool by_motion() const;
   [[nodiscard]] Driving driving() const;
-  [[nodiscard]] std::vector<LimitContact> contacts_on_limits() const;
   bool find_rates();
   void look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first);
   [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
   [[nodiscard]] std::string sentence_on(const RateAnswer& answer) const;
-  [[nodiscard]] Next next_event() const;
   [[nodiscard]] double stage_end() const;
   void finish_stage();
-  void break_bond(const Next& next);
+  void break_bond(const NextContactEvent& next);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
   void end(PathEnd why, std::string sentence);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t contacts_at_once = 1 << 12;
 constexpr double on_limit = 1e-11;        // of the largest force: a contact is on a limit of its law
+constexpr double no_force = 1e5;          // of the next: nothing carries a force as long as all are below
 constexpr double rounded_motion = 1e-14;  // of motions, as springs take it for a force
 
 ContactForce operator+(const ContactForce& a, const ContactForce& b) {
@@ -92,9 +93,9 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
     residual[k] = unknowns_.held[k] != 0 ? 0 : from_outside - internal_[k];
     largest = std::max(largest, std::abs(residual[k]));
   }
-  const double none = round_off_force();
-  force_scale_ = std::max({force_scale_, force, none});
-  residual_ = force_scale_ > none ? largest / force_scale_ : 0;
+  const double rounded = round_off_force();
+  force_scale_ = std::max({force_scale_, force, rounded});
+  residual_ = force_scale_ > no_force * rounded ? largest / force_scale_ : 0;
 }
 
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
@@ -170,7 +171,7 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   }
   kept_share_ = share_;
   ledger_.elastic = elastic_energy() - rest_energy_;
-  ledger_.negligible = std::max(ledger_.negligible, round_off_force() * farthest());
+  ledger_.negligible = std::max(ledger_.negligible, 10 * round_off_force() * farthest());
 }
 
 double UnbondedState::negligible_force() const {

@@ -81,9 +81,9 @@ struct NamedLoads {
 /// [quasistatic]: the path along which contacts break.
 struct QuasistaticCase {
   std::optional<LoadControl> control;  ///< none: path, or where contacts rub what lambda multiplies
-  std::vector<double> legs;      ///< lambda at the end of each; empty: one without an end
-  std::int64_t max_events = 0;   ///< 0: no limit
-  std::int64_t frame_every = 0;  ///< events from one frame to the next; 0: no frames
+  std::vector<double> legs;            ///< lambda at the end of each; empty: one without an end
+  std::int64_t max_events = 0;         ///< 0: no limit
+  std::int64_t frame_every = 0;        ///< events from one frame to the next; 0: no frames
 };
 
 /// [output]: files written with --out, in addition to result.json and case.toml.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The contacts that are on a limit of their law, and the next one to reach a limit.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "equidem/breakage/break_search.hpp"
+#include "equidem/breakage/strengths.hpp"
+#include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/breakage/unbonded/contact_rates.hpp"
+#include "equidem/breakage/unbonded/unbonded_state.hpp"
+
+namespace equidem {
+
+struct NextContactEvent {
+  double t = std::numeric_limits<double>::infinity();  ///< of the parameter of the rates
+  std::size_t contact = 0;
+  std::optional<BreakMode> breaks;                       ///< how a bond breaks; none: another event
+  std::int64_t ties = 0;                                 ///< other contacts at the same t, to 1e-10
+  double gap = std::numeric_limits<double>::infinity();  ///< of t, relative, to the next contact that does not tie
+};
+
+/// Bonds have none. In the order of contact numbers.
+std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::span<const UnbondedLaw> laws);
+
+/// All forces go on at these rates.
+NextContactEvent next_contact_event(const UnbondedState& state, std::span<const UnbondedLaw> laws,
+                                    const ContactStrengths& strengths, const Rates& rates);
+
+}  // namespace equidem
