@@ -50,6 +50,8 @@ CHECKS = [
      grains.lammps_friction),
     ("lammps_bonds", "LAMMPS", "places of 20 unequal discs that fall in a box, after 0.1 s (style granular)", 1e-6,
      grains.lammps_motion_graded),
+    ("lammps_bonds", "LAMMPS", "speed and spin of a disc that slides on a floor until it rolls (newer LAMMPS)", 1e-4,
+     grains.lammps_sliding_newer),
     ("lammps_bonds", "LAMMPS", "places of 20 equal discs without damping in a box, after 0.05 s", 1e-6,
      grains.lammps_elastic),
     ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,

@@ -52,7 +52,8 @@ Run declare_export(CLI::App& command) {
       .add_option("--accept", options->accept,
                   fmt::format("export this although the program computes it otherwise, as its refusal says: {}",
                               joined(acceptable_features(), ", ")))
-      ->type_name("WHAT");
+      ->type_name("WHAT")
+      ->allow_extra_args(false);
   command.footer(
       "Examples:\n"
       "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"

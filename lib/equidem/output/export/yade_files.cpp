@@ -120,6 +120,12 @@ while O.iter < STEPS:
 
 constexpr std::string_view run_steps = R"(
 O.step()  # tangential forces follow velocities, and none count in the first step
+for body in O.bodies:
+    if isinstance(body.shape, Sphere):  # the velocities after half a step, which it took for those after a whole one
+        state = body.state
+        state.vel, state.angVel = state.vel / 2, state.angVel / 2
+        state.pos -= O.dt * state.vel
+        state.ori = Quaternion((0, 0, 1), -O.dt * state.angVel[2]) * state.ori
 for number, velocity, spin in VELOCITIES:
     state = O.bodies[number].state
     state.pos += O.dt * velocity
@@ -224,7 +230,8 @@ class YadeWriter {
     std::string text;
     for (const Wall& wall : model_.walls) {
       const bool along_x = wall.normal.x != 0;
-      const double place = along_x ? wall.point.x : wall.point.y;
+      const Vec2 start = wall.point + wall.displacement(0);
+      const double place = along_x ? start.x : start.y;
       const int sense = (along_x ? wall.normal.x : wall.normal.y) > 0 ? 1 : -1;
       text += fmt::format("O.bodies.append(utils.wall({}, {}, sense={}, material={}))\n", exact(place), along_x ? 0 : 1,
                           sense, wall.kind);
