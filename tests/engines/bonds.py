@@ -261,6 +261,41 @@ def run_difference(program, folder, case):
     return engines.relative(moved, expected)
 
 
+def yade_run_difference(program, folder, case):
+    """As run_difference, of YADE."""
+    model = Model(program, folder, case)
+    expected = engines.columns(model.equidem("run", "run") / "discs.csv", "ux_m", "uy_m")
+    out = model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    return engines.relative(np.loadtxt(out / "end.txt")[:, 3:5], expected)
+
+
+#: Loads and gravity that set the network in motion from rest.
+SET_IN_MOTION = NETWORK + '''
+[[support]]
+group = "bottom"
+ux = 0.0
+uy = 0.0
+rotation = 0.0
+[[load]]
+group = "top"
+force = [300.0, -500.0]
+kind = "per_disc"
+[run]
+duration = 1e-4
+time_step = 4e-7
+gravity = [300.0, -700.0]
+'''
+
+
+def lammps_set_in_motion(program, folder):
+    return run_difference(program, folder, SET_IN_MOTION)
+
+
+def yade_set_in_motion(program, folder):
+    return yade_run_difference(program, folder, SET_IN_MOTION)
+
+
 #: A block above a wall of springs, which the lowest discs touch at y = -6.698729810778e-4.
 BLOCK_ON_WALL = '''
 [assembly]

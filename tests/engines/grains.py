@@ -127,7 +127,7 @@ def lammps_curved_pistons(program, folder):
 
 
 def yade_piston(program, folder):
-    """Without dashpots, which YADE does not carry here; its leapfrog begins half a step early."""
+    """Without dashpots, which YADE does not carry here: the same steps as in equidem."""
     def difference(kind, duration):
         (folder / kind).mkdir()
         box = Box(program, folder / kind, EQUAL, duration=duration, friction=0.0, restitution=1.0, time_step=2e-6,
