@@ -127,7 +127,7 @@ def lammps_curved_pistons(program, folder):
 
 
 def yade_piston(program, folder):
-    """Without dashpots, which YADE does not carry here: the same steps as in equidem."""
+    """Without dashpots; the same steps as in equidem."""
     def difference(kind, duration):
         (folder / kind).mkdir()
         box = Box(program, folder / kind, EQUAL, duration=duration, friction=0.0, restitution=1.0, time_step=2e-6,
@@ -176,6 +176,15 @@ def lammps_sliding(program, folder):
 
 def lammps_sliding_newer(program, folder):
     return sliding_in(engines.lammps_with_bonds(), program, folder)
+
+
+def yade_motion(program, folder):
+    """Impacts with dashpots, of bodies and of walls."""
+    box = Box(program, folder, EQUAL, duration=0.1, friction=0.0)
+    out = box.model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    places = np.loadtxt(out / "end.txt")[:, :2]
+    return float(np.max(np.abs(places - box.end[:, :2])) / (0.5 * 9.81 * 0.1**2))
 
 
 def yade_sliding(program, folder):

@@ -56,6 +56,7 @@ CHECKS = [
      grains.lammps_sliding_newer),
     ("lammps_bonds", "LAMMPS", "places of 20 equal discs without damping in a box, after 0.05 s", 1e-6,
      grains.lammps_elastic),
+    ("yade_grains", "YADE", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.yade_motion),
     ("yade_grains", "YADE", "overlaps and normal forces of a settled box of 20 unequal discs", 1e-6,
      grains.yade_settled),
     ("yade_grains", "YADE", "places of 20 discs that a wall pushes, steadily, along a ramp, to and fro", 1e-6,
