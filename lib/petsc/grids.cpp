@@ -85,38 +85,61 @@ Nodes number_nodes(const Ranks& ranks, const Grid& grid, const std::vector<Place
   return nodes;
 }
 
+/// A row of the interpolation: a component of the motion of a point by those of four nodes, of each a translation and
+/// the rotation.
+struct Row {
+  PetscInt columns[8] = {};
+  double values[8] = {};
+  PetscInt count = 0;
+
+  void add(PetscInt column, double value) { columns[count] = column, values[count++] = value; }
+};
+
+Row row_of(const Grid& grid, const Nodes& nodes, const Place& host, PetscInt component) {
+  const Shape shape = grid.shape(host);
+  const auto corners = grid.nodes_of(static_cast<std::size_t>(host.cell));
+  Row row;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const double weight = shape.weight[k];
+    if (weight == 0) continue;
+    const PetscInt first = unknowns_of_node * nodes.number[corners[k]];
+    row.add(first + component, weight);
+    if (component < 2) row.add(first + 2, weight * (component == 0 ? -shape.arm[k].y : shape.arm[k].x));
+  }
+  return row;
+}
+
 /// The motions of the points of this rank by those of the nodes.
 Mat interpolation(const Ranks& ranks, const Grid& grid, const Nodes& nodes, const Points& points,
                   const std::vector<Place>& hosts) {
   const auto rows = static_cast<PetscInt>(points.at.size()) * points.unknowns;
   const auto columns = static_cast<PetscInt>(nodes.mine.size()) * unknowns_of_node;
-  constexpr PetscInt entries = 8;  // of a row: four nodes, of each a translation and the rotation
+  const PetscInt begin = nodes.mine.empty() ? 0 : unknowns_of_node * nodes.number[nodes.mine.front()];
+  const auto for_each_row = [&](const auto& put) {
+    PetscInt number = 0;
+    for (std::size_t point = 0; point < points.at.size(); ++point) {
+      for (PetscInt e = 0; e < points.unknowns; ++e, ++number)
+        put(number, points.is_held(point, e) ? Row{} : row_of(grid, nodes, hosts[point], e));
+    }
+  };
+  std::vector<PetscInt> own(static_cast<std::size_t>(rows)), others(own.size());
+  for_each_row([&](PetscInt number, const Row& row) {
+    for (PetscInt k = 0; k < row.count; ++k) {
+      const bool mine = row.columns[k] >= begin && row.columns[k] < begin + columns;
+      ++(mine ? own : others)[static_cast<std::size_t>(number)];
+    }
+  });
   Mat matrix = nullptr;
-  check(MatCreateAIJ(ranks.communicator(), rows, columns, PETSC_DETERMINE, PETSC_DETERMINE, entries, nullptr, entries,
-                     nullptr, &matrix));
+  check(MatCreateAIJ(ranks.communicator(), rows, columns, PETSC_DETERMINE, PETSC_DETERMINE, 0, own.data(), 0,
+                     others.data(), &matrix));
   check(MatSetBlockSizes(matrix, points.unknowns, unknowns_of_node));
   check(MatSetOption(matrix, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscInt row = 0, end = 0;
-  check(MatGetOwnershipRange(matrix, &row, &end));
-  for (std::size_t point = 0; point < points.at.size(); ++point) {
-    const Shape shape = grid.shape(hosts[point]);
-    const auto corners = grid.nodes_of(static_cast<std::size_t>(hosts[point].cell));
-    for (PetscInt e = 0; e < points.unknowns; ++e, ++row) {
-      if (points.is_held(point, e)) continue;
-      PetscInt column[entries] = {};
-      double value[entries] = {};
-      PetscInt count = 0;
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double weight = shape.weight[k];
-        if (weight == 0) continue;
-        const PetscInt first = unknowns_of_node * nodes.number[corners[k]];
-        column[count] = first + e, value[count++] = weight;
-        if (e == 2) continue;
-        column[count] = first + 2, value[count++] = weight * (e == 0 ? -shape.arm[k].y : shape.arm[k].x);
-      }
-      check(MatSetValues(matrix, 1, &row, count, column, value, INSERT_VALUES));
-    }
-  }
+  PetscInt first = 0, end = 0;
+  check(MatGetOwnershipRange(matrix, &first, &end));
+  for_each_row([&](PetscInt number, const Row& row) {
+    const PetscInt at = first + number;
+    check(MatSetValues(matrix, 1, &at, row.count, row.columns, row.values, INSERT_VALUES));
+  });
   check(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   return matrix;

@@ -43,9 +43,14 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
     before = now;
     if (pass > 0 && (result.error <= small_enough || now <= rounding)) break;
     if (pass > 0 && result.residual > 0.5 * last && result.residual > 1e-12 * result.scale) {
-      computation_failed(fmt::format("the residual stays at {:.1e} of the forces", result.residual / result.scale),
-                         "the stiffness matrix is singular or nearly so: the assembly may have a mechanism",
-                         "'equidem solve' names a mechanism; --set solver.method=multifrontal takes MUMPS");
+      computation_failed(
+          fmt::format("the residual stays at {:.1e} of the forces", result.residual / result.scale),
+          network.any_negative()
+              ? "kT < 0: an iteration or preconditioner needs a positive definite matrix; MUMPS meets one "
+                "that is singular or nearly so"
+              : "the stiffness matrix is singular or nearly so: the assembly may have a mechanism",
+          "'equidem solve' names a mechanism; --set solver.method=multifrontal, without -equidem_ksp_type "
+          "and -equidem_pc_type, takes MUMPS");
     }
   }
   result.error = std::max(result.error, rounding);

@@ -261,9 +261,43 @@ def run_difference(program, folder, case):
     return engines.relative(moved, expected)
 
 
-def lammps_wall(program, folder):
-    """A block falls on a wall and rebounds; its gravity and speed keep strains near 1e-4."""
-    return run_difference(program, folder, '''
+def yade_run_difference(program, folder, case):
+    """As run_difference, of YADE."""
+    model = Model(program, folder, case)
+    expected = engines.columns(model.equidem("run", "run") / "discs.csv", "ux_m", "uy_m")
+    out = model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    return engines.relative(np.loadtxt(out / "end.txt")[:, 3:5], expected)
+
+
+#: Loads and gravity that set the network in motion from rest.
+SET_IN_MOTION = NETWORK + '''
+[[support]]
+group = "bottom"
+ux = 0.0
+uy = 0.0
+rotation = 0.0
+[[load]]
+group = "top"
+force = [300.0, -500.0]
+kind = "per_disc"
+[run]
+duration = 1e-4
+time_step = 4e-7
+gravity = [300.0, -700.0]
+'''
+
+
+def lammps_set_in_motion(program, folder):
+    return run_difference(program, folder, SET_IN_MOTION)
+
+
+def yade_set_in_motion(program, folder):
+    return yade_run_difference(program, folder, SET_IN_MOTION)
+
+
+#: A block above a wall of springs, which the lowest discs touch at y = -6.698729810778e-4.
+BLOCK_ON_WALL = '''
 [assembly]
 kind = "hexagonal"
 columns = 6
@@ -275,39 +309,31 @@ kN = 1e9
 kT = 0.3e9
 [[wall]]
 name = "floor"
-point = [0.0, -6.7e-4]
 normal = [0.0, 1.0]
 kN = 1e9
+{wall}
+[run]
+duration = 5e-4
+damping = {{ local = 0.05 }}
+{run}
+'''
+
+
+def lammps_wall(program, folder):
+    """A block falls on a wall and rebounds; its gravity and speed keep strains near 1e-4."""
+    return run_difference(program, folder, BLOCK_ON_WALL.format(wall="point = [0.0, -6.7e-4]", run='''gravity = [0.0, -9.81]
 [[velocity]]
 group = "all"
 velocity = [0.0, -0.05]
 [[group]]
 name = "all"
 box = [-1.0, -1.0, 1.0, 1.0]
-[run]
-duration = 5e-4
-gravity = [0.0, -9.81]
-damping = { local = 0.05 }
-''')
+'''))
 
 
 def lammps_moving_wall(program, folder):
     """A wall of springs that moves into a block along a ramp."""
-    return run_difference(program, folder, '''
-[assembly]
-kind = "hexagonal"
-columns = 6
-rows = 6
-radius = 0.005
-density = 2500.0
-[springs]
-kN = 1e9
-kT = 0.3e9
-[[wall]]
-name = "press"
-point = [0.0, -6.698729810778e-4]
-normal = [0.0, 1.0]
-kN = 1e9
+    return run_difference(program, folder, BLOCK_ON_WALL.format(run="", wall='''point = [0.0, -6.698729810778e-4]
 displacement = 1.0e-5
 direction = [0.0, 1.0]
 schedule = "slowly"
@@ -315,10 +341,7 @@ schedule = "slowly"
 name = "slowly"
 kind = "ramp"
 end = 4.0e-4
-[run]
-duration = 5e-4
-damping = { local = 0.05 }
-''')
+'''))
 
 
 def lammps_periodic(program, folder):

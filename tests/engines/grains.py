@@ -101,7 +101,7 @@ def lammps_elastic(program, folder):
 
 #: The left wall pushes the discs: at a constant speed; along a smooth ramp; to and fro.
 PISTONS = {
-    "speed": 'kind = "table"\ntimes = [0.02, 0.08]\nvalues = [0.0, 1.0]',
+    "speed": 'kind = "table"\ntimes = [0.02, 0.08]\nvalues = [-0.02, 1.0]',
     "ramp": 'kind = "ramp"\nstart = 0.01\nend = 0.09',
     "sine": 'kind = "sine"\nstart = 0.02\nfrequency = 15.0',
 }
@@ -127,7 +127,7 @@ def lammps_curved_pistons(program, folder):
 
 
 def yade_piston(program, folder):
-    """Without dashpots, which YADE does not carry here; its leapfrog begins half a step early."""
+    """Without dashpots; the same steps as in equidem."""
     def difference(kind, duration):
         (folder / kind).mkdir()
         box = Box(program, folder / kind, EQUAL, duration=duration, friction=0.0, restitution=1.0, time_step=2e-6,
@@ -162,12 +162,29 @@ class Sliding:
         return float(max(abs(speed - self.end[0]), 0.0075 * abs(spin - self.end[1])) / 0.2)
 
 
-def lammps_sliding(program, folder):
+def sliding_in(lammps, program, folder):
     disc = Sliding(program, folder)
     out = disc.model.export("lammps", "--accept", "friction")
-    engines.run_lammps(engines.lammps(), out)
+    engines.run_lammps(lammps, out)
     end = engines.dump(out / "end.dump")
     return disc.difference(end["vx"][0], end["omegaz"][0])
+
+
+def lammps_sliding(program, folder):
+    return sliding_in(engines.lammps(), program, folder)
+
+
+def lammps_sliding_newer(program, folder):
+    return sliding_in(engines.lammps_with_bonds(), program, folder)
+
+
+def yade_motion(program, folder):
+    """Impacts with dashpots, of bodies and of walls."""
+    box = Box(program, folder, EQUAL, duration=0.1, friction=0.0)
+    out = box.model.export("yade")
+    engines.run_yade(engines.yade(), out)
+    places = np.loadtxt(out / "end.txt")[:, :2]
+    return float(np.max(np.abs(places - box.end[:, :2])) / (0.5 * 9.81 * 0.1**2))
 
 
 def yade_sliding(program, folder):

@@ -37,7 +37,6 @@ and the same checks are tests with the label `engines`; they are skipped where a
   diameter, here 1e-3, and settled boxes by which contacts slide because of it; and the slip of a step is taken at
   its end, in equidem in its middle.
 - Friction is exported where `--accept friction` is given, with the levers of the engine.
-- Walls that move: the speed of a wall acts on dashpots; LAMMPS takes the difference of two places over a step. YADE's
-  leapfrog begins half a step early, so that its places differ by the step times the speed.
+- Walls that move: the speed of a wall acts on dashpots; LAMMPS takes the difference of two places over a step.
 - PFC is not free: its commands are not run here.
 '''

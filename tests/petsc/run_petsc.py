@@ -15,66 +15,10 @@ import time
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import vtk_to_numpy
 
-PROGRAM, PARALLEL, MPIRUN, SOURCE = sys.argv[1:5]
-CASES = pathlib.Path(SOURCE, "data", "cases")
-SERIAL_FILES = ("--set", "output.csv=false", "--set", "output.picture=false")
-LIMIT = 120  # s
+import solvers
+from ranks import CASES, CUT, SERIAL_FILES, checked, command, motions_of_ranks, motions_of_serial, parallel, serial
 
-
-def command(ranks, *arguments):
-    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
-                       OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
-    return [MPIRUN, "-n", str(ranks), PARALLEL, *map(str, arguments)], environment
-
-
-def parallel(ranks, *arguments):
-    words, environment = command(ranks, *arguments)
-    return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False)
-
-
-def serial(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=LIMIT, check=False)
-
-
-def checked(result, what):
-    assert result.returncode == 0, f"{what}: exit code {result.returncode}\n{result.stdout}\n{result.stderr}"
-    return result
-
-
-def read(path):
-    reader = vtk.vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    return reader.GetOutput()
-
-
-def arrays(data, *names):
-    return [vtk_to_numpy(data.GetPointData().GetArray(name)) for name in names]
-
-
-def motions_of_serial(folder, name):
-    data = read(folder / f"{name}_discs.vtp")
-    displacements, rotations, radii = arrays(data, "displacement", "rotation", "radius")
-    return np.column_stack([displacements[:, :2], radii * rotations])
-
-
-def motions_of_ranks(folder, name, ranks):
-    """In the order of the serial program, from the numbers of the discs."""
-    numbers, motions = [], []
-    for rank in range(ranks):
-        data = read(folder / f"{name}_discs_{rank}.vtp")
-        number, displacements, rotations, radii = arrays(data, "number", "displacement", "rotation", "radius")
-        numbers.append(number)
-        motions.append(np.column_stack([displacements[:, :2], radii * rotations]))
-    numbers, motions = np.concatenate(numbers), np.concatenate(motions)
-    assert sorted(numbers) == list(range(len(numbers))), "each disc belongs to one rank"
-    return motions[np.argsort(numbers)]
-
-
-CUT = ("--set", "assembly.columns=41", "--set", "assembly.rows=23")
 BLOCK = """schema = "equidem/1"
 [assembly]
 kind = "{kind}"
@@ -209,96 +153,6 @@ def the_moduli_are_those_of_the_serial_program_on_every_number_of_ranks(folder):
             assert result["gear_modes"] == expected["gear_modes"], name
 
 
-def every_solver_of_petsc_finds_the_same_motions(folder):
-    case = (CASES / "abe1996_fig6.toml", *CUT)
-    for name, options in {"gamg": (), "hypre": ("-equidem_pc_type", "hypre"), "jacobi": ("-equidem_pc_type", "jacobi"),
-                          "mumps": ("--set", "solver.method=multifrontal"),
-                          "grids": ("-equidem_pc_type", "equidem"), "grids of the case": ("--set", "solver.method=multigrid"),
-                          "lu": ("-equidem_ksp_type", "preonly", "-equidem_pc_type", "lu",
-                                 "-equidem_pc_factor_mat_solver_type", "mumps")}.items():
-        checked(parallel(2, "solve", *case, "--out", folder / name, *options), name)
-        found = motions_of_ranks(folder / name, "state", 2)
-        if name == "gamg":
-            first = found
-        difference = np.linalg.norm(found - first) / np.linalg.norm(first)
-        solver = json.loads((folder / name / "result.json").read_text(encoding="utf-8"))["solver"]
-        print(f"{solver}: motions differ by {difference:.1e}")
-        assert difference <= 1e-10, name
-    # kT < 0: the matrix is not definite, and MUMPS is taken.
-    negative = (*case, "--set", "springs.kT=-0.05e9", *SERIAL_FILES)
-    checked(serial("solve", *negative, "--out", folder / "serial"), "kT < 0")
-    result = checked(parallel(2, "solve", *negative, "--out", folder / "negative"), "kT < 0")
-    assert "mumps" in result.stdout, result.stdout
-    expected, found = motions_of_serial(folder / "serial", "state"), motions_of_ranks(folder / "negative", "state", 2)
-    assert np.linalg.norm(found - expected) <= 1e-10 * np.linalg.norm(expected)
-
-
-def grids_of_equidem(folder):
-    """The cases of blocks and cells that the grids of equidem solve, with the keys that make them larger."""
-    yield "lattice", "solve", CASES / "abe1996_fig6.toml", ("--set", "assembly.columns=81", "--set", "assembly.rows=91")
-    yield "points", "solve", CASES / "delaunay_tension.toml", ("--set", "assembly.discs=6000")
-    yield "strip", "solve", CASES / "abe1996_fig6.toml", ("--set", "assembly.columns=201", "--set", "assembly.rows=11")
-    yield "without kT", "solve", CASES / "abe1996_fig6.toml", ("--set", "springs.kT=0", "--set", "assembly.columns=61",
-                                                              "--set", "assembly.rows=61")
-    yield "few", "solve", CASES / "delaunay_tension.toml", ("--set", "assembly.discs=150")
-    yield "cell", "homogenize", CASES / "random_cell.toml", ("--set", "assembly.discs=5000")
-
-
-def the_grids_of_equidem_take_as_many_iterations_on_every_number_of_ranks(folder):
-    """They span the assembly; blocks of ranks on their own would take more iterations with every rank. GAMG, whose
-    aggregates end at ranks, is beside it."""
-    for name, verb, case, arguments in grids_of_equidem(folder):
-        found = {}
-        for kind in ("gamg", "equidem"):
-            for ranks in (1, 2, 4):
-                out = folder / f"{name} {kind} {ranks}"
-                checked(parallel(ranks, verb, case, *arguments, "--out", out, "-equidem_pc_type", kind), name)
-                found[kind, ranks] = json.loads((out / "result.json").read_text(encoding="utf-8"))["iterations"]
-                state = "state" if verb == "solve" else "state_strain_xy"
-                motions = motions_of_ranks(out, state, ranks)
-                if (kind, ranks) == ("gamg", 1):
-                    expected = motions
-                difference = np.linalg.norm(motions - expected) / np.linalg.norm(expected)
-                assert difference <= 1e-10, (name, kind, ranks, difference)
-        print(f"{name}: iterations {found}, motions differ by {difference:.1e}")
-        ours = [found["equidem", ranks] for ranks in (1, 2, 4)]
-        assert max(ours) - min(ours) <= max(2, 0.1 * min(ours)), (name, ours)
-        assert all(found["equidem", ranks] < 0.75 * found["gamg", ranks] for ranks in (1, 2, 4)), (name, found)
-
-
-def stability_is_that_of_the_serial_program_on_every_number_of_ranks(folder):
-    """Negative pivots beyond those of rotations, counted by MUMPS beside our own factorization, on both sides of the limit."""
-    cut = ("--set", "assembly.columns=21", "--set", "assembly.rows=23")
-    judged = set()
-    for verb, case, arguments in (("solve", CASES / "abe1996_fig6.toml", cut),
-                                  ("homogenize", CASES / "hexagonal_cell.toml", ("--set", "assembly.columns=12", "--set",
-                                                                                "assembly.rows=10")),
-                                  ("homogenize", CASES / "random_cell.toml", ("--set", "assembly.discs=300"))):
-        for ratio in (-0.1, -0.25, -0.3, -0.4, -0.6):
-            numbers = (*arguments, "--set", "springs.kN=1e9", "--set", f"springs.kT={ratio}e9")
-            expected = json.loads(checked(serial(verb, case, *numbers, "--json", "-"), case).stdout)
-            for ranks in (1, 2, 4):
-                out = folder / "result.json"
-                checked(parallel(ranks, verb, case, *numbers, "--json", out, "--overwrite"), case)
-                found = json.loads(out.read_text(encoding="utf-8"))
-                for key in ("status", "unstable_modes", "negative_pivots"):
-                    assert found[key] == expected[key], (case.name, ratio, ranks, key, found[key], expected[key])
-            judged.add(found["status"])
-            print(f"{case.name}, kT/kN = {ratio}: {found['status']}, {found['negative_pivots']} negative pivots, "
-                  f"{found['unstable_modes']} unstable modes on 1, 2, 4 ranks and in serial")
-    assert judged == {"solved", "unstable"}, judged
-    unstable = parallel(2, "solve", CASES / "abe1996_fig6.toml", *cut, "--set", "springs.kT=-0.4e9", "--require-stable")
-    assert unstable.returncode == 1, (unstable.returncode, unstable.stderr)
-    # No other solver counts, and none is believed.
-    for options in (("-equidem_pc_type", "lu", "-equidem_pc_factor_mat_solver_type", "mumps"),
-                    ("-equidem_mat_mumps_icntl_13", "0")):
-        out = folder / "result.json"
-        checked(parallel(2, "solve", CASES / "abe1996_fig6.toml", *cut, "--set", "springs.kT=-0.1e9", "--json", out, "--overwrite",
-                         *options), options)
-        found = json.loads(out.read_text(encoding="utf-8"))
-        assert found["status"] == "unjudged" and found["unstable_modes"] is None, (options, found["status"])
-
-
 def the_files_of_all_ranks_open_as_one_data_set(folder):
     result = checked(parallel(4, "solve", CASES / "abe1996_fig6.toml", *CUT, "--out", folder / "out"), "solve")
     result = json.loads((folder / "out" / "result.json").read_text(encoding="utf-8"))
@@ -420,4 +274,5 @@ def an_interrupted_run_ends(_):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
-        globals()[sys.argv[5]](pathlib.Path(temporary))
+        test = getattr(solvers, sys.argv[5], None) or globals()[sys.argv[5]]
+        test(pathlib.Path(temporary))

@@ -250,7 +250,11 @@ force = [0.0, -1.0]
         self.check_refused(case, ENGINES, "laws of collision other than linear_dashpot, here exact_flow")
 
     def test_dashpots_and_friction(self):
-        self.check_refused(self.grains(restitution=0.5), ["yade"], "restitution below 1", "lammps")
+        self.check_refused(self.grains(restitution=0.5), [])
+        self.check_refused(self.grains(restitution=0.5, radius=0.008), ["yade"], "restitution below 1 of bodies of unequal", "lammps")
+        self.check_refused(self.grains(restitution=0.5, collisions='contact_end = "zero_overlap"'), ["yade"], "may pull")
+        self.check_refused(self.grains(restitution=0.5, collisions="[collisions.walls]\nrestitution = 0.9"), ["yade", "pfc"],
+                           "pair to pair")
         rigid = "friction = 0.3\ntangential_ratio = 0.0"
         self.check_refused(self.grains(collisions=rigid), ENGINES, "friction without")
         self.check_refused(self.grains(restitution=0.5, collisions="friction = 0.3\ntangential_damping = 0.2\n"

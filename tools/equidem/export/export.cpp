@@ -52,13 +52,13 @@ Run declare_export(CLI::App& command) {
       .add_option("--accept", options->accept,
                   fmt::format("export this although the program computes it otherwise, as its refusal says: {}",
                               joined(acceptable_features(), ", ")))
-      ->type_name("WHAT");
+      ->type_name("WHAT")
+      ->allow_extra_args(false);
   command.footer(
       "Examples:\n"
       "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"
       "  equidem export data/cases/delaunay_tension.toml --to yade --out tension    then yade run_equidem.py\n"
       "  equidem export data/cases/grains_cradle.toml --set collisions.law=linear_dashpot --to yade --out cradle\n"
-      "  equidem export data/cases/grains_settle.toml --accept friction --to lammps --out settle\n"
       "  equidem export data/cases/cantilever.toml --to matrix-market --out beam    then python3 beam/solve.py");
   return [options] { return export_case(*options); };
 }

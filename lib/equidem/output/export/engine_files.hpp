@@ -22,7 +22,7 @@ struct EngineFile {
 std::vector<EngineFile> lammps_files(const EngineModel& model);
 
 /// YADE: run_equidem.py. Bonds: CohFrictMat with kn and ks of each, bodies of the radii that place the contact points.
-/// Grains: FrictMat, Cundall and Strack's law.
+/// Grains: FrictMat, Cundall and Strack's law; ViscElMat where bodies of one mass have dashpots.
 /// \param model carried by YADE
 std::vector<EngineFile> yade_files(const EngineModel& model);
 

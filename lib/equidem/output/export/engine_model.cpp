@@ -204,12 +204,16 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
   std::vector<char> of_bodies(static_cast<std::size_t>(model.kinds), 0);
   for (const EngineBody& each : model.bodies) of_bodies[static_cast<std::size_t>(each.kind)] = 1;
   const PairProperties* first = nullptr;
+  bool damped = false;
   for (int a = 0; a < model.kinds; ++a)
     for (int b = 0; b < model.kinds; ++b) {
       if (!of_bodies[static_cast<std::size_t>(a)] && !of_bodies[static_cast<std::size_t>(b)]) continue;
       const PairProperties& pair = model.between(a, b);
       const double zeta = damping_ratio(law, pair);
-      if (zeta > 0) add(model.found, normal_dashpots, fmt::format("restitution {:.6g}", pair.restitution));
+      const std::string restitution = fmt::format("restitution {:.6g}", pair.restitution);
+      damped = damped || zeta > 0;
+      if (zeta > 0 && !equal_masses(model)) add(model.found, unequal_dashpots, restitution);
+      if (zeta > 0 && pair.end != ContactEnd::at_zero_force) add(model.found, pulling_dashpots, restitution);
       if (zeta >= 1 && !equal_masses(model))
         add(model.found, strong_dashpots, fmt::format("damping ratio {:.6g}", zeta));
       if (pair.friction > 0) {
@@ -224,6 +228,7 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
       if (first == nullptr) first = &pair;
       if (!(pair == *first)) add(model.found, unequal_pairs, "");
     }
+  if (damped && model.found.contains(unequal_pairs)) add(model.found, dashpots_by_pair, "");
 }
 
 }  // namespace

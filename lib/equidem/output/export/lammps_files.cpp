@@ -162,7 +162,7 @@ class LammpsWriter {
   /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
   [[nodiscard]] bool by_mass() const {
     if (common_mass(model_)) return !differ_between_bodies();
-    return !model_.found.contains(EngineFeature::normal_dashpots) &&
+    return !model_.found.contains(EngineFeature::unequal_dashpots) &&
            !model_.found.contains(EngineFeature::tangential_dashpots) && !differ_between_bodies();
   }
 
@@ -174,13 +174,32 @@ class LammpsWriter {
     return false;
   }
 
-  /// kn kt gamma_n gamma_t xmu dampflag, the dashpots over the reduced mass.
+  /// Dashpots over the reduced mass.
+  struct Dashpots {
+    double normal = 0, along = 0;  ///< 1/s
+  };
+  [[nodiscard]] Dashpots dashpots_by_mass(const PairProperties& pair, double mass) const {
+    const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(pair.stiffness / mass);
+    const double along =
+        2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * stiffness_along(pair) / mass);
+    return {std::max(normal, smallest_dashpot), pair.friction > 0 ? along : 0};
+  }
+
+  /// kn kt gamma_n gamma_t xmu dampflag.
   [[nodiscard]] std::string coefficients_by_mass(const PairProperties& pair, double mass) const {
-    const double kN = pair.stiffness, kT = stiffness_along(pair);
-    const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(kN / mass);
-    const double along = 2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * kT / mass);
-    return fmt::format("{} {} {} {} {} 1", exact(kN), exact(kT), exact(std::max(normal, smallest_dashpot)),
-                       exact(pair.friction > 0 ? along : 0), exact(pair.friction));
+    const Dashpots dashpots = dashpots_by_mass(pair, mass);
+    return fmt::format("{} {} {} {} {} 1{}", exact(pair.stiffness), exact(stiffness_along(pair)),
+                       exact(dashpots.normal), exact(dashpots.along), exact(pair.friction), limit(pair));
+  }
+
+  /// The law of coefficients_by_mass in the words of the style granular, which takes the tangential dashpot as a
+  /// multiple of the normal one. With the style hooke/history walls of LAMMPS 4 Feb 2025 have no friction: they begin
+  /// its spring anew in every step.
+  [[nodiscard]] std::string wall_by_mass(const PairProperties& pair, double mass) const {
+    const Dashpots dashpots = dashpots_by_mass(pair, mass);
+    return fmt::format("granular hooke {} {} damping mass_velocity tangential linear_history {} {} {}{}",
+                       exact(pair.stiffness), exact(dashpots.normal), exact(stiffness_along(pair)),
+                       exact(dashpots.along / dashpots.normal), exact(pair.friction), limit(pair));
   }
 
   /// A contact without friction has a tangential spring that carries nothing: LAMMPS divides by its stiffness.
@@ -209,8 +228,8 @@ class LammpsWriter {
     std::string text;
     if (by_mass()) {
       const PairProperties& pair = model_.between(types_.begin()->first, types_.begin()->first);
-      line(text, "pair_style gran/hooke/history {}{}",
-           coefficients_by_mass(pair, 0.5 * model_.bodies.front().inertia.mass), limit(pair));
+      line(text, "pair_style gran/hooke/history {}",
+           coefficients_by_mass(pair, 0.5 * model_.bodies.front().inertia.mass));
       text += "pair_coeff * *\n";
     } else {
       text += "pair_style granular\n";
@@ -243,8 +262,7 @@ class LammpsWriter {
           text += fmt::format("hooke/history {} {} {} 0 0 1", exact(wall.kN), exact(wall.kN), exact(smallest_dashpot));
         } else {
           const PairProperties& pair = model_.between(kind, wall.kind);
-          text += by_mass() ? fmt::format("hooke/history {}{}",
-                                          coefficients_by_mass(pair, model_.bodies.front().inertia.mass), limit(pair))
+          text += by_mass() ? wall_by_mass(pair, model_.bodies.front().inertia.mass)
                             : "granular " + coefficients_by_restitution(pair);
         }
         line(text, " region wall_{}", k);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/output/export/engine_files.hpp"
 
 namespace equidem {
@@ -58,20 +60,30 @@ for row in BONDS.strip().split("\n") if BONDS.strip() else []:
     bond.phys.unp = bond.geom.penetrationDepth  # no force at the start
 )";
 
+constexpr std::string_view elastic_law = R"(
+PHYSICS = [
+    Ip2_FrictMat_FrictMat_FrictPhys(
+        kn=MatchMaker(matches=[(a, b, kn) for a, b, kn, ks, angle in PAIRS]),
+        ks=MatchMaker(matches=[(a, b, ks) for a, b, kn, ks, angle in PAIRS]),
+        frictAngle=MatchMaker(matches=[(a, b, angle) for a, b, kn, ks, angle in PAIRS]),
+    )
+]
+LAWS = [Law2_ScGeom_FrictPhys_CundallStrack()]
+)";
+
+constexpr std::string_view damped_law = R"(
+PHYSICS = [Ip2_ViscElMat_ViscElMat_ViscElPhys()]
+LAWS = [Law2_ScGeom_ViscElPhys_Basic()]
+)";
+
 constexpr std::string_view make_contacts = R"(
 O.engines = [
     ForceResetter(),
     InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
     InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False), Ig2_Wall_Sphere_ScGeom()],
-        [
-            Ip2_FrictMat_FrictMat_FrictPhys(
-                kn=MatchMaker(matches=[(a, b, kn) for a, b, kn, ks, angle in PAIRS]),
-                ks=MatchMaker(matches=[(a, b, ks) for a, b, kn, ks, angle in PAIRS]),
-                frictAngle=MatchMaker(matches=[(a, b, angle) for a, b, kn, ks, angle in PAIRS]),
-            )
-        ],
-        [Law2_ScGeom_FrictPhys_CundallStrack()],
+        PHYSICS,
+        LAWS,
     ),
     NewtonIntegrator(damping=DAMPING, gravity=GRAVITY),
 ]
@@ -120,6 +132,12 @@ while O.iter < STEPS:
 
 constexpr std::string_view run_steps = R"(
 O.step()  # tangential forces follow velocities, and none count in the first step
+for body in O.bodies:
+    if isinstance(body.shape, Sphere):  # the velocities after half a step, which it took for those after a whole one
+        state = body.state
+        state.vel, state.angVel = state.vel / 2, state.angVel / 2
+        state.pos -= O.dt * state.vel
+        state.ori = Quaternion((0, 0, 1), -O.dt * state.angVel[2]) * state.ori
 for number, velocity, spin in VELOCITIES:
     state = O.bodies[number].state
     state.pos += O.dt * velocity
@@ -166,9 +184,10 @@ class YadeWriter {
       text += fmt::format("TOLERANCE = {}  # N/m, of the unbalanced force\n", exact(1e-10 * force_scale(model_)));
     text += bodies();
     if (model_.bonded) text += bonds();
-    text += model_.bonded ? bodies_of_bonds : materials();
+    text += model_.bonded ? std::string(bodies_of_bonds) : damped() ? damped_materials() : materials();
     text += make_bodies;
     if (!model_.bonded) text += walls();
+    if (!model_.bonded) text += damped() ? damped_law : elastic_law;
     text += model_.bonded ? make_bonds : make_contacts;
     text += fmt::format("O.dt = {}\n", exact(model_.time_step));
     if (std::ranges::any_of(model_.walls, &Wall::moves)) text += moving_walls();
@@ -220,11 +239,37 @@ class YadeWriter {
     return text + "    O.materials.append(FrictMat(young=1, poisson=1, density=1, frictionAngle=0))\n";
   }
 
+  [[nodiscard]] const PairProperties& of_bodies() const {
+    const int kind = model_.bodies.front().kind;
+    return model_.between(kind, kind);
+  }
+  [[nodiscard]] bool damped() const { return damping_ratio(NormalLaw::linear_dashpot, of_bodies()) > 0; }
+
+  /// Springs and dashpots of two materials act one after another: k = k_i k_j/(k_i + k_j), and c likewise. Bodies of
+  /// one mass m take twice c = 2 zeta sqrt(k m/2), walls what makes it 2 zeta sqrt(k m).
+  [[nodiscard]] std::string damped_materials() const {
+    const PairProperties& pair = of_bodies();
+    const double mass = model_.bodies.front().inertia.mass;
+    const double zeta = damping_ratio(NormalLaw::linear_dashpot, pair);
+    const double at_wall = 2 * zeta * std::sqrt(pair.stiffness * mass), of_body = std::numbers::sqrt2 * at_wall;
+    const double ratio = pair.friction > 0 ? pair.tangential_ratio : 2.0 / 7;
+    std::string text;
+    for (int kind = 0; kind < model_.kinds; ++kind) {
+      const bool body = std::ranges::any_of(model_.bodies, [&](const EngineBody& b) { return b.kind == kind; });
+      text +=
+          fmt::format("O.materials.append(ViscElMat(kn={}, ks={}, cn={}, cs=0, frictionAngle={}, density=1))\n",
+                      exact(2 * pair.stiffness), exact(2 * ratio * pair.stiffness),
+                      exact(body ? of_body : at_wall * of_body / (of_body - at_wall)), exact(std::atan(pair.friction)));
+    }
+    return text;
+  }
+
   [[nodiscard]] std::string walls() const {
     std::string text;
     for (const Wall& wall : model_.walls) {
       const bool along_x = wall.normal.x != 0;
-      const double place = along_x ? wall.point.x : wall.point.y;
+      const Vec2 start = wall.point + wall.displacement(0);
+      const double place = along_x ? start.x : start.y;
       const int sense = (along_x ? wall.normal.x : wall.normal.y) > 0 ? 1 : -1;
       text += fmt::format("O.bodies.append(utils.wall({}, {}, sense={}, material={}))\n", exact(place), along_x ? 0 : 1,
                           sense, wall.kind);

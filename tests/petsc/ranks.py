@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The two programs and what they write."""
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+PROGRAM, PARALLEL, MPIRUN, SOURCE = sys.argv[1:5]
+CASES = pathlib.Path(SOURCE, "data", "cases")
+SERIAL_FILES = ("--set", "output.csv=false", "--set", "output.picture=false")
+LIMIT = 120  # s
+CUT = ("--set", "assembly.columns=41", "--set", "assembly.rows=23")
+
+
+def command(ranks, *arguments):
+    environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
+                       OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                       OMPI_MCA_rmaps_base_oversubscribe="1")
+    return [MPIRUN, "-n", str(ranks), PARALLEL, *map(str, arguments)], environment
+
+
+def parallel(ranks, *arguments):
+    words, environment = command(ranks, *arguments)
+    return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False)
+
+
+def serial(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=LIMIT, check=False)
+
+
+def checked(result, what):
+    assert result.returncode == 0, f"{what}: exit code {result.returncode}\n{result.stdout}\n{result.stderr}"
+    return result
+
+
+def read(path):
+    reader = vtk.vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def arrays(data, *names):
+    return [vtk_to_numpy(data.GetPointData().GetArray(name)) for name in names]
+
+
+def motions_of_serial(folder, name):
+    data = read(folder / f"{name}_discs.vtp")
+    displacements, rotations, radii = arrays(data, "displacement", "rotation", "radius")
+    return np.column_stack([displacements[:, :2], radii * rotations])
+
+
+def motions_of_ranks(folder, name, ranks):
+    """In the order of the serial program, from the numbers of the discs."""
+    numbers, motions = [], []
+    for rank in range(ranks):
+        data = read(folder / f"{name}_discs_{rank}.vtp")
+        number, displacements, rotations, radii = arrays(data, "number", "displacement", "rotation", "radius")
+        numbers.append(number)
+        motions.append(np.column_stack([displacements[:, :2], radii * rotations]))
+    numbers, motions = np.concatenate(numbers), np.concatenate(motions)
+    assert sorted(numbers) == list(range(len(numbers))), "each disc belongs to one rank"
+    return motions[np.argsort(numbers)]
