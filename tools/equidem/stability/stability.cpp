@@ -172,7 +172,7 @@ Run declare_stability(CLI::App& command) {
       "or [test], or as a free body.\n"
       "Examples:\n"
       "  equidem stability data/cases/abe1996_fig6.toml         free edges: stable down to kT/kN = -0.2650\n"
-      "  equidem stability data/cases/column.toml               the load at which a column buckles\n"
+      "  equidem stability data/cases/column.toml --set effects.prestress=on   the load at which a column buckles\n"
       "  equidem stability sample.toml --frequencies 10         the ten lowest natural frequencies\n"
       "  equidem stability cell.toml --out waves                dispersion, critical kT/kN over the zone\n"
       "  equidem stability cell.toml --set springs.kT=-0.1e9    stable in statics, but not in motion");
