@@ -98,7 +98,12 @@ def least(build, folder, jobs, repetitions, base):
                 left_out[job[0]] = sentence
                 print(sentence, file=sys.stderr)
                 continue
-            one = run(build, folder, *job)
+            try:
+                one = run(build, folder, *job)
+            except subprocess.CalledProcessError as failed:  # killed for memory that others took meanwhile, or refused by the program
+                left_out[job[0]] = f"{job[0]:.0e} discs were left out: the run on {job[1]} ranks ended with {failed.returncode}."
+                print(left_out[job[0]], file=sys.stderr)
+                continue
             if one["discs"] >= LARGE / 4:
                 of_a_disc = max(of_a_disc, (one["peak"] - base) / one["owned"])
             if job not in best or one["all"] < best[job]["all"]:
@@ -281,7 +286,7 @@ def main():
         jobs |= {(2 * discs, 2, "gamg") for discs in sizes if 2 * discs <= max(sizes)}
         jobs |= {(min(sizes), 4, kind) for kind in PRECONDITIONERS}
         best, left_out = least(build, folder, jobs, request.repetitions, base)
-        sizes = [discs for discs in sizes if (discs, 1, "gamg") in best]
+        sizes = [discs for discs in sizes if all((discs, ranks, "gamg") in best for ranks in (1, 2))]
         if not sizes:
             sys.exit(1)
         cuts = [best[(discs, 2, "gamg")] for discs in sizes]
