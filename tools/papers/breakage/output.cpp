@@ -213,7 +213,8 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
   text += fits_text(notches);
   text += fmt::format(
       "\n![Strength of notched plates](breakage/notches.svg)\n\nPlates with notches of a few d are weaker than the "
-      "formula says: they cannot be stronger than without a notch. {} plates in {:.1f} s.\n\n",
+      "formula says: they cannot be stronger than without a notch. That bends\nthe fits, too: an exponent of -0.48 in "
+      "place of -1/2 is that of (a + c)^(-1/2) with c of about half of d. {} plates in {:.1f} s.\n\n",
       notches.plates.size(), notches.seconds);
   text += fmt::format(
       "## Scatter and size by Weibull's law\n\nA share exp(-x^m) of the contacts is more than x f_t strong; f_s = 2 "
