@@ -16,7 +16,7 @@ using namespace equidem::test;
 
 namespace {
 
-Problem pulled(Assembly block) {
+Problem pulled_block(Assembly block) {
   return {std::move(block),
           usual_springs,
           {{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
@@ -38,13 +38,13 @@ TEST_CASE("one_odd_ring_decides_whether_the_discs_of_a_square_lattice_turn_like_
        .why = "without odd rings all discs counter-rotate at no cost; a single one holds hundreds of discs"});
   const int n = 24;
   Assembly block = square_lattice({.columns = n, .rows = n});
-  const Answer geared = solve(pulled(block));
+  const Answer geared = solve(pulled_block(block));
   table.refused("solve without", geared, {"counter-rotate like gears", "bipartite", "odd ring"});
-  Problem held = pulled(block);
+  Problem held = pulled_block(block);
   held.supports.push_back({.group = "bottom_left", .ux = {}, .uy = {}, .rotation = 0.0});
   table.right("solve without, one rotation held", solve(held), 1e-12);
   close_odd_ring(block, n);
-  table.right("solve with", solve(pulled(block)), 1e-12);
+  table.right("solve with", solve(pulled_block(block)), 1e-12);
 
   Assembly cell = square_lattice({.columns = 6, .rows = 6, .periodic = true});
   table.right("homogenize without",
@@ -88,7 +88,7 @@ TEST_CASE("a_rattler_inside_a_ring_is_named_or_left_out") {
   CHECK(result.removed[0].find("disc 14") != std::string::npos);
   Assembly block = hexagonal_lattice({.columns = 6, .rows = 6});
   remove(block);
-  table.refused("solve", solve(pulled(block)), {"disc 14", "no contacts", "Hold it, remove it"});
+  table.refused("solve", solve(pulled_block(block)), {"disc 14", "no contacts", "Hold it, remove it"});
 }
 
 TEST_CASE("contacts_at_the_centre_of_a_disc_are_right") {
@@ -107,7 +107,7 @@ TEST_CASE("contacts_at_the_centre_of_a_disc_are_right") {
       }
       return assembly;
     };
-    Problem problem = pulled(without_levers(hexagonal_lattice({.columns = 5, .rows = 6}), true));
+    Problem problem = pulled_block(without_levers(hexagonal_lattice({.columns = 5, .rows = 6}), true));
     problem.loads[0].moment = 0;
     table.right("solve", solve(problem), 1e-12);
     const Assembly cell = delaunay_assembly({.discs = 40, .periodic = true});

@@ -19,7 +19,7 @@ using Integrator = PrintedOptions::Integrator;
 
 namespace {
 
-constexpr double radius = 0.01, density = 2480, gravity = 9.8;
+constexpr double radius = 0.01, density = 2480, free_fall = 9.8;
 
 /// Discs without gravity in a box 1 m wide. \param damping h
 GrainScene scene_of(const std::vector<Grain>& grains, double damping, double acceleration = 0) {
@@ -70,10 +70,10 @@ TEST_CASE("without_damping_the_printed_integrator_gains_energy_and_the_semi_impl
 
 TEST_CASE("a_disc_as_printed_rests_on_the_floor_at_beta_times_its_radius") {
   for (const double beta : {1.0, 1.05}) {
-    const GrainScene scene = scene_of({disc({0.5, 1.06 * radius})}, 1, gravity);
+    const GrainScene scene = scene_of({disc({0.5, 1.06 * radius})}, 1, free_fall);
     PrintedDiscs discs(scene, {.integrator = Integrator::semi_implicit, .beta = beta, .time_step = 2e-6});
     discs.advance(100'000);
-    const double sag = scene.grains[0].inertia.mass * gravity / scene.pairs[1].stiffness;
+    const double sag = scene.grains[0].inertia.mass * free_fall / scene.pairs[1].stiffness;
     const double height = discs.motions()[0].u.y;
     CAPTURE(beta, height, sag);
     CHECK(height == Approx(beta * radius - sag).epsilon(1e-3));
@@ -82,12 +82,12 @@ TEST_CASE("a_disc_as_printed_rests_on_the_floor_at_beta_times_its_radius") {
 }
 
 TEST_CASE("the_damping_c_of_each_disc_limits_its_fall_and_its_spin") {
-  GrainScene scene = scene_of({disc({0.5, 0.9})}, 1, gravity);
+  GrainScene scene = scene_of({disc({0.5, 0.9})}, 1, free_fall);
   scene.grains[0].spin = 3;
   constexpr double rate = 20;
   PrintedDiscs discs(scene, {.mass_damping = rate, .time_step = 1e-5});
   discs.advance(30'000);
-  CHECK(discs.velocities()[0].u.y == Approx(-gravity / rate).epsilon(4e-3));
+  CHECK(discs.velocities()[0].u.y == Approx(-free_fall / rate).epsilon(4e-3));
   CHECK(discs.velocities()[0].theta == Approx(3 * std::exp(-2 * rate * 0.3)).epsilon(0.01));
 }
 

@@ -22,14 +22,14 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr double radius = 0.5;
+constexpr double disc_radius = 0.5;
 constexpr SpringConstants bond{1, 0.5};
 const std::vector<Support> clamped{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
 
 /// A column of `rows` rows, clamped at its left end, whose contacts carry what a load of -1 N/m at its right end
 /// causes.
 Assembly compressed_column(int columns, int rows = 2, double load = -1) {
-  Assembly column = square_lattice({.columns = columns, .rows = rows, .radius = radius});
+  Assembly column = square_lattice({.columns = columns, .rows = rows, .radius = disc_radius});
   const Equilibrium loaded = solve_equilibrium(column, ContactSprings(bond), clamped,
                                                {{.group = "right", .kind = LoadKind::total, .force = {load, 0}}});
   for (const ContactForce& force : loaded.contact_forces) {
@@ -97,8 +97,9 @@ double dense_critical_load(const Assembly& column, std::size_t held) {
 /// pi² E I/(4 L²) of the clamped column: chords of stiffness 2 a kN at the distances of the rows from the middle.
 double euler_load(int columns, int rows) {
   double bending = 0;
-  for (int row = 0; row < rows; ++row) bending += 2 * radius * bond.kN * squared(2 * radius * (row - 0.5 * (rows - 1)));
-  const double length = 2 * radius * (columns - 1);
+  for (int row = 0; row < rows; ++row)
+    bending += 2 * disc_radius * bond.kN * squared(2 * disc_radius * (row - 0.5 * (rows - 1)));
+  const double length = 2 * disc_radius * (columns - 1);
   return squared(std::numbers::pi) * bending / (4 * length * length);
 }
 
