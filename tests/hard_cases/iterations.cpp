@@ -32,7 +32,7 @@ Problem pulled(Assembly assembly, ContactSprings springs = usual_springs) {
 }
 
 /// A strip of two rows, its left end held, its bottom on a rail: clamped at one end alone it is too soft for a double.
-Problem long_strip(int columns) {
+Problem railed_strip(int columns) {
   Problem problem = pulled(hexagonal_lattice({.columns = columns, .rows = 2}));
   problem.supports.push_back({.group = "bottom", .ux = {}, .uy = 0.0, .rotation = {}});
   problem.loads[0].force.y = 0;
@@ -81,7 +81,7 @@ const HardCase::Words slender{.name = "multigrid on slender strips and soft join
                                   "takes part in every iteration"};
 
 void strip_by_multigrid(HardCase& table, int columns) {
-  table.right(fmt::format("solve 2 x {}, bottom on a rail", columns), solve_by_multigrid(long_strip(columns)), 1e-9);
+  table.right(fmt::format("solve 2 x {}, bottom on a rail", columns), solve_by_multigrid(railed_strip(columns)), 1e-9);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Assembly random_cell(std::uint64_t seed) {
 }
 
 /// The left side held, the discs of the right side pulled.
-Problem pulled(Assembly block, ContactSprings k) {
+Problem pulled_at_right(Assembly block, ContactSprings k) {
   return {std::move(block),
           std::move(k),
           {{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}},
@@ -64,8 +64,8 @@ TEST_CASE("tangential_springs_of_any_size_are_right") {
   for (int exponent = -8; exponent <= 8; ++exponent) {
     const double ratio = std::pow(10.0, exponent);
     CAPTURE(exponent);
-    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-8);
-    table.right("solve", solve(pulled(delaunay_assembly({.discs = 60}), springs_of(ratio))), 1e-8);
+    table.right("solve", solve(pulled_at_right(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-8);
+    table.right("solve", solve(pulled_at_right(delaunay_assembly({.discs = 60}), springs_of(ratio))), 1e-8);
     table.right("homogenize", homogenize(hexagonal_cell(), springs_of(ratio)), 1e-13);
     table.right("homogenize", homogenize(random_cell(1), springs_of(ratio)), 1e-13);
   }
@@ -76,7 +76,7 @@ TEST_CASE("small_negative_tangential_springs_are_right") {
                   .why = "K is indefinite by a hair: every rotation brings a small negative eigenvalue"});
   for (const double ratio : {-1e-2, -1e-4, -1e-6, -1e-8, -1e-10}) {
     CAPTURE(ratio);
-    table.right("solve", solve(pulled(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-7);
+    table.right("solve", solve(pulled_at_right(hexagonal_lattice({.columns = 5, .rows = 6}), springs_of(ratio))), 1e-7);
     table.right("homogenize", homogenize(random_cell(1), springs_of(ratio)), 1e-13);
   }
 }
@@ -99,17 +99,17 @@ TEST_CASE("free_edges_near_their_own_limit_of_stability_are_right_above_it_and_c
   HardCase table({.name = "a free block near its critical kT/kN",
                   .why = "an edge gives way before the bulk does, and K without rotations has long lost definiteness"});
   const Assembly block = hexagonal_lattice({.columns = 11, .rows = 11});
-  const Problem problem = pulled(block, springs_of(1));
+  const Problem problem = pulled_at_right(block, springs_of(1));
   const double limit = critical_ratio(block, problem.supports);
   CAPTURE(limit);
   CHECK(limit > -0.3);
   for (const double off : {1e-2, 1e-4, 1e-6}) {
     CAPTURE(off);
-    const Answer above = solve(pulled(block, springs_of(limit + off)));
+    const Answer above = solve(pulled_at_right(block, springs_of(limit + off)));
     CHECK(above.unstable_modes == 0);
     table.right("solve down to 1e-6 above", above, 1e-7);
   }
-  const Answer below = solve(pulled(block, springs_of(limit - 1e-6)));
+  const Answer below = solve(pulled_at_right(block, springs_of(limit - 1e-6)));
   CHECK(below.unstable_modes == 1);
   table.note("solve 1e-6 below", "reported unstable",
              fmt::format("{} unstable mode at {:.8f}", below.unstable_modes, limit - 1e-6));
@@ -123,17 +123,17 @@ TEST_CASE("two_halves_joined_by_nearly_nothing_are_right_to_the_digits_left_or_r
     for (const double weak : {1e-4, 1e-8, 1e-10}) {
       CAPTURE(ratio, weak);
       const auto [halves, k] = joined(block, 0.027, weak, ratio, {});
-      table.right("solve", solve(pulled(halves, k)), 1e-6);
+      table.right("solve", solve(pulled_at_right(halves, k)), 1e-6);
     }
   }
   const auto [hinged, with_one] = joined(block, 0.027, 1e-10, 0.5, {.weak = 1});
-  table.refused("solve, joined by one contact", solve(pulled(hinged, with_one)), {"rotation about", "Hold"});
+  table.refused("solve, joined by one contact", solve(pulled_at_right(hinged, with_one)), {"rotation about", "Hold"});
   const auto [hanging, with_two] = joined(block, 0.027, 1e-10, 0.5, {.strong = 1, .weak = 1});
-  table.right("solve, joined by a stiff one and one 1e-10 as stiff", solve(pulled(hanging, with_two)), 1e-4);
+  table.right("solve, joined by a stiff one and one 1e-10 as stiff", solve(pulled_at_right(hanging, with_two)), 1e-4);
   for (const double weak : {1e-16, 1e-18}) {
     CAPTURE(weak);
     const auto [halves, k] = joined(block, 0.027, weak, 0.5, {});
-    table.refused("solve, 1e-16 as stiff", solve(pulled(halves, k)),
+    table.refused("solve, 1e-16 as stiff", solve(pulled_at_right(halves, k)),
                   {"springs differ by a factor", "within a factor of 1e10"});
   }
   const Assembly cell = random_cell(1);

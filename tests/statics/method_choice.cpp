@@ -19,20 +19,20 @@ using namespace equidem;
 
 namespace {
 
-const std::vector<Support> left_held{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
-const LoadCase pull{{.group = "right", .kind = LoadKind::per_disc, .force = {1e3, 0}}};
+const std::vector<Support> held_left{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
+const LoadCase pull_of_right{{.group = "right", .kind = LoadKind::per_disc, .force = {1e3, 0}}};
 
 MethodChoice choice(const Assembly& assembly, const ContactSprings& springs, const SolverOptions& options = {}) {
   const ContactGraph graph(assembly);
   const DegreesOfFreedom unknowns =
-      number_unknowns(assembly, springs, derive_effects(assembly, springs, Rotation::from_scene), left_held);
+      number_unknowns(assembly, springs, derive_effects(assembly, springs, Rotation::from_scene), held_left);
   return choose_method({assembly, graph, springs, unknowns}, options);
 }
 
 Equilibrium pulled(const Assembly& assembly, SolverMethod method) {
   EquilibriumOptions options;
   options.solver.method = method;
-  return solve_equilibrium(assembly, ContactSprings({1e9, 0.5e9}), left_held, pull, options);
+  return solve_equilibrium(assembly, ContactSprings({1e9, 0.5e9}), held_left, pull_of_right, options);
 }
 
 }  // namespace
