@@ -75,7 +75,7 @@ struct StrengthCalibration {
   std::int64_t tests = 0;
   double energy_error = 0;  ///< the largest of all tests
 
-  /// Of the ratio, over all values that were tried, Pa/Pa or sqrt(m).
+  /// The least and largest ratio of all values that were tried, Pa/Pa or sqrt(m).
   [[nodiscard]] double lowest_ratio() const;
   [[nodiscard]] double highest_ratio() const;
 };

@@ -31,7 +31,7 @@ struct EnumNames<LoadAxis> {
 /// The motion of the discs of the ends across the axis. Rotations are free.
 enum class EndPlates {
   frictionless,  ///< free; one disc in the middle of the end that stays is held, so that the sample does not drift
-  glued,         ///< none
+  glued,         ///< held
 };
 
 template <>

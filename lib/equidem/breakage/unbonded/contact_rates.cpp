@@ -93,7 +93,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
     if (k > 0 && left <= refined) break;
-    // What nothing resists would follow the round-off of forces far.
+    // Motions that nothing resists would follow the round-off of forces far.
     for (double& r : residual) r = std::abs(r) > round_off_share * rates.force_scale ? r : 0;
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
