@@ -165,10 +165,6 @@ double negligible_rate(const RateProblem& problem, const Rates& rates) {
   return 1e-9 * rates.force_scale + 1e-11 * largest;
 }
 
-bool agree(const RateProblem& problem, const RateAnswer& answer) {
-  return inconsistent(problem, answer).empty();
-}
-
 RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {
   RateAnswer answer;
   answer.status = std::move(status);

@@ -50,7 +50,6 @@ class UnbondedState {
   void end_release();
 
   [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
-  [[nodiscard]] std::span<const ContactDeformation> deformation() const { return deformation_; }
   /// Per contact, N/m, those of broken bonds included.
   [[nodiscard]] std::span<const ContactForce> forces() const { return forces_; }
   /// Without what a broken bond has yet to give up, N/m.
@@ -75,8 +74,6 @@ class UnbondedState {
   [[nodiscard]] double relative_residual() const { return residual_; }
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
-  /// Reactions of held components and loads together, N/m; of free ones the internal force.
-  [[nodiscard]] std::span<const double> internal() const { return internal_; }
 
  private:
   void evaluate();
