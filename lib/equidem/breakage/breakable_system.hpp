@@ -35,7 +35,7 @@ struct BreakableNetwork {
   /// are divided by the mean radius of `assembly`.
   std::vector<RightHandSide> cases;
   SolverOptions solver;
-  const ContactStrengths* strengths = nullptr;  ///< of next_break(), for which it is prepared; null: of none
+  const ContactStrengths* strengths = nullptr;  ///< for which next_break() is prepared; null: for none
 };
 
 struct BreakableCounters {
@@ -63,8 +63,8 @@ class BreakableSystem {
   /// carried.
   [[nodiscard]] virtual std::optional<NextBreak> next_break(const ContactStrengths& strengths,
                                                             const LoadFactorSearch& search) = 0;
-  /// What the last removal opened, where the state followed from the one before it and one contact was removed; else
-  /// null.
+  /// The contact that the last removal took out, where it was one alone and the state followed from the one before it;
+  /// else null.
   [[nodiscard]] virtual const OpenedContact* opened() const { return nullptr; }
 
   /// Per contact, N/m; 0 of those that are removed or carry nothing.

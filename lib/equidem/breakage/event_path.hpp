@@ -18,7 +18,7 @@ struct BreakEvent {
   double lambda = 0;
   std::int64_t contact = 0;
   BreakMode mode = BreakMode::tension;
-  std::int64_t ties = 0;  ///< other contacts that would have broken at the same lambda
+  std::int64_t ties = 0;  ///< other contacts with an event at the same lambda
   double gap = 0;         ///< of lambda, relative, to the next contact that would have broken; infinite: none
   double load = 0;        ///< LoadPath, as the contact breaks
   double motion = 0;      ///< LoadPath, likewise
@@ -30,8 +30,8 @@ struct BreakEvent {
   double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact
   std::int64_t unstable_modes = 0;        ///< of the network with the contact; -1: not known
   double relative_residual = 0;           ///< of the state at which it breaks
-  std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it: they carry nothing any more
-  // Of contacts without a bond alone:
+  std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it and carry nothing behind it
+  // The numbers below are those of paths with contacts without a bond; elsewhere they are 0.
   double friction = 0;                                ///< N, lost by slip so far
   std::int64_t other_answers = 0;                     ///< found for the increment that begins here; -1: not known
   double motion_difference = 0, load_difference = 0;  ///< relative, of their rates

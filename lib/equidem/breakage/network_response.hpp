@@ -45,7 +45,7 @@ void follow(NetworkResponse& response, const OpenedContact& contact, const LoadP
 /// m², of the assembly; 0: not known, and with it no stress.
 double area_of_stress(const Assembly& assembly);
 
-/// N
+/// Work of the force of a contact, N/m, on a deformation, m: N.
 inline double work_of(const ContactForce& f, const ContactDeformation& d) {
   return f.normal * d.normal + f.tangential * d.tangential;
 }

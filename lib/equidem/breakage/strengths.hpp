@@ -27,9 +27,9 @@ struct EnumNames<BondLength> {
       {none, "none"}, {facet, "facet"}, {smaller_diameter, "smaller_diameter"}};
 };
 
-/// A contact without a bond.
+/// The behaviour of a contact without a bond.
 enum class AfterBreaking {
-  gone,  ///< it carries nothing any more
+  gone,  ///< it carries nothing
   rubs,  ///< it opens, closes, sticks and slips
 };
 

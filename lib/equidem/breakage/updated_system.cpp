@@ -160,8 +160,8 @@ class UpdatedSystem final : public SolvedStates {
     }
   }
 
-  /// Where hardly anything is left, refinement with a new factor may not serve either: from there on every network is
-  /// solved alone, with the refusals of its solver.
+  /// Refinement with a new factor may not serve where hardly anything is left: from there on every network is solved
+  /// alone, with the refusals of its solver.
   void judge_residual() {
     if (!why_not_.empty()) return;
     if (equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual)
@@ -348,8 +348,8 @@ std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network)
   std::vector<std::uint8_t> held = held_or_loaded(network);
   const LoadBearingNetwork found = load_bearing_network(network.assembly, network.springs, network.effects, held);
   if (found.part || found.removed() > 0) return make_refactorized_system(std::move(network));
-  // Of springs further apart, residuals that are refined to round-off of the loads leave the forces of the soft ones
-  // uncertain.
+  // Where springs are further apart, residuals that are refined to round-off of the loads leave the forces of the soft
+  // ones uncertain.
   constexpr double most_apart = 1e6;
   double softest = std::numeric_limits<double>::infinity(), stiffest = 0;
   for (std::size_t c = 0; c < network.assembly.contacts.size(); ++c) {

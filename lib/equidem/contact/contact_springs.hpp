@@ -58,20 +58,20 @@ class ContactSprings {
     if (per_contact_.empty()) per_contact_.assign(contacts, uniform_);
     per_contact_[contact] = k;
   }
-  /// The same springs with the geometric stiffness of each contact; empty: without.
+  /// A copy of the springs with the geometric stiffness of each contact; empty: without.
   [[nodiscard]] ContactSprings with_prestress(std::vector<ContactPrestress> per_contact) const {
     ContactSprings result = *this;
     result.prestress_ = std::move(per_contact);
     return result;
   }
   [[nodiscard]] bool prestressed() const { return !prestress_.empty(); }
-  /// Of one contact; null where forces at rest do not count.
+  /// The geometric stiffness of one contact; null where forces at rest do not count.
   [[nodiscard]] const ContactPrestress* prestress(std::size_t contact) const {
     return prestress_.empty() ? nullptr : &prestress_[contact];
   }
-  /// That of forces at rest `factor` times as large.
+  /// The geometric stiffness of all contacts under forces at rest `factor` times as large.
   [[nodiscard]] std::vector<ContactPrestress> scaled_prestress(double factor) const;
-  /// Whether K may be indefinite.
+  /// True with prestress or with some kT < 0: K may be indefinite.
   [[nodiscard]] bool may_be_indefinite() const { return prestressed() || any_negative(); }
   /// Whether some contact has a tangential spring.
   [[nodiscard]] bool any_tangential() const {

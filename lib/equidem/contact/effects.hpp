@@ -45,8 +45,8 @@ struct Effects {
 
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
 /// rotation with kT = 0 would leave rotations without stiffness: they are not unknowns, unless contacts lie off the
-/// lines of centres, where normal springs resist them, or forces at rest turn bodies that are no discs. Of an assembly
-/// that carries forces at rest, whether they count.
+/// lines of centres, where normal springs resist them, or forces at rest turn bodies that are no discs. The entries
+/// name prestress where the assembly carries forces at rest.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
 /// \param off_lines whether some contact lies off the lines of centres
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);

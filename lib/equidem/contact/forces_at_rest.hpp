@@ -12,7 +12,7 @@
 
 namespace equidem {
 
-/// Whether some contact carries a force at rest.
+/// True where some contact carries a force at rest.
 bool carries_forces(const Assembly& assembly);
 
 /// The force at rest of a contact; 0 where the assembly has none.
@@ -21,8 +21,8 @@ inline ContactForce force_at_rest(const Assembly& assembly, std::size_t contact)
   return {assembly.contact_normal_force[contact], assembly.contact_tangential_force[contact]};
 }
 
-/// How far the forces at rest are from balancing each other on every body. Weight and other loads are not counted:
-/// what they balance is told here as lacking.
+/// The sums of the forces at rest on every body, which vanish where these forces balance each other. Weight and other
+/// loads are not counted: the part that they balance is told here as lacking.
 struct RestBalance {
   std::int64_t loaded = 0;         ///< contacts that carry a force
   double mean_force = 0;           ///< N/m, magnitude, over those contacts
@@ -32,6 +32,7 @@ struct RestBalance {
   std::int32_t disc_of_moment = 0;
   double relative = 0;  ///< the larger of force and moment over the mean radius, over the mean force; 0 without forces
 };
+
 /// \param held discs that are not counted, since supports balance them; ascending
 RestBalance balance_at_rest(const Assembly& assembly, const std::vector<std::int32_t>& held = {});
 

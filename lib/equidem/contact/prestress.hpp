@@ -15,7 +15,7 @@
 ///   d²(dn) = (kappa_i kappa_j ds² + 2 ds (kappa_j theta_i + kappa_i theta_j) - (theta_i - theta_j)²)
 ///            / (kappa_i + kappa_j) + r_i theta_i² + r_j theta_j².
 ///
-/// Of discs about their centres, kappa = 1/r and l = r_i + r_j, it is (s . (u_j - u_i))²/l: no rotation enters. A wall
+/// For discs about their centres, kappa = 1/r and l = r_i + r_j, it is (s . (u_j - u_i))²/l: no rotation enters. A wall
 /// has kappa = 0. The slip of discs is that of finite_bond.hpp, (r_i + r_j) (psi - theta), whose second derivative is
 /// -2 (r_i + r_j)/l² (n . (u_j - u_i)) (s . (u_j - u_i)). Both are derivatives of a potential: K stays symmetric. Slip
 /// of other bodies depends on how their curvature varies, and is left to those who know their outlines.
@@ -29,15 +29,15 @@
 
 namespace equidem {
 
-/// The symmetric form of a contact in (dn, ds, theta_i, theta_j) that is added to kN dn² + kT ds²: N/m² = Pa, of
-/// rotations N and N m. The entry nn is 0.
+/// The symmetric form of a contact in (dn, ds, theta_i, theta_j) that is added to kN dn² + kT ds², in N. The entry nn
+/// is 0.
 struct ContactPrestress {
   double ns = 0, ni = 0, nj = 0;  ///< Pa, N/m, N/m
   double ss = 0, si = 0, sj = 0;  ///< Pa, N/m, N/m
   double ii = 0, ij = 0, jj = 0;  ///< N
 };
 
-/// Whether the form changes as body i, or j, turns about its centre: that of discs about their centres does not.
+/// True where the form changes as body i, or j, turns about its centre: that of discs about their centres does not.
 bool turns_i(const ContactPrestress& prestress, const ContactFrame& frame);
 bool turns_j(const ContactPrestress& prestress, const ContactFrame& frame);
 
@@ -46,11 +46,11 @@ struct ContactCurvatures {
   double i = 0, j = 0;
 };
 
-/// Of two discs about their centres, with the distance `length` between these.
+/// The form of two discs about their centres, which are `length` (m) apart.
 ContactPrestress prestress_of_discs(const ContactFrame& frame, double length, const ContactForce& at_rest);
 
-/// Of smooth bodies. Precondition: the curvatures are not negative, and not both 0; no tangential force, or a flat
-/// surface on one side, which turns no normal, beside a disc about its centre on the other.
+/// The form of two smooth bodies. Precondition: the curvatures are not negative, and not both 0; no tangential force,
+/// or a flat surface on one side, which turns no normal, beside a disc about its centre on the other.
 ContactPrestress prestress_of_bodies(const ContactFrame& frame, const ContactCurvatures& curvatures,
                                      double normal_force);
 
@@ -61,7 +61,7 @@ struct ContactResponse {
   Number moment_i = 0, moment_j = 0;
 };
 
-/// What the form adds to the force of the springs.
+/// Adds the forces and moments of the form to those of the springs.
 template <typename Number>
 void add_prestress(const ContactPrestress& g, const DeformationOf<Number>& d, Number theta_i, Number theta_j,
                    ContactResponse<Number>& response) {

@@ -11,7 +11,7 @@
 namespace equidem {
 namespace {
 
-/// Whether a surface of that curvature is a disc about the centre of its body.
+/// True where a surface of that curvature is a disc about the centre of its body.
 bool about_its_centre(double curvature, double lever) {
   constexpr double close = 1e-9;
   return std::abs(curvature * lever - 1) <= close;

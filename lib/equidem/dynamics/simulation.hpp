@@ -59,7 +59,7 @@ struct Damping {
   /// tau_N, tau_T, s: dashpots c_N = tau_N kN, c_T = tau_T kT at contacts, Kelvin-Voigt springs of different times.
   double normal_time = 0, tangential_time = 0;
 
-  /// Whether contacts have dashpots.
+  /// True where contacts have dashpots.
   [[nodiscard]] bool dashpots() const { return stiffness > 0 || contact > 0 || normal_time > 0 || tangential_time > 0; }
 };
 

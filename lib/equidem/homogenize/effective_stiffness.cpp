@@ -53,8 +53,8 @@ Tensor2 product_with_transposed(const Tensor2& a, const Tensor2& b) {
 }
 
 /// From the change of the nominal stress P = J sigma F^-T to that of the Cauchy stress: at the strain h
-/// d sigma = dP + sigma_0 h^T - tr(h) sigma_0. The turning of the whole, dP = h sigma_0 of a rotation h, needs no
-/// solution where discs turn along.
+/// d sigma = dP + sigma_0 h^T - tr(h) sigma_0. A rotation h of the whole changes P by h sigma_0, which
+/// is known without a solution where discs turn along.
 void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
   result.stress_at_rest = at_rest;
   Matrix3 change{};

@@ -216,7 +216,7 @@ inline constexpr Quantity quantities[] = {
     {"energy_after", "N", "strain energy without the contact, at this lambda"},
     {"energy_released", "N", "energy that the break takes"},
     {"loosened", "", "numbers of the discs that carry nothing any more"},
-    {"event_count", "", "number of contacts that broke"},
+    {"event_count", "", "number of breaks, with the changes of contacts that rub"},
     {"estimated_events", "", "number of breaks for which the time is estimated"},
     {"broken_in_tension", "", "number of contacts that broke in tension"},
     {"broken_in_shear", "", "number of contacts that broke in shear"},

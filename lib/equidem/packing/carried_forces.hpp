@@ -13,8 +13,8 @@
 
 namespace equidem {
 
-/// Of bodies that fell, the forces with which they came to rest. Of bodies that jammed, -kN times the overlap: forces
-/// of equal springs balance there. Other packings carry none, for their overlaps balance nothing.
+/// Bodies that fell carry the forces with which they came to rest; bodies that jammed -kN times the overlap, N/m, for
+/// forces of equal springs balance there. Other packings carry none, for their overlaps balance nothing.
 /// \param contacts of contacts_of(packing)
 /// \param springs of every contact; none: of jammed bodies no forces are known
 /// \return one for each contact, on its i (tension positive), or empty

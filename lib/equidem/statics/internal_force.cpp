@@ -18,7 +18,7 @@ struct Evaluated {
   Extended theta_i = 0, theta_j = 0;
 };
 
-/// By the motion and by the mean displacement gradient.
+/// Evaluates a contact under the motion and the mean displacement gradient.
 Evaluated evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
                    const PreciseMotion& motion, const ContactDeformation& affine = {}) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
@@ -116,7 +116,7 @@ ContactForce force_of(const ContactSprings& springs, std::size_t contact, const 
 
 namespace {
 
-/// What the contacts of a disc exert on it.
+/// The force and the moment that the contacts of a disc exert on it, N/m and N.
 struct Pull {
   Extended x = 0, y = 0, moment = 0;
 };

@@ -53,7 +53,7 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
 
-/// The same from the motion, with the moments that prestress adds.
+/// The internal force of a motion, N/m per component, with the moments that prestress adds.
 void internal_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
                     std::span<double> result);
 

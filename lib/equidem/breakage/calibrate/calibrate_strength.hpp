@@ -69,13 +69,15 @@ struct StrengthCalibration {
   /// depend on what is found.
   double tension_error = 0, shear_error = 0, friction_error = 0;
   MeanEstimate tensile, second;  ///< over the samples
-  double ratio = 0;              ///< second over tensile of the means
+  /// Second over tensile of the means: the wanted one to the accuracy asked for, or, where it jumps over that, the
+  /// nearest value that was found.
+  double ratio = 0;
   std::vector<TestedSample> samples;
   std::vector<TriedValue> tried;  ///< ascending
   std::int64_t tests = 0;
   double energy_error = 0;  ///< the largest of all tests
 
-  /// Of the ratio, over all values that were tried, Pa/Pa or sqrt(m).
+  /// The least and largest ratio of all values that were tried, Pa/Pa or sqrt(m).
   [[nodiscard]] double lowest_ratio() const;
   [[nodiscard]] double highest_ratio() const;
 };

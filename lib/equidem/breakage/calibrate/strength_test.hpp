@@ -31,7 +31,7 @@ struct EnumNames<LoadAxis> {
 /// The motion of the discs of the ends across the axis. Rotations are free.
 enum class EndPlates {
   frictionless,  ///< free; one disc in the middle of the end that stays is held, so that the sample does not drift
-  glued,         ///< none
+  glued,         ///< held
 };
 
 template <>
@@ -71,7 +71,6 @@ class StrengthSample {
   [[nodiscard]] SampleStrength strength(StrengthTestKind kind, const ContactStrengths& strengths,
                                         std::optional<double> notch = {}) const;
   [[nodiscard]] const Assembly& assembly() const { return assembly_; }
-  [[nodiscard]] const ContactSprings& springs() const { return springs_; }
   /// Across the axis, m: what the discs of the end that moves stand for, else the extent of the cells.
   [[nodiscard]] double width() const { return width_; }
 

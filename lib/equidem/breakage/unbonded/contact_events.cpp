@@ -20,7 +20,7 @@ std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::sp
     if (status == ContactStatus::bonded) continue;
     const double n = state.normal_coordinate(c);
     if (n > none || (status != ContactStatus::open && n < -none && !laws[c].rough())) continue;
-    // What a broken bond has yet to give up is no part of the law.
+    // The force that a broken bond has yet to give up is no part of the law.
     const ContactForce f = state.law_force(c);
     if (std::abs(n) <= none) {
       limits.push_back({c, OnLimit::apex, 1});

@@ -26,10 +26,10 @@ struct NextContactEvent {
   double gap = std::numeric_limits<double>::infinity();  ///< of t, relative, to the next contact that does not tie
 };
 
-/// Bonds have none. In the order of contact numbers.
+/// The contacts on a limit of their law, in the order of their numbers; bonds are on none.
 std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::span<const UnbondedLaw> laws);
 
-/// All forces go on at these rates.
+/// The first contact that reaches a limit while all forces go on at these rates; t is infinite where none does.
 NextContactEvent next_contact_event(const UnbondedState& state, std::span<const UnbondedLaw> laws,
                                     const ContactStrengths& strengths, const Rates& rates);
 

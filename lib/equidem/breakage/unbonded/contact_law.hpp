@@ -106,8 +106,9 @@ struct LimitContact {
   double direction = 1;  ///< of T, where friction is the limit
 };
 
-/// The status that follows from the rates of deformation of a contact on a limit, all times dlambda or another
-/// parameter. \param none rates of force below are round-off: the present status stays where it serves
+/// The status that follows from the rates of deformation of a contact on a limit, per unit of lambda or of another
+/// parameter.
+/// \param none rates of force below it are round-off: the present status stays where it serves
 inline ContactStatus status_after(const UnbondedLaw& law, const LimitContact& at, const ContactDeformation& rate,
                                   ContactStatus present, double none) {
   const double n = law.k.kN * rate.normal, t = law.k.kT * rate.tangential;

@@ -93,7 +93,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
     if (k > 0 && left <= refined) break;
-    // What nothing resists would follow the round-off of forces far.
+    // Motions that nothing resists would follow the round-off of forces far.
     for (double& r : residual) r = std::abs(r) > round_off_share * rates.force_scale ? r : 0;
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
@@ -163,10 +163,6 @@ double negligible_rate(const RateProblem& problem, const Rates& rates) {
     largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
   }
   return 1e-9 * rates.force_scale + 1e-11 * largest;
-}
-
-bool agree(const RateProblem& problem, const RateAnswer& answer) {
-  return inconsistent(problem, answer).empty();
 }
 
 RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {

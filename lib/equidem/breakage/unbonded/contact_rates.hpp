@@ -56,9 +56,6 @@ std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::
 /// Rates::negligible of these rates.
 double negligible_rate(const RateProblem& problem, const Rates& rates);
 
-/// Whether the rates ask for no other status of a contact on a limit.
-bool agree(const RateProblem& problem, const RateAnswer& answer);
-
 /// The statuses of the contacts on limits that agree with the rates which follow from them: Newton's method on the
 /// piecewise linear problem from the statuses given, then changes one at a time, the contact of least number first
 /// (Murty's least-index method of linear complementarity, finite where the answer is unique for all loads).

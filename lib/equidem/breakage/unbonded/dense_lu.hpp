@@ -3,6 +3,7 @@
 /// Small dense systems by Gaussian elimination with row pivoting.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>

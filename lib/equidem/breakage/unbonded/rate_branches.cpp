@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "equidem/breakage/unbonded/dense_lu.hpp"
 
@@ -106,7 +107,6 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
     for (const std::size_t p : place) some.push_back(problem.limits[p]);
     all = Combinations(problem, std::move(some));
     if (all.count() > static_cast<double>(most_branches)) return result;
-    result.some_tried = true;
   }
   if (place.empty()) return result;
   const std::size_t n = 2 * problem.limits.size();

@@ -27,6 +27,8 @@ class TangentSolver {
   /// \param ground Pa, far below the springs of contacts
   TangentSolver(const ContactOperator& contacts, double ground);
 
+  /// Makes these the tangents, one for each contact, by updates of the factor or by a new one.
+  /// \throws Error (computation_failed) where the matrix has a zero pivot
   void set(std::span<const ContactTangent> tangents);
   /// Factorizes the tangent as it is, if it has changed since.
   void refresh();

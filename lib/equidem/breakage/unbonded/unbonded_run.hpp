@@ -42,8 +42,9 @@ struct UnbondedCounters {
 class UnbondedRun : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
-  /// \throws Error (bad_input) where a tangential spring is negative, where the control is none of those that a path
-  ///         with a history has, or where forces at rest pull or are beyond friction
+  /// A contact without a bond whose force at rest pulls, N_r > 0, begins open with the gap N_r/kN.
+  /// \throws Error (bad_input) where a tangential spring is negative, the friction is not a finite number >= 0, or the
+  ///         control is none of those that a path with a history has
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
 
   bool advance() override;
@@ -52,7 +53,7 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::string& why() const override { return why_; }
   [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
   [[nodiscard]] double direction(std::int64_t leg) const override;
-  /// None: contacts that carry nothing at first may close.
+  /// Always empty: contacts that carry nothing at first may close.
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
   [[nodiscard]] double lambda() const override { return state_->lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }

@@ -22,7 +22,7 @@ namespace equidem {
 /// Work of everything from outside, and where it went, N, from the start.
 struct ContactLedger {
   double work = 0;
-  double elastic = 0;     ///< the energy of the springs now, less that at rest
+  double elastic = 0;     ///< the energy of the springs, less that at rest
   double friction = 0;    ///< lost by slip
   double released = 0;    ///< by bonds that broke
   double negligible = 0;  ///< energy of forces that are round-off
@@ -50,7 +50,6 @@ class UnbondedState {
   void end_release();
 
   [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
-  [[nodiscard]] std::span<const ContactDeformation> deformation() const { return deformation_; }
   /// Per contact, N/m, those of broken bonds included.
   [[nodiscard]] std::span<const ContactForce> forces() const { return forces_; }
   /// Without what a broken bond has yet to give up, N/m.
@@ -59,7 +58,7 @@ class UnbondedState {
   }
   /// N_r + kN dn of a contact: its normal force where it is closed, kN times its gap where it is open.
   [[nodiscard]] double normal_coordinate(std::size_t contact) const;
-  /// Forces per component that a broken bond has yet to give up, and their contacts.
+  /// Forces that broken bonds have yet to give up, per component, N/m, and the contacts that they belong to.
   [[nodiscard]] std::vector<double> unreleased() const;
   [[nodiscard]] const std::vector<std::size_t>& releasing() const { return releasing_; }
   [[nodiscard]] double released_by(std::size_t contact) const { return released_by_[contact]; }
@@ -75,8 +74,6 @@ class UnbondedState {
   [[nodiscard]] double relative_residual() const { return residual_; }
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
-  /// Reactions of held components and loads together, N/m; of free ones the internal force.
-  [[nodiscard]] std::span<const double> internal() const { return internal_; }
 
  private:
   void evaluate();
@@ -104,7 +101,7 @@ class UnbondedState {
   std::vector<double> rest_load_;  // per component: what balances the forces at rest
   std::vector<std::size_t> releasing_;
   std::vector<ContactForce> kept_;     // of broken bonds, times share_
-  double share_ = 0, kept_share_ = 0;  // now, and before the last move
+  double share_ = 0, kept_share_ = 0;  // as it is, and before the last move
   std::vector<double> released_by_;    // N, per contact
   std::vector<ContactDeformation> deformation_;
   std::vector<ContactForce> forces_;

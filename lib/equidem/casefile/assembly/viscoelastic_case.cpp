@@ -2,6 +2,7 @@
 #include "equidem/casefile/assembly/viscoelastic_case.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "equidem/casefile/assembly/case.hpp"

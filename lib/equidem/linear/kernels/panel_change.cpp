@@ -44,7 +44,7 @@ EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffne
   return turn;
 }
 
-/// What the turn of pivot p does to the solutions that are followed: L z + w s stays.
+/// Applies the turn of pivot p to the solutions that are followed: L z + w s stays.
 EQUIDEM_INLINE void follow_turn(const PanelChange& change, std::size_t p, std::size_t k, const Turn& turn) {
   for (std::size_t f = 0; f < change.followed_count; ++f) {
     double& z = change.followed[f * change.followed_apart + p];

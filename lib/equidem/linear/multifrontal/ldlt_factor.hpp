@@ -50,8 +50,8 @@ class LdltFactor {
   /// The factor of a front: its pivots with their part of L, and the rows that they update.
   struct FrontFactor {
     Pivots pivots;
-    std::vector<std::int64_t>
-        ids;                    ///< unknowns (in elimination order): pivots first, then delayed ones, then later rows
+    /// Unknowns in the order of elimination: pivots first, then delayed ones, then later rows.
+    std::vector<std::int64_t> ids;
     LargeVector<Number> lower;  ///< ids.size() x pivots.count, column-major
     std::size_t delayed = 0;
   };

@@ -90,7 +90,7 @@ class Grid {
   std::vector<std::uint8_t> full_;  // per cell
 };
 
-/// What a grid has to cover.
+/// The rectangle that a grid has to cover, and the sizes that its spacing follows from.
 struct GridRegion {
   Vec2 low, high;         ///< m: corners of the rectangle around the centres, or of the cell
   bool periodic = false;  ///< along both axes

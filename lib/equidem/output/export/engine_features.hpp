@@ -163,8 +163,7 @@ struct EnumNames<EngineFeature> {
        "it limits spring and dashpot together", "Set friction_cap = \"whole_force\""},
       {friction_levers, "friction of bodies that overlap", false, false, false,
        "its levers differ by parts of the overlap (LAMMPS: the radii, YADE: to the middle, walls otherwise; here: "
-       "parts "
-       "of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
+       "parts of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
        "(data/interop.md)",
        "Give --accept friction to export it with these levers, or set friction = 0", "friction"},
       {breakage, "strengths, notches and dead loads of quasistatic", false, false, false,

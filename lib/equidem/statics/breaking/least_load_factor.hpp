@@ -40,13 +40,13 @@ struct ProportionalForce {
   ContactForce dead, live;  ///< N/m
 };
 
-/// Where lambda starts, and where it goes.
+/// The value and the direction of lambda from which the next break is sought.
 struct LoadFactorSearch {
   double from = 0;             ///< lambda_0
   double direction = 1;        ///< of lambda, 1 or -1
   bool by_least_load = false;  ///< order of contacts that are beyond their strength at `from`; false: their numbers
   /// N/m of live and dead forces, below which a component is round-off and counts as 0. A contact that carries no force
-  /// does not break, whatever its strength.
+  /// does not break, whatever its strength. Negative: no component is cut.
   double no_live = -1, no_dead = -1;
 };
 

@@ -32,9 +32,8 @@ struct UpdatedEquilibriumOptions {
   bool force_moments = false;        ///< follow the sums of OpenedContact::moment
 };
 
-/// A contact that was removed, and what all others did. Work and energy follow (breakage/network_response.hpp): with
-/// contact k gone, sum over loads and imposed motions of right-hand side b as they work on the change of the state of a
-/// is the work of the force that k carried under b along the opening of its ends under a.
+/// A contact that was removed, with the numbers from which work, energy and stress of the network behind the removal
+/// follow (breakage/network_response.hpp, follow).
 struct OpenedContact {
   std::array<ContactForce, 2> force{};          ///< per right-hand side, as it let go, N/m
   std::array<ContactDeformation, 2> opening{};  ///< of its ends without it, m
@@ -95,7 +94,7 @@ class UpdatedEquilibrium {
   /// The contact that the last call of remove() took out, where the state has followed from that before it alone: null
   /// where motions were refined with it.
   [[nodiscard]] const OpenedContact* opened() const;
-  /// Contacts that never break from now on, such as those of discs that carry nothing any more.
+  /// Takes contacts out of all later searches, such as those of discs that have left the network.
   void spare(std::span<const std::size_t> contacts);
 
   /// Per contact, N/m.

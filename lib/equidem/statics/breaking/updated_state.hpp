@@ -44,7 +44,7 @@ class UpdatedState {
   /// Bound on the relative residual that rounding has left since the motions were last refined, as of the last visits
   /// (updated_state.cpp says how it is found).
   [[nodiscard]] double rounding() const;
-  /// Whether motions were refined after the last visit that found any.
+  /// True where motions were refined after the last visit that found any.
   [[nodiscard]] bool is_refined() const { return visits_.fronts == 0; }
   [[nodiscard]] FirstToBreak critical(const LoadFactorSearch& search);
 
@@ -54,7 +54,7 @@ class UpdatedState {
                            std::span<const UpdatedCholesky::Load> loads, std::span<Tensor2> moments);
   /// Stretch and slip of the ends of a contact, as of the last visit.
   [[nodiscard]] ContactDeformation deformation(std::size_t contact, std::size_t of_case) const;
-  /// A contact that does not break.
+  /// Takes a contact out of all later searches.
   void spare(std::size_t contact) { contacts_[slot_[contact]].strength = {}; }
   void set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces);
   [[nodiscard]] ContactForce force_of(std::size_t contact, std::size_t of_case) const;
@@ -93,7 +93,7 @@ class UpdatedState {
   std::unique_ptr<UpdatedCholesky> factor;
 
  private:
-  /// What a visit of a block has rounded, sums of squares per right-hand side, N²/m².
+  /// Sums of squares from which the rounding of a visit of a block is bounded, per right-hand side, N²/m².
   struct Visit {
     std::int64_t fronts = 0;              ///< swept back through
     std::array<double, 2> moved{};        ///< stiffness times motion since the visit before
@@ -120,12 +120,12 @@ class UpdatedState {
   void evaluate_block(std::size_t block);
   void evaluate_blocks();
   void bound_children(std::size_t block);
-  /// Of the contacts of a block: the least key, and the least that does not tie with it.
+  /// The least key of the contacts of a block, and the least that does not tie with it.
   [[nodiscard]] std::array<double, 2> keys_of(std::size_t block, const LoadFactorSearch& search) const;
   [[nodiscard]] BreakingMoment moment_of(std::int64_t slot, const LoadFactorSearch& search) const {
     return breaking_moment(contacts_[slot].force, contacts_[slot].strength, options.friction, search);
   }
-  /// Among the contacts of open blocks.
+  /// The first to break among the contacts of open blocks with keys up to `limit`.
   [[nodiscard]] FirstToBreak first_of_open(const LoadFactorSearch& search, double limit) const;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;

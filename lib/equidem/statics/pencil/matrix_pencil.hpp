@@ -32,7 +32,7 @@ struct InverseIteration {
   double run(std::vector<double>& x) const;
 };
 
-/// -x.A x/x.B x
+/// The value v = -x.A x/x.B x, over the components that are not held.
 double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                          const StiffnessMatrix& a, const StiffnessMatrix& b, const std::vector<double>& x);
 

@@ -108,7 +108,8 @@ class LoadPencil {
   std::int64_t factorizations_ = 0;
 };
 
-/// Whether factorizations on both sides of the value, the closest that round-off allows, have it between them.
+/// True where factorizations on both sides of the value, as close as round-off allows, have it between them: sets
+/// `width`.
 bool prove(LoadPencil& pencil, double value, CriticalLoad& result) {
   constexpr double closest = 1e-11, farthest = 1e-4, widen = 10;  // relative
   for (double way = closest; way <= farthest; way *= widen) {
