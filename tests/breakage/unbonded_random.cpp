@@ -42,7 +42,7 @@ DrawnPacking draw_packing(std::uint64_t seed) {
   const double kT = std::array{0.5, 0.0, 1.0, 0.2}[seed / 3 % 4];
   const double friction = std::array{0.3, 0.0, 0.6, 10.0, 0.1}[seed % 5];
   const double bonded = std::array{0.0, 0.5, 0.9, 1.0}[seed / 2 % 4];
-  const int rest = static_cast<int>(seed / 5 % 3);  // nothing, gaps, forces
+  const int rest = static_cast<int>(seed / 5 % 3);  // 0: no forces at rest, 1: gaps, 2: forces
   std::vector<SpringConstants> springs;
   for (std::size_t c = 0; c < d.assembly.contacts.size(); ++c) {
     springs.push_back({random.uniform(0.5, 2), kT * random.uniform(0.5, 2)});

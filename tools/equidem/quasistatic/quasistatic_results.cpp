@@ -137,7 +137,7 @@ void add_trust(Results& out, const UnbondedRun& run) {
       .set("increments/not_unique", counters.not_unique)
       .set("increments/not_decided", counters.unchecked);
   if (counters.not_unique > 0) {
-    out.line("", fmt::format("of several answers that which changes the fewest contacts was taken; the rates of motion "
+    out.line("", fmt::format("of several answers the one found from the present states was taken; the rates of motion "
                              "of another differ by {:.2g}, those of load by {:.2g}, relative, at most",
                              counters.largest_motion_difference, counters.largest_load_difference));
   }
