@@ -29,7 +29,7 @@ Unbonded on_the_ground(double friction, std::vector<double> legs) {
   return {chain_of_discs(2, 1), stiff_and_soft, options, friction};
 }
 
-/// The same disc, moved sideways to and fro by 1 mm.
+/// The disc of on_the_ground, moved sideways to and fro by 1 mm.
 Unbonded to_and_fro(double friction, double tension, double shear, std::vector<double> legs) {
   LoadPathOptions options;
   options.supports = {{"first", 0, 0, 0}, {"last", {}, 1e-3, 0}};

@@ -117,7 +117,7 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
       if (!found && event.lambda >= ours.events().back().lambda * (1 - 1e-9)) break;
       if (event.other_answers > 0) ++ambiguous;
       if (event.other_answers < 0) ++unknown;
-      // Of several answers pivots may find another one.
+      // Pivots may find another one of several answers.
       if (event.other_answers != 0 && (event.contact != dense.events[k].contact || event.mode != dense.events[k].mode))
         break;
       CAPTURE(k, dense.events[k].lambda, event.lambda, event.ties, to_string(event.mode),
