@@ -27,7 +27,7 @@ struct DrawnPacking {
   Rotation rotation = Rotation::from_scene;
 };
 
-/// Assemblies of some ten discs, loaded, unloaded and reloaded: bonds and contacts without a bond, gaps and forces at
+/// Assemblies of about ten discs, loaded, unloaded and reloaded: bonds and contacts without a bond, gaps and forces at
 /// rest at random, in every combination of what drives them, tangential springs and friction.
 DrawnPacking draw_packing(std::uint64_t seed) {
   Random random(seed);
