@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Our multigrid over the ranks, as a preconditioner of PETSc.
+/// The multigrid of equidem over the ranks, as a preconditioner of PETSc.
 #pragma once
 
 #include <petscksp.h>
@@ -18,9 +18,10 @@ void register_grids();
 /// Whether the preconditioner was set to the type above last.
 [[nodiscard]] bool has_grids(PC preconditioner);
 
-/// Gives it the grids of multigrid/grid.hpp, nodes of which carry rigid motions, with the spacing of the serial cycle.
-/// They span the whole assembly, so that iterations do not grow with the number of ranks. PETSc makes the matrices of
-/// the grids (P^T K P), smooths by Chebyshev's iteration on the diagonal blocks, and eliminates on the coarsest grid.
+/// Gives the preconditioner the grids of multigrid/grid.hpp, nodes of which carry rigid motions, with the spacing of
+/// the serial cycle. They span the whole assembly, so that iterations do not grow with the number of ranks. PETSc makes
+/// the matrices of the grids (P^T K P), smooths by Chebyshev's iteration on the diagonal blocks, and eliminates on the
+/// coarsest grid.
 ///
 /// A rank holds the entries of its discs and nodes, and beside them 18 B for each node of the whole: 2.7 B for each
 /// disc of the assembly, all grids together.

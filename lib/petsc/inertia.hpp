@@ -11,7 +11,7 @@
 
 namespace equidem::petsc {
 
-/// As in Equilibrium; -1: not counted.
+/// Numbers of negative pivots and of unstable modes, as in Equilibrium; -1: not counted.
 struct Inertia {
   std::int64_t negative_pivots = -1;
   std::int64_t unstable_modes = -1;

@@ -19,17 +19,17 @@ constexpr double normal_spring = 1000, tangential_spring = 300;
 const ContactSprings stiff_and_soft(SpringConstants{normal_spring, tangential_spring});
 
 /// A disc on a held one, pressed on it by 1 N/m and pushed sideways by lambda.
-Unbonded on_the_ground(double friction, std::vector<double> legs, LoadControl control = LoadControl::load) {
+Unbonded on_the_ground(double friction, std::vector<double> legs) {
   LoadPathOptions options;
   options.supports = {{"first", 0, 0, 0}, {"last", {}, {}, 0}};
   options.dead_loads = {{"last", LoadKind::per_disc, {-1, 0}, 0}};
   options.loads = {{"last", LoadKind::per_disc, {0, 1}, 0}};
-  options.control = control;
+  options.control = LoadControl::load;
   options.legs = std::move(legs);
   return {chain_of_discs(2, 1), stiff_and_soft, options, friction};
 }
 
-/// The same disc, moved sideways to and fro by 1 mm.
+/// The disc of on_the_ground, moved sideways to and fro by 1 mm.
 Unbonded to_and_fro(double friction, double tension, double shear, std::vector<double> legs) {
   LoadPathOptions options;
   options.supports = {{"first", 0, 0, 0}, {"last", {}, 1e-3, 0}};
@@ -76,8 +76,7 @@ TEST_CASE("a_disc_slips_where_the_tangent_of_the_slope_is_the_friction") {
   CHECK(smooth.run().end() == PathEnd::load_moves_part);
 }
 
-TEST_CASE("a_load_that_friction_holds_back_unloads_elastically_and_keeps_its_slip") {
-  // Under control of the motion the load stays at its limit, and falls as the motion turns back.
+TEST_CASE("a_load_below_the_limit_of_friction_goes_to_and_fro_without_slip") {
   Unbonded disc = on_the_ground(0.5, {0.4, -0.4, 0.4});
   disc.all();
   CHECK(disc.events().empty());

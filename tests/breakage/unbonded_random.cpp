@@ -27,7 +27,7 @@ struct DrawnPacking {
   Rotation rotation = Rotation::from_scene;
 };
 
-/// Assemblies of some ten discs, loaded, unloaded and reloaded: bonds and contacts without a bond, gaps and forces at
+/// Assemblies of about ten discs, loaded, unloaded and reloaded: bonds and contacts without a bond, gaps and forces at
 /// rest at random, in every combination of what drives them, tangential springs and friction.
 DrawnPacking draw_packing(std::uint64_t seed) {
   Random random(seed);
@@ -42,7 +42,7 @@ DrawnPacking draw_packing(std::uint64_t seed) {
   const double kT = std::array{0.5, 0.0, 1.0, 0.2}[seed / 3 % 4];
   const double friction = std::array{0.3, 0.0, 0.6, 10.0, 0.1}[seed % 5];
   const double bonded = std::array{0.0, 0.5, 0.9, 1.0}[seed / 2 % 4];
-  const int rest = static_cast<int>(seed / 5 % 3);  // nothing, gaps, forces
+  const int rest = static_cast<int>(seed / 5 % 3);  // 0: no forces at rest, 1: gaps, 2: forces
   std::vector<SpringConstants> springs;
   for (std::size_t c = 0; c < d.assembly.contacts.size(); ++c) {
     springs.push_back({random.uniform(0.5, 2), kT * random.uniform(0.5, 2)});
@@ -117,7 +117,7 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
       if (!found && event.lambda >= ours.events().back().lambda * (1 - 1e-9)) break;
       if (event.other_answers > 0) ++ambiguous;
       if (event.other_answers < 0) ++unknown;
-      // Of several answers pivots may find another one.
+      // Pivots may find another one of several answers.
       if (event.other_answers != 0 && (event.contact != dense.events[k].contact || event.mode != dense.events[k].mode))
         break;
       CAPTURE(k, dense.events[k].lambda, event.lambda, event.ties, to_string(event.mode),

@@ -262,7 +262,7 @@ def run_difference(program, folder, case):
 
 
 def yade_run_difference(program, folder, case):
-    """As run_difference, of YADE."""
+    """The displacements of YADE at the end of a run differ from those of equidem by this, relative."""
     model = Model(program, folder, case)
     expected = engines.columns(model.equidem("run", "run") / "discs.csv", "ux_m", "uy_m")
     out = model.export("yade")

@@ -80,7 +80,7 @@ TEST_CASE("contacts_without_strength_or_with_equal_strengths_break_in_order") {
              fmt::format("{} ties; {}", perfect.event(0).ties, told(perfect.run())));
 }
 
-TEST_CASE("samples_that_never_break_say_so") {
+TEST_CASE("pressed_and_pulled_samples_close_their_energy_or_say_why_nothing_breaks") {
   HardCase table({.name = "compression and friction 0 and 10",
                   .why = "contacts under compression cannot break in tension, and with friction not in shear"});
   for (const double friction : {0.0, 10.0}) {

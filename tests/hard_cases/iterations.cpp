@@ -71,7 +71,7 @@ double largest_motion(const Equilibrium& state) {
   return largest;
 }
 
-const Assembly strip_of_discs = hexagonal_lattice({.columns = 60, .rows = 50});
+const Assembly block_of_discs = hexagonal_lattice({.columns = 60, .rows = 50});
 constexpr std::int32_t inner_disc = 1465;
 const std::vector<std::string> elimination_serves{"method = \"multifrontal\""};
 
@@ -94,7 +94,7 @@ TEST_CASE("multigrid_solves_strips_and_soft_joints_as_elimination_does_or_names_
   for (const double weak : {1e-2, 1e-6, 1e-10}) {
     CAPTURE(weak);
     table.right(fmt::format("solve, halves joined by contacts {:g} as stiff", weak),
-                solve_by_multigrid(pulled(strip_of_discs, joined_by(strip_of_discs, weak))), 1e-6);
+                solve_by_multigrid(pulled(block_of_discs, joined_by(block_of_discs, weak))), 1e-6);
   }
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("multigrid_converges_or_refuses_near_the_onset_of_rigidity_and_meets_m
       table.right(task, answer, 1e-12);
     }
   }
-  Assembly hinged = strip_of_discs;
+  Assembly hinged = block_of_discs;
   hinged.facet_lengths.clear();
   const auto of_inner = [](const Contact& c) { return c.i == inner_disc || c.j == inner_disc; };
   std::erase_if(hinged.contacts, [&, met = 0](const Contact& c) mutable { return of_inner(c) && ++met > 1; });
@@ -149,12 +149,12 @@ TEST_CASE("multigrid_solves_springs_decades_apart_or_refuses_them") {
     CAPTURE(decades);
     Random random(8);
     const ContactSprings mixed =
-        springs_by(strip_of_discs, [&](Vec2, Vec2) { return std::pow(10.0, 9 + random.uniform(-decades, 0)); });
+        springs_by(block_of_discs, [&](Vec2, Vec2) { return std::pow(10.0, 9 + random.uniform(-decades, 0)); });
     const ContactSprings layers = springs_by(
-        strip_of_discs, [=](Vec2 i, Vec2) { return std::pow(10.0, 9 - decades * std::fmod(20 * i.x, 1.0)); });
+        block_of_discs, [=](Vec2 i, Vec2) { return std::pow(10.0, 9 - decades * std::fmod(20 * i.x, 1.0)); });
     const auto record = [&](const std::string& arranged, const ContactSprings& springs, int most) {
       const std::string task = fmt::format("solve, {}, {}", arranged, counted(decades, "decade"));
-      const Answer answer = solve_by_multigrid(pulled(strip_of_discs, springs));
+      const Answer answer = solve_by_multigrid(pulled(block_of_discs, springs));
       if (decades <= most)
         table.right(task, answer, 1e-9);
       else
@@ -169,7 +169,7 @@ TEST_CASE("multigrid_solves_a_single_load_no_load_and_nothing_to_move") {
   HardCase table({.name = "multigrid with a single load, or none",
                   .why = "the error of one loaded disc is rough on every grid; with no load, or no unknowns, there is "
                          "nothing to divide by"});
-  Problem point = pulled(strip_of_discs);
+  Problem point = pulled(block_of_discs);
   point.assembly.groups["inner"].discs = {inner_disc};
   point.loads = {{.group = "inner", .kind = LoadKind::total, .force = {100, 0}, .moment = 0.1}};
   table.right("solve, force and moment on one disc", solve_by_multigrid(point), 1e-9);
@@ -177,19 +177,19 @@ TEST_CASE("multigrid_solves_a_single_load_no_load_and_nothing_to_move") {
     return solve_equilibrium(problem.assembly, problem.springs, problem.supports, problem.loads,
                              {.rotation = {}, .solver = {.method = SolverMethod::multigrid}});
   };
-  Problem idle = pulled(strip_of_discs);
+  Problem idle = pulled(block_of_discs);
   idle.loads.clear();
   const double moved = largest_motion(state(idle));
   CHECK(moved == 0);
   table.note("solve, no load", "no motion", fmt::format("largest motion {}", moved));
-  for (std::size_t d = 0; d < strip_of_discs.size(); ++d)
+  for (std::size_t d = 0; d < block_of_discs.size(); ++d)
     idle.assembly.groups["all"].discs.push_back(static_cast<int>(d));
   idle.supports = {{.group = "all", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
   idle.loads = pull;
   const Equilibrium held = state(idle);
   double reaction = 0;
   for (const Reaction& r : held.reactions) reaction += r.force.x;
-  const double load = 1000.0 * static_cast<double>(group(strip_of_discs, "right").discs.size());
+  const double load = 1000.0 * static_cast<double>(group(block_of_discs, "right").discs.size());
   CHECK(largest_motion(held) == 0);
   CHECK(reaction == -load);
   table.note(

@@ -104,7 +104,7 @@ TEST_CASE("the_forces_at_rest_of_jammed_bodies_balance_and_are_those_of_their_ov
   CHECK_FALSE(carries_forces(network_of(pack(loose), {.springs = usual, .gap_tolerance = 0.1})));
 }
 
-// What the contacts lack on a body that fell is its weight, and what they exert on the walls is the weight of all.
+// The contacts of a body that fell bear its weight, and those with the walls the weight of all.
 TEST_CASE("the_forces_at_rest_of_bodies_that_fell_balance_their_weight") {
   const PackingShape shape = GENERATE(from_range(networked_shapes()), PackingShape{.kind = Kind::bonded_pair});
   PackingOptions options = falling_soil(30, 0.12);
@@ -137,7 +137,7 @@ TEST_CASE("the_forces_at_rest_of_bodies_that_fell_balance_their_weight") {
     CHECK(norm(lack) < 1e-4 * mean);
     CHECK(std::abs(moments[k]) < 1e-4 * mean * assembly.radii[k]);
   }
-  // Told without the walls, whose mirrors lack all that they hold up.
+  // The walls are left out: their mirrors lack all that they hold up.
   const RestBalance balance = balance_at_rest(assembly, assembly.groups.at("walls").discs);
   CHECK(balance.disc_of_force < static_cast<std::int32_t>(held.bodies.size()));
   CHECK(balance.largest_force ==

@@ -180,7 +180,7 @@ TEST_CASE("moduli_of_a_prestressed_cell_are_those_of_strained_cells_that_relax")
   REQUIRE(chosen);
   CAPTURE(aspect, overlap, part.discs.size(), part.assembly.contacts.size(), residual, chosen->sentence);
   REQUIRE(chosen->springs.prestressed());
-  CHECK(chosen->balance.relative < 1e-5);  // of a body that rattles
+  CHECK(chosen->balance.relative < 1e-5);  // a body that rattles has the largest
 
   const EffectiveStiffness found = effective_stiffness(assembly, chosen->springs);
 

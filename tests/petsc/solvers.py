@@ -31,7 +31,7 @@ def every_solver_of_petsc_finds_the_same_motions(folder):
     assert np.linalg.norm(found - expected) <= 1e-10 * np.linalg.norm(expected)
 
 
-def grids_of_equidem(folder):
+def grids_of_equidem():
     """The cases of blocks and cells that the grids of equidem solve, with the keys that make them larger."""
     yield "lattice", "solve", CASES / "abe1996_fig6.toml", ("--set", "assembly.columns=81", "--set", "assembly.rows=91")
     yield "points", "solve", CASES / "delaunay_tension.toml", ("--set", "assembly.discs=6000")
@@ -45,7 +45,7 @@ def grids_of_equidem(folder):
 def the_grids_of_equidem_take_as_many_iterations_on_every_number_of_ranks(folder):
     """They span the assembly; blocks of ranks on their own would take more iterations with every rank. GAMG, whose
     aggregates end at ranks, is beside it."""
-    for name, verb, case, arguments in grids_of_equidem(folder):
+    for name, verb, case, arguments in grids_of_equidem():
         found = {}
         for kind in ("gamg", "equidem"):
             for ranks in (1, 2, 4):

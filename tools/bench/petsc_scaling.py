@@ -33,7 +33,7 @@ stress = 1.0e6
 LATENCY, BANDWIDTH = 2e-6, 10e9  # s, B/s
 SQRT3 = math.sqrt(3)
 LARGE = 4e5  # discs
-# Of a disc at the peak, until larger ones were measured here: B.
+# B: what a disc takes at the peak, which the first large run replaces by what it measured.
 MEMORY_OF_DISC = 4500
 PRECONDITIONERS = {"gamg": "GAMG", "equidem": "equidem"}
 

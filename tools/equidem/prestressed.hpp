@@ -18,7 +18,7 @@ Problem prestressed(Problem problem);
 /// \throws Error (bad_input) as choose_prestress
 bool prestress_counts(const Problem& problem);
 
-/// What was decided, or that the verb takes no such forces.
+/// Tells what was decided, or that the verb takes no such forces.
 void add_forces_at_rest(Results& results, const Problem& problem);
 
 }  // namespace equidem

@@ -250,6 +250,8 @@ class Case:
         ----------
         to
             "lammps", "yade", "pfc", ...: what ``equidem export --to`` takes.
+        options
+            Those of the verb; ``accept="friction"`` exports what the program computes otherwise, as its refusal says.
 
         Raises
         ------

@@ -16,7 +16,7 @@ from common import Failure, call, number, result_of, table, tell
 
 HERE = Path(__file__).resolve().parent
 RADIUS, KN, KT, FRICTION = 0.5e-3, 1e9, 0.4e9, 0.5
-TENSION, MODULUS = 1e3, 6.0  # N/m: motions are 1e-6 of a radius
+TENSION, MODULUS = 1e3, 6.0  # N/m: a contact breaks at an opening of TENSION/KN = 1e-6 m, 0.002 of a radius
 HEADING = "## Beside YADE\n"
 SCENE = f"""[springs]
 kN = {KN}

@@ -19,7 +19,7 @@
 namespace equidem {
 namespace {
 
-/// Of one sample where neither the assembly nor the strengths are random.
+/// Samples as asked for; one where neither the assembly nor the strengths are random.
 std::int64_t number_of_samples(const Case& resolved) {
   const bool scattered = resolved.strength && resolved.strength->weibull_modulus;
   return resolved.assembly.random() || scattered ? resolved.strength_target->samples : 1;

@@ -10,7 +10,9 @@
 
 namespace equidem {
 
-/// \param file of the strengths found; none: strength.toml in --out
+/// Carries out the verb, and returns the exit code.
+/// \param file to which the strengths found are written; none: strength.toml in --out
+/// \throws Error (bad_input) where [material] stands beside [strength_target]; as calibrate_strength
 int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read);
 
 }  // namespace equidem

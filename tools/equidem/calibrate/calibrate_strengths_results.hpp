@@ -9,7 +9,8 @@
 
 namespace equidem {
 
-/// \param first of the samples
+/// Report and JSON.
+/// \param first sample, whose width the report tells
 Results strength_results(const Problem& problem, const StrengthSample& first, const StrengthCalibration& found);
 
 }  // namespace equidem

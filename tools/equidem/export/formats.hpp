@@ -31,8 +31,9 @@ struct Exported {
   std::function<void(const CommonOptions&)> write_case = {};  ///< write_case of the resolved case
 };
 
+/// Options of the verb.
 struct ExportOptions : CommonOptions {
-  std::string to;
+  std::string to;                   ///< name of the format
   std::vector<std::string> accept;  ///< words of EngineFeatureRow::accept
 };
 

@@ -119,7 +119,7 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
   return result;
 }
 
-/// Table and plot. Returns a line for the report.
+/// Writes the table and the plot. Returns a line for the report.
 std::string write_harmonic(const CommonOptions& into, const std::string& title, const ViscoelasticStiffness& result) {
   write_csv(*into.out / viscoelastic_table_name, viscoelastic_table(result), true);
   return write_plot(*into.out, moduli_over_frequency, viscoelastic_plot(title, result), true).message + "\n";

@@ -19,7 +19,8 @@ namespace equidem {
 inline constexpr const char* viscoelastic_table_name = "viscoelastic.csv";
 inline constexpr const char* moduli_over_frequency = "moduli_over_frequency";
 
-/// Key: viscoelastic: {normal, tangential, unknowns, harmonic: list of {frequency, moduli each {storage, loss}, ...}}.
+/// The JSON has viscoelastic: {normal, tangential, solver, factor_bytes, harmonic: [{frequency, moduli as {storage,
+/// loss}, ...}, ...]}.
 Results viscoelastic_results(const Viscoelasticity& springs, const ViscoelasticStiffness& result);
 /// One row for each frequency.
 Table viscoelastic_table(const ViscoelasticStiffness& result);

@@ -144,8 +144,8 @@ void add_trust(Results& out, const UnbondedRun& run) {
   }
   if (counters.unchecked > 0) {
     out.line("",
-             "where more contacts are on their limits than have combinations to try, other answers were looked for "
-             "among the contacts of the event");
+             "where too many contacts are on their limits to try all combinations, other answers were looked for among "
+             "the contacts of the event");
   }
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);

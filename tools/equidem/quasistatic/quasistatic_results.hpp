@@ -24,7 +24,7 @@ struct QuasistaticOutcome {
 
 /// Events, avalanches, energies, stability, residual.
 Results quasistatic_results(const QuasistaticOutcome& outcome, const BreakageRun& run, const BreakableSystem& system);
-/// The same of contacts without a bond: slip and uniqueness beside them.
+/// Events, energies with the loss by slip, uniqueness and residual where contacts rub.
 Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun& run);
 
 }  // namespace equidem

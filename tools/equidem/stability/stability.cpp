@@ -61,7 +61,7 @@ Problem under_loads(Problem problem) {
   return problem;
 }
 
-/// Of the names of files of the mode that is lost at the critical load.
+/// Names of files of the mode that is lost at the critical load end like this.
 constexpr const char* buckling_suffix = "_buckling";
 
 void draw_mode(const CommonOptions& options, const Problem& problem, const Stability& result) {

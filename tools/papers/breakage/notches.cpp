@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
 #include <cmath>
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/calibrate/strength_test.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/core/threads.hpp"
 
 #include "breakage/breakage.hpp"
 

@@ -161,7 +161,8 @@ std::string sizes_text(const std::vector<WeibullSize>& sizes, bool with_theory) 
   return text;
 }
 
-/// Of plates of one modulus: the exponents of the mean and of the scatter between the two largest sizes.
+/// The exponents, for each modulus, of the mean strength of plates between the two smallest and the two largest sizes,
+/// and of its scatter between the smallest and the largest.
 std::string weakening_text(const Weibull& weibull) {
   std::string text =
       header({"m", "weakest link, -1/m", "exponent, two smallest", "two largest", "exponent of the scatter"});

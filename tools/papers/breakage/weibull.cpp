@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/calibrate/strength_test.hpp"
