@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The geometric stiffness of a contact is the derivative of the forces of finite motions that runs use.
-#include "equidem/contact/prestress.hpp"
+#include "equidem/contact/prestress/prestress.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"

@@ -9,7 +9,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/packing/network.hpp"
 #include "equidem/statics/number_unknowns.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"

@@ -10,9 +10,9 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/power_cells.hpp"
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/load_bearing.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 
 namespace equidem {

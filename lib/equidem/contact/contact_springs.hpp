@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/prestress.hpp"
+#include "equidem/contact/prestress/prestress.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/material/spring_constants.hpp"
 

@@ -13,7 +13,7 @@
 #include <array>
 
 #include "equidem/contact/frame.hpp"
-#include "equidem/contact/prestress.hpp"
+#include "equidem/contact/prestress/prestress.hpp"
 #include "equidem/material/spring_constants.hpp"
 
 namespace equidem {

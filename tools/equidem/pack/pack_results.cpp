@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"

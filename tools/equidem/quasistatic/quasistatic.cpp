@@ -10,7 +10,7 @@
 
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -123,6 +123,8 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
 }
 
 /// The events of an earlier computation of the same case.
+/// Frames, and the history of contacts that rub, are not kept in the table of events: with them every event is computed
+/// again.
 void resume(const CommonOptions& options, Sequence& sequence) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
   if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return;
@@ -130,7 +132,8 @@ void resume(const CommonOptions& options, Sequence& sequence) {
     bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  sequence.brittle->resume(read_events(table, *sequence.brittle, sequence.scene()));
+  if (sequence.brittle && sequence.problem.resolved.quasistatic.frame_every == 0)
+    sequence.brittle->resume(read_events(table, *sequence.brittle, sequence.scene()));
 }
 
 /// \return whether the path has come to its end; false: the user asked to stop
@@ -186,9 +189,7 @@ int quasistatic(const QuasistaticOptions& given) {
   Sequence sequence(build(resolved));
   if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
-  // Frames, and the history of contacts that rub, are not kept in the table of events: with them every event is
-  // computed again.
-  if (given.resume && resolved.quasistatic.frame_every == 0 && sequence.brittle) resume(options, sequence);
+  if (given.resume) resume(options, sequence);
   write_case(options, sequence.problem.resolved);
   const bool done = go(options, sequence);
   const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size()};

@@ -23,7 +23,7 @@
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/bounds.hpp"

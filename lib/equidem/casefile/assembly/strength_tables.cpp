@@ -40,7 +40,7 @@ std::vector<Key<StrengthOptions>> strength_keys() {
           key("after_breaking", &S::after_breaking,
               "gone: a broken contact carries nothing; rubs: it opens, closes, sticks and slips. Contacts whose "
               "strengths are both 0 are then no bonds from the start"),
-          key("residual_friction", &S::residual_friction, not_negative,
+          key("residual_friction", &S::residual_friction, not_negative, when("after_breaking", {"rubs"}),
               "coefficient of friction of contacts without a bond, where they rub; left out: friction")};
 }
 
@@ -83,11 +83,9 @@ void check_strength_target(const TomlValue& root) {
               "calibrate looks for it; friction, bond_length and weibull_modulus of [strength] are kept",
               "Remove one of them");
   }
-  for (const char* name : {"after_breaking", "residual_friction"}) {
-    if (const TomlValue* given = strength->find(name); given != nullptr)
-      fail_at(*given, fmt::format("strength.{}", name), "it is given beside [strength_target]",
-              "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");
-  }
+  if (const TomlValue* given = strength->find("after_breaking"); given != nullptr && given->text == "rubs")
+    fail_at(*given, "strength.after_breaking", "\"rubs\" is given beside [strength_target]",
+            "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");
 }
 
 }  // namespace equidem::casefile

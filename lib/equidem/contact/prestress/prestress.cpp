@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/contact/prestress.hpp"
+#include "equidem/contact/prestress/prestress.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/contact/prestress_choice.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 
 #include <algorithm>
 #include <cmath>

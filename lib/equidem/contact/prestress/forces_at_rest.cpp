@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/contact/forces_at_rest.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 
 #include <algorithm>
 #include <cmath>
