@@ -203,3 +203,40 @@ TEST_CASE("a_contact_that_sticks_under_a_steady_load_does_not_creep") {
   CHECK(tangential > 0.01);
   CHECK(norm(rest.velocity) + std::abs(rest.spin) < 1e-12);
 }
+
+TEST_CASE("what_sticks_stretches_its_springs_by_the_way_of_the_bodies_however_long_the_step") {
+  // A disc that a piston drives slowly into a corner: its normal forces grow all the time and pull askew at the springs
+  // of the others. Between plane walls the stretch is linear in the way of the disc, exactly.
+  const double phase = GENERATE(0.1, 0.5, 1.0);
+  const double degrees = GENERATE(200.0, 260.0);
+  GrainScene scene;
+  scene.grains = {ball({1, 1}, 1)};
+  const Vec2 inwards{-0.5, -std::sqrt(0.75)};
+  scene.walls = {line("floor", {}, {0, 1}), line("left", {}, {1, 0}), line("piston", Vec2{1, 1} - inwards, inwards)};
+  const Vec2 way{1e-4 * std::cos(degrees * degree), 1e-4 * std::sin(degrees * degree)};
+  constexpr double duration = 2000;
+  scene.walls[2].move_x = {Schedule::Kind::ramp, way.x, 0, duration};
+  scene.walls[2].move_y = {Schedule::Kind::ramp, way.y, 0, duration};
+  PairProperties pair;
+  pair.stiffness = 1;
+  pair.restitution = 0.2;
+  pair.friction = 100;
+  pair.tangential_damping = 0.2;
+  pair.tangential_ratio = 0.5;
+  scene.pairs = {pair};
+  GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, phase));
+  simulation.advance(static_cast<std::int64_t>(1.2 * duration / phase));
+  const Grain disc = simulation.grains().front();
+  const Vec2 went = disc.position - Vec2{1, 1};
+  const EnergyLedger ledger = simulation.energy();
+  CHECK(simulation.contacts().size() == 3);
+  for (const GrainContact& contact : simulation.contacts()) {
+    const Vec2 relative = (contact.j == ~2 ? way : Vec2{}) - went;
+    const double stretch = dot(relative, perpendicular(contact.normal)) - disc.angle;
+    CAPTURE(phase, degrees, contact.j, stretch, contact.tangential_force, contact.normal_force, ledger.lost_slip);
+    CHECK(std::abs(stretch) > 1e-6);
+    CHECK(std::abs(contact.tangential_force / (-0.5 * stretch) - 1) < 1e-9);
+  }
+  CAPTURE(phase, degrees, ledger.error(), ledger.work_of_walls, norm(disc.velocity));
+  CHECK(std::abs(ledger.error()) < 1e-6 * ledger.work_of_walls);
+}

@@ -248,7 +248,7 @@ TEST_CASE("the_ledger_of_many_contacts_closes_with_the_step") {
   const double order = std::log2(errors.front() / errors.back()) / 3;
   CAPTURE(stepping.name(), errors, order);
   const bool exact = stepping.law == NormalLaw::exact_flow;
-  CHECK(errors.back() < (exact ? 2e-5 : 0.03));
+  CHECK(errors.back() < (exact ? 1e-6 : 0.03));
   if (!is_map(stepping.law)) CHECK(order > (exact ? 1.6 : 0.8));
 }
 

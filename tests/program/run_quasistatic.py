@@ -128,7 +128,7 @@ class Quasistatic(ProgramTest):
         case = self.folder / "run.toml"
         bodies = "".join(f"[[grain]]\nposition = [{x}, {y}]\nradius = {r}\n" for x, y, r in grains)
         case.write_text(f'schema = "equidem/1"\n[grains]\ndensity = 2500.0\n{bodies}[collisions]\n'
-                        f'law = "linear_dashpot"\ndamping = 0.5\nstiffness = 1e9\nfriction = {friction}\n'
+                        f'damping = 0.5\nstiffness = 1e9\nfriction = {friction}\n'
                         f'tangential_ratio = 0.5\n{walls}[run]\n{rest}[output]\npicture = false\n')
         done = equidem("run", case, "--json", "-")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -167,8 +167,9 @@ class Quasistatic(ProgramTest):
                                  f'[[support]]\ngroup = "piston"\nux = {way * along[0]}\nuy = {way * along[1]}\n'
                                  "rotation = true\n", friction)
             self.assertGreater(still["friction"], 0.01 * still["elastic"])
-            self.assertAlmostEqual(still["elastic"] / moved["elastic"], 1, delta=0.01)
-            self.assertAlmostEqual(still["friction"] / moved["lost_slip"], 1, delta=0.01)
+            self.assertAlmostEqual(still["elastic"] / moved["elastic"], 1, delta=1e-6)
+            # While the piston moves the dashpot adds to the normal force, and so to friction.
+            self.assertAlmostEqual(still["friction"] / moved["lost_slip"], 1, delta=0.002)
 
     def test_broken_contacts_that_rub_open_close_slip_and_stick(self):
         case = CASES / "rubbing_notch.toml"

@@ -55,7 +55,7 @@ SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, do
 /// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only
 /// loses it. kT = c = 0: at most what stops the slip within the step, so that a slip that stops stays stopped; under a
 /// steady outside acceleration g that friction can hold, a slip of g dt/2 remains.
-/// \param velocity at the start of the step plus half its change by other forces over the step
+/// \param velocity mean over the step as all other forces make it: of constant ones, at the start plus half its change
 /// \param mass effective tangential mass: 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), kg
 SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double mass, double normal_force,
                                   double step);

@@ -139,14 +139,16 @@ double solve(GrainSystem& system, Trial& trial) {
   if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
     ContactGeometry geometry{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
     const double mass = tangential_mass(system, candidate, geometry);
-    double gained = dot(outside.velocity, perpendicular(trial.normal));
-    const auto i = static_cast<std::size_t>(candidate.i);
-    gained -= trial.lever_i * system.bodies.constants[i].inverse_moment * system.bodies.impulses[i].torque;
-    if (candidate.j >= 0) {
-      const auto j = static_cast<std::size_t>(candidate.j);
-      gained -= trial.lever_j * system.bodies.constants[j].inverse_moment * system.bodies.impulses[j].torque;
-    }
-    const double velocity = slip_velocity(system, candidate, geometry, relative) + 0.5 * gained;
+    // The spring follows the way that the bodies go. Half the change of velocity is not that way where other forces
+    // change within the step: a load that grows to an acceleration g would leave the stretch wrong by g dt²/12.
+    const auto turned = [&](std::int32_t body, double lever) {
+      const auto k = static_cast<std::size_t>(body);
+      return lever * system.bodies.constants[k].inverse_moment * system.bodies.impulses[k].torque;
+    };
+    double turning = turned(candidate.i, trial.lever_i);
+    if (candidate.j >= 0) turning += turned(candidate.j, trial.lever_j);
+    const double velocity = slip_velocity(system, candidate, geometry, relative) +
+                            dot(outside.way, perpendicular(trial.normal)) / dt - 0.5 * turning;
     trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, mass,
                                                std::max(trial.impulse, 0.0) / dt, dt);
     trial.tangential = trial.sliding_step.force * dt;

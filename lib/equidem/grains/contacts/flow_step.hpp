@@ -7,6 +7,9 @@
 /// until convergence. The normal is the mean normal of the step, (r + r')/|r + r'|, and the displacement along it is
 /// scaled to the change of the distance: the step is reversible in time, and elastic impacts conserve energy on
 /// average.
+///
+/// The tangential force is constant over the step, its spring stretched by the way of the bodies, the moments of normal
+/// forces included: slow loads lead to the forces of statics at any step.
 #pragma once
 
 #include "equidem/grains/grain_system.hpp"
