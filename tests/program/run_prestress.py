@@ -50,10 +50,13 @@ class Prestress(ProgramTest):
         (self.folder / "unbalanced.json").write_text(json.dumps(assembly))
         on = ("--set", "effects.prestress=on")
         self.refused(["do not balance", "disc"], "homogenize", self.case_of("unbalanced.json"), *on)
+        assembly = json.loads((packed / "assembly.json").read_text())
         del assembly["curvatures"]
-        assembly["forces"][largest] = [-1e-9, 0.0]
         (self.folder / "unknown.json").write_text(json.dumps(assembly))
-        self.refused([], "homogenize", self.case_of("unknown.json"), *on)
+        self.refused(["curvatures"], "homogenize", self.case_of("unknown.json"), *on)
+        self.refused(["quasistatic takes no prestress"], "quasistatic", case, *on)
+        matrices = ("export", case, "--to", "matrix-market", "--out", self.folder / "matrices")
+        self.refused(["forces at rest", "matrix-market"], *matrices)
 
     def test_bodies_that_fell_carry_forces_that_balance_their_weight(self):
         packed = self.folder / "fallen"

@@ -84,7 +84,17 @@ Case read_case(const CommonOptions& options) {
   prepare(options);
   Case resolved = read_case(options.case_file, overrides_of(options));
   check_viscoelastic(resolved, options.verb);
+  check_prestress(resolved, options.verb);
   return resolved;
+}
+
+void check_prestress(const Case& resolved, std::string_view verb) {
+  constexpr std::string_view takers[] = {"solve", "homogenize", "stability", "sweep"};
+  if (resolved.prestress != PrestressChoice::on || std::ranges::find(takers, verb) != std::end(takers)) return;
+  bad_input_at(resolved.where("effects.prestress"),
+               fmt::format("{} takes no prestress, and the case asks for it", verb),
+               "its answer would be that of the springs alone",
+               "Remove effects.prestress; solve, homogenize and stability take it");
 }
 
 void OutputPlan::expect(const std::string& name) const {

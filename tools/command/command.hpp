@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -56,6 +57,8 @@ void prepare(const CommonOptions& options);
 std::vector<std::string> overrides_of(const CommonOptions& options);
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
+/// \throws Error (bad_input), with the line of the case file, where prestress is asked for and a verb takes none
+void check_prestress(const Case& resolved, std::string_view verb);
 
 /// Checks before the computation that the files of a verb can be written.
 class OutputPlan {

@@ -5,6 +5,7 @@
 
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 
@@ -24,6 +25,13 @@ bool prestress_counts(const Problem& problem) {
   if (!carries_forces(problem.assembly)) return false;
   const auto choice = choice_for(problem);
   return choice && choice->springs.prestressed();
+}
+
+void refuse_prestress(const Problem& problem, std::string_view taker) {
+  if (!prestress_counts(problem)) return;
+  bad_input(fmt::format("the forces at rest of the assembly count, and {} takes none", taker),
+            "its stiffness would be that of the springs alone",
+            "Set effects.prestress = \"off\", or use solve, homogenize or stability");
 }
 
 Problem prestressed(Problem problem) {

@@ -3,6 +3,8 @@
 /// The forces at rest of the contacts of a problem.
 #pragma once
 
+#include <string_view>
+
 #include "equidem/output/results.hpp"
 
 #include "problem.hpp"
@@ -17,6 +19,10 @@ Problem prestressed(Problem problem);
 /// Whether the forces at rest of the assembly, if it carries some, count.
 /// \throws Error (bad_input) as choose_prestress
 bool prestress_counts(const Problem& problem);
+
+/// \param taker of the springs alone
+/// \throws Error (bad_input) where the forces at rest count
+void refuse_prestress(const Problem& problem, std::string_view taker);
 
 /// Tells what was decided, or that the verb takes no such forces.
 void add_forces_at_rest(Results& results, const Problem& problem);

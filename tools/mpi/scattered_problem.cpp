@@ -12,6 +12,7 @@
 
 #include "part_problem.hpp"
 #include "petsc/scattered_part.hpp"
+#include "prestressed.hpp"
 
 namespace equidem {
 namespace {
@@ -71,6 +72,7 @@ void scatter_problem(const petsc::Ranks& ranks, PartProblem& p, bool homogenize)
     Case resolved = p.problem.resolved;
     whole.problem.emplace(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved)));
     const Problem& problem = *whole.problem;
+    refuse_prestress(problem, "equidem-mpi");
     whole.effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
     p.of_problem = problem_results(problem, whole.effects);
     p.problem.tension = problem.tension;

@@ -14,6 +14,7 @@
 
 #include "command.hpp"
 #include "export/formats.hpp"
+#include "prestressed.hpp"
 #include "problem.hpp"
 
 namespace equidem {
@@ -150,6 +151,7 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   const bool loaded = acts(resolved);
   const auto problem =
       std::make_shared<const Problem>(loaded ? build_problem(std::move(resolved)) : problem_of(std::move(resolved)));
+  refuse_prestress(*problem, "export --to matrix-market");
   StageTimes times = problem->times;
   Stopwatch watch;
   const auto system = std::make_shared<const LinearSystem>(equations_of(*problem));
