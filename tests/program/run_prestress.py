@@ -54,6 +54,7 @@ class Prestress(ProgramTest):
         del assembly["curvatures"]
         (self.folder / "unknown.json").write_text(json.dumps(assembly))
         self.refused(["curvatures"], "homogenize", self.case_of("unknown.json"), *on)
+        case = self.case_of(packed / "assembly.json")
         self.refused(["quasistatic takes no prestress"], "quasistatic", case, *on)
         matrices = ("export", case, "--to", "matrix-market", "--out", self.folder / "matrices")
         self.refused(["forces at rest", "matrix-market"], *matrices)
