@@ -10,8 +10,8 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/power_cells.hpp"
-#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/load_bearing.hpp"

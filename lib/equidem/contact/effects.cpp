@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/effects.hpp"
 
-#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 

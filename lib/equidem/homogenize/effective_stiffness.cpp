@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "equidem/assembly/touching.hpp"
-#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
