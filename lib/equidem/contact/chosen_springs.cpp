@@ -10,11 +10,13 @@ ContactSprings chosen_springs(const ContactSprings& springs, const std::vector<s
   ContactSprings result = springs.with_prestress({});
   if (!springs.uniform() && !contacts.empty()) {
     std::vector<SpringConstants> each;
+    each.reserve(contacts.size());
     for (const std::int32_t c : contacts) each.push_back(springs[static_cast<std::size_t>(c)]);
     result = ContactSprings(std::move(each));
   }
   if (!springs.prestressed()) return result;
   std::vector<ContactPrestress> prestress;
+  prestress.reserve(contacts.size());
   for (const std::int32_t c : contacts) prestress.push_back(*springs.prestress(static_cast<std::size_t>(c)));
   return result.with_prestress(std::move(prestress));
 }

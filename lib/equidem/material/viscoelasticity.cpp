@@ -133,6 +133,7 @@ std::vector<double> logarithmic_frequencies(double lowest, double highest, int p
   }
   const auto steps = static_cast<int>(count);
   std::vector<double> result;
+  result.reserve(static_cast<std::size_t>(steps) + 1);
   for (int k = 0; k < steps; ++k) result.push_back(lowest * std::pow(highest / lowest, static_cast<double>(k) / count));
   result.push_back(highest);
   return result;
