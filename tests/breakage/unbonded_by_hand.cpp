@@ -134,6 +134,41 @@ TEST_CASE("a_gap_closes_where_the_disc_has_crossed_it") {
   }
   CHECK(walls.run().leg_points()[1].motion == Approx(1.5 * gap).epsilon(1e-12));
   CHECK(walls.run().energy_error() < 1e-12);
+  options.legs = {2 * normal_spring * gap};
+  Unbonded closed(chain, stiff_and_soft, strengths, options, {0.3, {{0, 0}, {normal_spring * gap, 0}}});
+  closed.all();
+  CHECK(closed.run().load_left(1.2 * gap) == Approx(1.4 * normal_spring * gap).epsilon(1e-12));
+}
+
+TEST_CASE("the_gap_to_the_next_bond_is_one_of_lambda_whatever_leg_it_is_on") {
+  Assembly chain = chain_of_discs(3, 1);
+  chain.groups["middle"] = {{1}, {}};
+  ContactStrengths strengths = equal_strengths(chain, 2, 1e9);
+  strengths.tension[1] = 3;
+  LoadPathOptions options;
+  options.supports = {{"middle", 0, 0, 0}, {"first", {}, 0, 0}, {"last", {}, 0, 0}};
+  options.loads = {{"first", LoadKind::per_disc, {-1, 0}, 0}, {"last", LoadKind::per_disc, {1, 0}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {1, 10};
+  Unbonded pulled(chain, stiff_and_soft, strengths, options, {0.3, {}});
+  pulled.all();
+  REQUIRE(!pulled.events().empty());
+  CHECK(pulled.event(0).lambda == Approx(2).epsilon(1e-12));
+  CHECK(pulled.event(0).gap == Approx(0.5).epsilon(1e-12));
+}
+
+TEST_CASE("forces_at_rest_beyond_friction_are_refused") {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", {}, {}, 0}};
+  options.loads = {{"last", LoadKind::per_disc, {-1, 0}, 0}};
+  options.control = LoadControl::load;
+  const Assembly pair = chain_of_discs(2, 1);
+  const auto with = [&](ContactForce rest) {
+    Unbonded(pair, stiff_and_soft, equal_strengths(pair, 0, 0), options, {0.5, {rest}});
+  };
+  CHECK_NOTHROW(with({-2, 0.99}));
+  CHECK_THROWS_WITH(with({-2, 1.01}), Catch::Contains("carries |T| up to 1 N/m"));
+  CHECK_THROWS_WITH(with({2, 0.1}), Catch::Contains("no bond"));
 }
 
 TEST_CASE("a_disc_in_a_wedge_sticks_or_slips_at_once") {

@@ -44,6 +44,7 @@ enum class PathEnd {
   never_breaks,     ///< no contact breaks at any lambda
   carries_nothing,  ///< no contact carries a force that grows with lambda
   load_moves_part,  ///< a load acts on a part that nothing holds, or drives a mechanism
+  no_answer,        ///< no states of contacts that rub agree with their rates, or they change without end
   most_events,      ///< LoadPath::max_events
 };
 
@@ -56,6 +57,7 @@ struct EnumNames<PathEnd> {
                                                  {never_breaks, "never_breaks"},
                                                  {carries_nothing, "carries_nothing"},
                                                  {load_moves_part, "load_moves_part"},
+                                                 {no_answer, "no_answer"},
                                                  {most_events, "most_events"}};
 };
 

@@ -143,9 +143,10 @@ void add_trust(Results& out, const UnbondedRun& run) {
                              counters.largest_motion_difference, counters.largest_load_difference));
   }
   if (counters.unchecked > 0) {
-    out.line("",
-             "where too many contacts are on their limits to try all combinations, other answers were looked for among "
-             "the contacts of the event");
+    out.line(
+        "",
+        "not decided are increments with too many contacts on limits to try all combinations (those of the contacts "
+        "of the event were), or with a combination that has no unique rates");
   }
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);

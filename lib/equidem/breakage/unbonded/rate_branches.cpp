@@ -136,7 +136,11 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
         system[r * n + q + 1] += c[r * n + q + 1] * (then.tt - now.tt);
       }
     }
-    if (!differs || factorize_dense(system, pivots) < singular) continue;
+    if (!differs) continue;
+    if (factorize_dense(system, pivots) < singular) {
+      result.all_tried = false;
+      continue;
+    }
     d = d0;
     solve_dense(system, pivots, d);
     double change = 0, size = largest;

@@ -22,7 +22,7 @@ namespace equidem {
 inline constexpr std::int64_t most_branches = 4096;
 
 struct Branches {
-  bool all_tried = false;              ///< every combination of the contacts on limits; false: they are too many
+  bool all_tried = false;              ///< every combination; false: they are too many, or one has no unique rates
   std::int64_t others = 0;             ///< answers with other rates than the one given
   std::vector<ContactStatus> other{};  ///< per contact, of the first of them; empty: none
 };

@@ -40,6 +40,23 @@ std::vector<ContactStatus> first_status(const BreakageScene& scene, std::span<co
   return status;
 }
 
+/// Forces at rest that the law of contacts without a bond cannot carry.
+void check_rest(const BreakageScene& scene, const UnbondedOptions& options) {
+  constexpr double settled = 1e-6;  // of the largest: what bodies that came to rest leave beyond the law
+  double largest = 0;
+  for (const ContactForce& f : options.rest) largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
+  for (std::size_t c = 0; c < options.rest.size(); ++c) {
+    if (is_bond(scene.strengths, c)) continue;
+    const ContactForce& f = options.rest[c];
+    const double limit = options.friction * std::max(-f.normal, 0.0);
+    if (std::abs(f.tangential) <= limit + settled * largest) continue;
+    bad_input(
+        fmt::format("contact {} has the forces at rest N = {:g}, T = {:g} N/m and no bond", c, f.normal, f.tangential),
+        fmt::format("with the friction {:g} it carries |T| up to {:g} N/m", options.friction, limit),
+        "Give the friction with which the bodies came to rest (strength.residual_friction), or a bond");
+  }
+}
+
 void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
   if (scene.springs.any_negative()) {
     bad_input("a tangential spring is negative, and contacts slip",
@@ -59,6 +76,7 @@ void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
     bad_input("the load is held, and a motion is imposed", "the motion would have to follow the load, not lambda",
               "Take control = \"motion\", or drive by loads");
   }
+  check_rest(scene, options);
 }
 
 }  // namespace
@@ -88,6 +106,11 @@ double UnbondedRun::direction(std::int64_t leg) const {
 
 bool UnbondedRun::by_motion() const {
   return dead_done_ && scene_.path.driven_by == DrivenBy::loads && scene_.path.control == LoadControl::motion;
+}
+
+double UnbondedRun::load_left(double motion) const {
+  const double slope = motion_rate_ != 0 ? load_rate_ / motion_rate_ : 0;
+  return state_->load() + slope * (motion - state_->mean_motion());
 }
 
 UnbondedCounters UnbondedRun::counters() const {
@@ -122,7 +145,7 @@ bool UnbondedRun::find_rates() {
     std::optional<RateAnswer> other = pivot_rates(problem, solver_, state_->status());
     if (!other) {
       if (answer.agrees) record_changes(answer.status);
-      end(PathEnd::load_moves_part, sentence_on(answer));
+      end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(answer));
       return false;
     }
     answer = std::move(*other);
@@ -244,10 +267,11 @@ void UnbondedRun::record_changes(std::span<const ContactStatus> after) {
     events_[k].ties = static_cast<std::int64_t>(events_.size() - first - 1);
 }
 
-void UnbondedRun::break_bond(const NextContactEvent& next) {
+void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
   BreakEvent event = event_of(next.contact, *next.breaks);
   event.ties = next.ties;
-  event.gap = next.gap;
+  // The gap of t, as one of lambda.
+  if (!releasing()) event.gap = next.gap * next.t * std::abs(lambda_rate / state_->lambda());
   const std::size_t c = next.contact;
   const double n = state_->normal_coordinate(c), t = state_->forces()[c].tangential;
   ContactStatus status = ContactStatus::stuck;
@@ -313,7 +337,7 @@ bool UnbondedRun::advance() {
       break;
     }
     if (++still_ > most_still) {
-      end(PathEnd::load_moves_part, "contacts change without end at the same lambda");
+      end(PathEnd::no_answer, "contacts change without end at the same lambda");
       break;
     }
     if (t > 0) {
@@ -326,9 +350,10 @@ bool UnbondedRun::advance() {
       motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
       counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());
     }
+    const double lambda_rate = rates_->lambda;
     rates_.reset();
     if (next.t <= stage && next.breaks) {
-      break_bond(next);
+      break_bond(next, lambda_rate);
     } else if (stage <= next.t) {
       finish_stage();
     }

@@ -57,7 +57,8 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
   [[nodiscard]] double lambda() const override { return state_->lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }
-  [[nodiscard]] double load_left(double) const override { return state_->load(); }
+  /// At motions since the last event.
+  [[nodiscard]] double load_left(double motion) const override;
   [[nodiscard]] double elastic_energy() const override { return state_->ledger().elastic; }
   [[nodiscard]] double released() const override { return state_->ledger().released; }
   [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
@@ -74,7 +75,7 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] std::string sentence_on(const RateAnswer& answer) const;
   [[nodiscard]] double stage_end() const;
   void finish_stage();
-  void break_bond(const NextContactEvent& next);
+  void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
   void end(PathEnd why, std::string sentence);
