@@ -65,7 +65,7 @@ def homogenize(cell: Assembly, springs: Any = None, *, accuracy: float | None = 
 
 
 def calibrate(cell: Assembly, *, plane: str = "strain", weighting: str | None = None, **moduli: Any) -> Result:
-    """Springs that give an assembly two wanted moduli.
+    """Springs that give an assembly two wanted moduli. Strengths of contacts are found by `Case.calibrate`.
 
     Parameters
     ----------
