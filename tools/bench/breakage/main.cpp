@@ -71,8 +71,10 @@ Scene build(const Request& request, const std::string& kind, double discs) {
   Scene scene{.assembly = notched(build_assembly(kind, std::llround(discs), 0.005), request.notch)};
   scene.effects = derive_effects(scene.springs, Rotation::from_scene);
   scene.unknowns = number_unknowns(scene.assembly, scene.springs, scene.effects, scene.supports);
-  scene.path = make_load_path(scene.assembly, scene.springs, scene.effects,
-                              {.supports = scene.supports, .loads = {{"top", LoadKind::per_disc, {0, 1}, 0}}});
+  LoadPathOptions path;
+  path.supports = scene.supports;
+  path.loads = {{"top", LoadKind::per_disc, {0, 1}, 0}};
+  scene.path = make_load_path(scene.assembly, scene.springs, scene.effects, path);
   Random random(1);
   for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
     const auto draw = [&] { return std::pow(-std::log(1 - random.uniform()), 1 / request.weibull_modulus); };
