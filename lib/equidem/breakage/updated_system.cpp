@@ -111,7 +111,10 @@ class UpdatedSystem final : public SolvedStates {
     const std::int64_t more = alone_ ? alone_->counters().factorizations : 0;
     return {c.factorizations + more, c.updates, c.mended + more, largest_residual()};
   }
-  [[nodiscard]] std::string solver_name() const override { return "multifrontal Cholesky, updated"; }
+  [[nodiscard]] std::string solver_name() const override {
+    const std::string updated = "multifrontal Cholesky, updated";
+    return alone_ ? fmt::format("{}; from where it did not serve: {}", updated, alone_->solver_name()) : updated;
+  }
 
  private:
   std::vector<std::int32_t> remove(std::size_t contact) {

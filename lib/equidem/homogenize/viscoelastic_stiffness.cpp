@@ -161,7 +161,6 @@ ViscoelasticStiffness viscoelastic_stiffness(const Assembly& assembly, const Con
   const SampleSolver sample = strain_sample(assembly, springs, of_fronts, elastic);
   ViscoelasticStiffness result;
   result.times = elastic.times;
-  result.unknowns = elastic.unknowns;
   Progress progress("frequencies");
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     result.harmonic.push_back(at_frequency(sample, viscoelasticity, frequencies[k], options, assembly.area(), result));

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <complex>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,7 +40,6 @@ HarmonicModuli harmonic_moduli(const HarmonicStiffness& stiffness);
 
 struct ViscoelasticStiffness {
   std::vector<HarmonicStiffness> harmonic;  ///< one for each frequency
-  std::int64_t unknowns = 0;
   std::string solver;
   double factor_bytes = 0;
   StageTimes times;

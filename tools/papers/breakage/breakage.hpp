@@ -13,8 +13,8 @@
 
 namespace equidem::breakage {
 
-/// The share of the peak to which the load falls, at which tests of this program are over.
-inline constexpr double test_over = 0.9;
+/// The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
+inline constexpr double test_over = 0.9, scattered_test_over = 0.7;
 
 /// A plate of equal strengths with a notch 2a in its middle.
 struct NotchedPlate {

@@ -196,11 +196,11 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
   std::string text = "# Breakage beside theory\n\n";
   text +=
       fmt::format("    equidem-papers breakage{} --out DIR\n\n{}\n\n", quick ? " --quick" : "", this_machine().text());
-  text +=
+  text += fmt::format(
       "Samples are pulled apart between frictionless ends, contact after contact in exact equilibrium, under control "
       "of "
-      "the motion; the\nstrength is the largest load over the width until it has fallen to 90 % of it (scattered "
-      "plates: 70 %). d is the distance of neighbours, f_t the strength "
+      "the motion; the\nstrength is the largest load over the width until it has fallen to {:g} % of it (scattered "
+      "plates: {:g} %). d is the distance of neighbours, f_t the strength "
       "of a contact in tension.\n\n"
       "## Strength against the length of a notch\n\n"
       "Hexagonal plates twice as high as wide, equal strengths, tension alone; a straight cut of length 2a along a "
@@ -210,12 +210,13 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
       "more, up to 0.6 W.\nA crack that grows by d breaks two contacts, which takes f_t²/kN at "
       "least (Griffith): K_Ic sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher\n(lattice trapping: Thomson, Hsieh & "
       "Rana "
-      "1971).\n\n";
+      "1971).\n\n",
+      100 * test_over, 100 * scattered_test_over);
   text += fits_text(notches);
   text += fmt::format(
       "\n![Strength of notched plates](breakage/notches.svg)\n\nPlates with notches of a few d are weaker than the "
-      "formula says: they cannot be stronger than without a notch. That bends\nthe fits, too: an exponent of -0.48 in "
-      "place of -1/2 is that of (a + c)^(-1/2) with c of about half of d. {} plates in {:.1f} s.\n\n",
+      "formula says: they cannot be stronger than without a notch. That bends\nthe fits, too. "
+      "{} plates in {:.1f} s.\n\n",
       notches.plates.size(), notches.seconds);
   text += fmt::format(
       "## Scatter and size by Weibull's law\n\nA share exp(-x^m) of the contacts is more than x f_t strong; f_s = 2 "

@@ -71,7 +71,7 @@ Weibull weibull_samples(bool quick) {
   for (const double m : moduli) {
     for (const std::int32_t n : columns) {
       const StrengthSample sample(hexagonal_lattice({.columns = n, .rows = n, .radius = 0.5 * diameter}),
-                                  ContactSprings(SpringConstants{1e9, 0.4e9}), {.fallen_to = 0.7});
+                                  ContactSprings(SpringConstants{1e9, 0.4e9}), {.fallen_to = scattered_test_over});
       found.plates.push_back(measure(sample, m, found.seeds));
       progress.update(++done / count);
     }
