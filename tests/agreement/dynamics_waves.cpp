@@ -88,7 +88,7 @@ TEST_CASE("the_first_20_modes_have_the_natural_frequencies_of_the_matrix") {
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, derive_effects(springs, rotation), supports);
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const ContactGraph graph(assembly);
-  const DenseMatrix k = dense(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
+  const DenseMatrix k = dense_matrix(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
   std::vector<std::size_t> free;
   for (std::size_t c = 0; c < unknowns.held.size(); ++c) {
     if (unknowns.held[c] == DegreesOfFreedom::free) free.push_back(c);

@@ -118,7 +118,7 @@ LibrarySolver umfpack() {
 
 /// Largest relative error of the solutions of `count` random right-hand sides, solved at once.
 double error_against_dense(const System& system, const Factorization& factor, int count) {
-  const test::DenseMatrix k = test::dense(system.matrix, system.assembly);
+  const test::DenseMatrix k = test::dense_matrix(system.matrix, system.assembly);
   std::vector<double> x = test::random_vector(k.size * count, 7);
   std::vector<double> expected;
   for (int c = 0; c < count; ++c) {

@@ -172,7 +172,7 @@ TEST_CASE("zero_pivots_count_the_null_space_of_unsupported_assemblies") {
       for (const int per_disc : {2, 3}) {
         for (const int leaf_size : {3, 10}) {
           const Loose loose(kind.assembly, ratio, per_disc, leaf_size);
-          const DenseMatrix a = dense(loose.matrix, kind.assembly);
+          const DenseMatrix a = dense_matrix(loose.matrix, kind.assembly);
           const Signs expected = signs_of(a, 1e-12);
           const auto factor = multifrontal_ldlt(loose.symbolic, loose.on_graph());
           const FactorReport& report = factor->report();
@@ -202,7 +202,7 @@ TEST_CASE("the_softest_motion_of_a_nearly_singular_matrix_is_nearly_its_null_spa
                                  : multifrontal_ldlt(loose.symbolic, loose.on_graph());
     CAPTURE(positive);
     REQUIRE(factor != nullptr);
-    const DenseMatrix a = dense(loose.matrix, hexagonal);
+    const DenseMatrix a = dense_matrix(loose.matrix, hexagonal);
     const std::vector<double> softest = factor->softest_motion();
     const double resistance = largest(times(a, softest)) / (norm_of(a) * largest(softest));
     CAPTURE(resistance, factor->report().smallest_pivot, factor->report().smallest_component);

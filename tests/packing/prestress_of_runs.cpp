@@ -84,7 +84,7 @@ TEST_CASE("the_stiffness_of_a_prestressed_pair_is_the_derivative_of_the_forces_o
     const ContactGraph graph(pair);
     const auto b = static_cast<std::size_t>(unknowns.per_disc);
     REQUIRE(b == (ellipses ? 3 : 2));
-    const DenseMatrix k = dense(assemble_stiffness(pair, graph, springs, unknowns), pair);
+    const DenseMatrix k = dense_matrix(assemble_stiffness(pair, graph, springs, unknowns), pair);
     const auto scale = [&](std::size_t c) { return c % 3 == 2 ? unknowns.rotation_scale : 1.0; };
     double largest = 0;
     for (std::size_t q = 0; q < 6; ++q) {

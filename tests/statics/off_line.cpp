@@ -71,7 +71,7 @@ TEST_CASE("stiffness_off_the_line_of_centres_is_the_second_derivative_of_the_ene
   const Effects effects = derive_effects(assembly, springs, Rotation::from_scene);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, {});
   const ContactGraph graph(assembly);
-  const DenseMatrix k = dense(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
+  const DenseMatrix k = dense_matrix(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
   const DenseMatrix expected = stiffness_of_energy(assembly, springs, unknowns.rotation_scale);
   CAPTURE(periodic, seed);
   CHECK(relative_difference(k.entries, expected.entries) < 1e-13);

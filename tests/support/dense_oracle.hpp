@@ -26,7 +26,7 @@ struct DenseMatrix {
 };
 
 /// All entries of K over discs x block components, held ones included.
-inline DenseMatrix dense(const StiffnessMatrix& matrix, const Assembly& assembly) {
+inline DenseMatrix dense_matrix(const StiffnessMatrix& matrix, const Assembly& assembly) {
   const auto b = static_cast<std::size_t>(matrix.block);
   DenseMatrix k(assembly.size() * b);
   for (std::size_t r = 0; r < b; ++r) {

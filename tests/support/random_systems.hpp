@@ -64,7 +64,7 @@ struct RandomSystem {
 
   [[nodiscard]] MatrixOnGraph on_graph() const { return {matrix, assembly, graph}; }
   [[nodiscard]] std::size_t unknowns() const { return assembly.size() * matrix.block; }
-  [[nodiscard]] DenseMatrix dense_matrix() const { return dense(matrix, assembly); }
+  [[nodiscard]] DenseMatrix dense_matrix() const { return test::dense_matrix(matrix, assembly); }
 
   /// Entries uniform in (-1, 1), but a share of the diagonal blocks zero.
   void fill_at_random(Random& random, double zero_share) {

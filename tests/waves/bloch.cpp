@@ -96,7 +96,7 @@ TEST_CASE("waves_that_fit_a_supercell_are_the_eigenvalues_of_its_stiffness") {
 
   const ContactGraph graph(supercell);
   const DegreesOfFreedom unknowns = all_free(supercell, given.rotation ? 3 : 2);
-  const DenseMatrix dense_k = dense(assemble_stiffness(supercell, graph, springs, unknowns), supercell);
+  const DenseMatrix dense_k = dense_matrix(assemble_stiffness(supercell, graph, springs, unknowns), supercell);
   ComplexMatrix real(dense_k.size);
   for (std::size_t r = 0; r < real.size; ++r)
     for (std::size_t c = 0; c < real.size; ++c) real(r, c) = dense_k(r, c);

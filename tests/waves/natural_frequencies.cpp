@@ -25,7 +25,7 @@ namespace {
 Tridiagonal plain_spectrum(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
                            const std::vector<Inertia>& inertia) {
   const ContactGraph graph(assembly);
-  DenseMatrix k = dense(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
+  DenseMatrix k = dense_matrix(assemble_stiffness(assembly, graph, springs, unknowns), assembly);
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const double a = unknowns.rotation_scale;
   std::vector<double> root(k.size);

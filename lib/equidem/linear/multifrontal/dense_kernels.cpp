@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 
+#include <type_traits>
 #include <vector>
 
 #include <cblas.h>
@@ -50,10 +51,6 @@ struct Blas<std::complex<double>> {
                    const Number* a, int lda, const Number* b, int ldb, Number beta, Number* c, int ldc) {
     cblas_zgemm(order, op_a, op_b, m, n, k, &alpha, a, lda, b, ldb, &beta, c, ldc);
   }
-  static void gemv(CBLAS_ORDER order, CBLAS_TRANSPOSE op, int m, int n, Number alpha, const Number* a, int lda,
-                   const Number* x, int step_x, Number beta, Number* y, int step_y) {
-    cblas_zgemv(order, op, m, n, &alpha, a, lda, x, step_x, &beta, y, step_y);
-  }
   static void syrk(CBLAS_ORDER order, CBLAS_UPLO triangle, CBLAS_TRANSPOSE op, int n, int k, Number alpha,
                    const Number* a, int lda, Number beta, Number* c, int ldc) {
     cblas_zsyrk(order, triangle, op, n, k, &alpha, a, lda, &beta, c, ldc);
@@ -78,13 +75,16 @@ void subtract_product_of(CBLAS_TRANSPOSE op, Shape shape, const Real* a, std::si
                          std::size_t ldb, Real* c, std::size_t ldc) {
   const auto [m, n, k] = shape;
   if (m == 0 || n == 0 || k == 0) return;
-  if (n == 1) {
-    const std::size_t rows = op == CblasNoTrans ? m : k, columns = op == CblasNoTrans ? k : m;
-    Blas<Real>::gemv(CblasColMajor, op, as_int(rows), as_int(columns), -1, a, as_int(lda), b, 1, 1, c, 1);
-  } else {
-    Blas<Real>::gemm(CblasColMajor, op, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1, a, as_int(lda), b,
-                     as_int(ldb), 1, c, as_int(ldc));
+  // zgemv of OpenBLAS 0.3.21 reads one number behind the vector (its issue 4013), which may be no memory.
+  if constexpr (std::is_floating_point_v<Real>) {
+    if (n == 1) {
+      const std::size_t rows = op == CblasNoTrans ? m : k, columns = op == CblasNoTrans ? k : m;
+      Blas<Real>::gemv(CblasColMajor, op, as_int(rows), as_int(columns), -1, a, as_int(lda), b, 1, 1, c, 1);
+      return;
+    }
   }
+  Blas<Real>::gemm(CblasColMajor, op, CblasNoTrans, as_int(m), as_int(n), as_int(k), -1, a, as_int(lda), b, as_int(ldb),
+                   1, c, as_int(ldc));
 }
 
 /// X := op(L)^-1 X.
