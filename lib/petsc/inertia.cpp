@@ -78,7 +78,7 @@ void prepare_to_count(KSP solver) {
 }
 
 Inertia inertia_of(const Network& network, KSP solver, Mat stiffness) {
-  if (!network.any_negative()) return {.unstable_modes = 0};
+  if (!network.any_negative()) return {.negative_pivots = 0, .unstable_modes = 0};
   PC preconditioner = nullptr;
   check(KSPGetPC(solver, &preconditioner));
   if (!counts(preconditioner)) return {};

@@ -21,9 +21,9 @@ struct Inertia {
 /// Without effect on other solvers. To be called once options are set, before the factorization.
 void prepare_to_count(KSP solver);
 
-/// Where no spring is negative K is positive definite, and nothing is counted. Else MUMPS has counted the negative
-/// pivots of its L D L^T (Sylvester), and the rotations alone are factorized once more. Other solvers leave the answer
-/// open: convergence of an iteration proves nothing.
+/// Where no spring is negative K is positive definite, and nothing needs to be counted. Else MUMPS has counted the
+/// negative pivots of its L D L^T (Sylvester), and the rotations alone are factorized once more. Other solvers leave
+/// the answer open: convergence of an iteration proves nothing.
 Inertia inertia_of(const Network& network, KSP solver, Mat stiffness);
 
 }  // namespace equidem::petsc

@@ -80,14 +80,30 @@ void Ranks::stop_if_interrupted() const {
   together([] { equidem::stop_if_interrupted(); });
 }
 
-void check(PetscErrorCode code) {
-  if (code == 0) return;
+namespace {
+
+/// The sentence of PETSc about its last error.
+std::string message_of(PetscErrorCode code) {
   const char* general = nullptr;
   char* specific = nullptr;
   PetscErrorMessage(code, &general, &specific);
   std::string text = specific != nullptr && *specific != '\0' ? specific : general != nullptr ? general : "no message";
   for (char& c : text) c = c == '\n' ? ' ' : c;
-  computation_failed("PETSc ended with an error", text, "Check the options that begin with -equidem_");
+  while (text.ends_with(' ') || text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+void check(PetscErrorCode code) {
+  if (code != 0)
+    computation_failed("PETSc ended with an error", message_of(code), "Check the options that begin with -equidem_");
+}
+
+void check_options(PetscErrorCode code) {
+  if (code != 0)
+    bad_input("PETSc refuses an option", message_of(code),
+              "Correct those that begin with -equidem_, or leave them out");
 }
 
 }  // namespace equidem::petsc

@@ -47,5 +47,8 @@ class Ranks {
 
 /// \throws Error (computation_failed) with the message of PETSc where its code is one of an error
 void check(PetscErrorCode code);
+/// The same for calls in which options of the user decide.
+/// \throws Error (bad_input)
+void check_options(PetscErrorCode code);
 
 }  // namespace equidem::petsc

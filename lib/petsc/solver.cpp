@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <string_view>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
@@ -21,11 +23,30 @@ constexpr const char* prefix = "equidem_";
 constexpr double tolerance_of_a_pass = 1e-8;
 constexpr int most_iterations_of_a_pass = 1000;
 
+std::atomic<bool> options_were_read{false};
+
 bool is_type(KSP solver, PC pc, const char* ksp_type, const char* pc_type) {
   PetscBool first = PETSC_FALSE, second = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver), ksp_type, &first));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), pc_type, &second));
   return first == PETSC_TRUE && second == PETSC_TRUE;
+}
+
+/// A matrix of blocks or of all entries takes no coordinates in parallel, or has no grids.
+void check_format(Mat matrix) {
+  MatType type = nullptr;
+  check(MatGetType(matrix, &type));
+  std::string_view format = type;
+  for (const std::string_view start : {"seq", "mpi"})
+    if (format.starts_with(start)) format.remove_prefix(start.size());
+  if (format.starts_with("aij")) return;
+  bad_input(fmt::format("the format {} of -equidem_mat_type is not one that equidem-mpi fills", format),
+            "it fills aij and the formats that begin with it", "Leave -equidem_mat_type out");
+}
+
+/// Whether options asked for what PETSc does not have.
+bool is_choice(PetscErrorCode code) {
+  return code == PETSC_ERR_SUP || code == PETSC_ERR_MISSING_FACTOR || code == PETSC_ERR_ARG_UNKNOWN_TYPE;
 }
 
 /// PETSc 3.18 does not hand the size of blocks on to the part of a matrix by coordinates that a rank holds; its inverse
@@ -91,7 +112,8 @@ void PetscSolver::assemble() {
   check(MatSetBlockSize(matrix_, b));
   check(MatSetType(matrix_, MATAIJ));
   check(MatSetOptionsPrefix(matrix_, prefix));
-  check(MatSetFromOptions(matrix_));
+  check_options(MatSetFromOptions(matrix_));
+  check_format(matrix_);
   {
     Coordinates coordinates(n);
     check(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(coordinates.rows.size()), coordinates.rows.data(),
@@ -160,7 +182,8 @@ void PetscSolver::set_up(SolverMethod method) {
     check(PCSetType(pc, method == SolverMethod::multigrid ? grids_type : PCGAMG));
   }
   check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
-  check(KSPSetFromOptions(solver_));
+  options_were_read = true;
+  check_options(KSPSetFromOptions(solver_));
   if (has_grids(pc)) build_grids(n, pc);
   if (n.any_negative()) prepare_to_count(solver_);
   interruption_ = new Interruption{n.ranks()};
@@ -169,7 +192,9 @@ void PetscSolver::set_up(SolverMethod method) {
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &elimination));
   if (elimination == PETSC_FALSE) check(KSPSetConvergenceTest(solver_, Interruption::test, interruption_, nullptr));
   n.ranks().stop_if_interrupted();
-  check(KSPSetUp(solver_));
+  const PetscErrorCode made = KSPSetUp(solver_);
+  if (is_choice(made)) check_options(made);
+  check(made);
   n.ranks().stop_if_interrupted();
 }
 
@@ -253,6 +278,7 @@ Counted counted_messages() {
 }
 
 std::vector<std::string> unused_options() {
+  if (!options_were_read) return {};
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
   check(PetscOptionsLeftGet(nullptr, &count, &names, &values));

@@ -63,7 +63,7 @@ struct Counted {
 };
 Counted counted_messages();
 
-/// The options of the command line that nothing asked for, as they were given.
+/// The options of the command line that nothing asked for, as they were given; none before a solver has read its own.
 std::vector<std::string> unused_options();
 
 }  // namespace equidem::petsc

@@ -342,27 +342,3 @@ name = "slowly"
 kind = "ramp"
 end = 4.0e-4
 '''))
-
-
-def lammps_periodic(program, folder):
-    """A pulse in a periodic cell, across whose sides discs are bonded."""
-    return run_difference(program, folder, '''
-[assembly]
-kind = "hexagonal"
-columns = 8
-rows = 8
-radius = 0.005
-density = 2500.0
-periodic = true
-[springs]
-kN = 1e9
-kT = 0.3e9
-[[group]]
-name = "some"
-discs = [3, 4, 10, 17]
-[[velocity]]
-group = "some"
-velocity = [0.02, 0.01]
-[run]
-duration = 2e-4
-''')

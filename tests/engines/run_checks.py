@@ -12,6 +12,7 @@ import sys
 import tempfile
 
 import bonds
+import driven
 import engines
 import grains
 import vibration
@@ -40,6 +41,9 @@ CHECKS = [
     ("yade_bonds", "YADE", "at rest, with restrained rotations", 1e-6, bonds.yade_restrained),
     ("yade_bonds", "YADE", "at rest, discs of two radii, contact points off the middle", 1e-6, bonds.yade_unequal),
     ("yade_bonds", "YADE", "a network that loads and gravity set in motion", 1e-4, bonds.yade_set_in_motion),
+    ("yade_bonds", "YADE", "a pulse in periodic cells, of a lattice and at random", 1e-5, driven.yade_periodic),
+    ("yade_bonds", "YADE", "a network whose supports, turning too, and loads follow a ramp, a sine and a table", 1e-5,
+     driven.yade_driven),
     ("yade_bonds", "YADE", "period of the lowest mode", 1e-4, vibration.yade_period),
     ("lammps_grains", "LAMMPS", "places of 20 equal discs that fall in a box, after 0.1 s", 1e-6, grains.lammps_motion),
     ("lammps_grains", "LAMMPS", "places of 20 discs that a wall pushes at a constant speed", 1e-6,

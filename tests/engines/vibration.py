@@ -37,7 +37,7 @@ class Mode:
         free = np.array([word == "-" for line in bodies for word in line.split()[12:15]])
         stiffness = np.zeros((len(mass), len(mass)))
         for line in bonds:
-            i, j, kn, ks = (float(word) for word in line.split())
+            i, j, kn, ks = (float(word) for word in line.split()[:4])
             i, j = int(i), int(j)
             branch = place[j] - place[i]
             length = math.hypot(*branch)

@@ -115,7 +115,7 @@ def the_motions_are_those_of_the_serial_program_on_every_number_of_ranks(folder)
                 if key not in numbers:
                     continue
                 assert abs(result[key] - numbers[key]) <= 1e-9 * abs(numbers[key]), (name, key, result[key], numbers[key])
-            for key in ("discs", "contacts", "unknowns", "status"):
+            for key in ("discs", "contacts", "unknowns", "status", "negative_pivots", "unstable_modes"):
                 assert result[key] == numbers[key], (name, key, result[key], numbers[key])
             stress = np.subtract(result["stress_tensor"], numbers["stress_tensor"])
             assert np.abs(stress).max() <= 1e-9 * np.abs(numbers["stress_tensor"]).max(), (name, stress)
@@ -219,21 +219,33 @@ def options_that_petsc_does_not_use_are_named(folder):
                               "-equidem_ksp_rtol", "1e-6"), "solve")
     assert "did not use -equidem_pc_typo:" in result.stderr, result.stderr
     assert (folder / "a.json").exists()
-    result = parallel(2, "solve", CASES / "abe1996_fig6.toml", "-equidem_pc_type", "wrong")
-    assert result.returncode == 1 and "PETSc ended with an error" in result.stderr, result.stderr
+    result = parallel(2, "solve", CASES / "abe1996_fig6.toml", "-equidem_ksp_max_it", "2", "-typo")
+    assert result.returncode == 1 and "did not converge" in result.stderr and "did not use -typo:" in result.stderr, result.stderr
+
+
+def options_that_petsc_or_equidem_refuses_are_bad_input(_):
+    case = CASES / "abe1996_fig6.toml"
+    for name, value, told in (("pc_type", "wrong", "wrong"), ("ksp_rtol", "many", "many"), ("mat_type", "wrong", "wrong"),
+                              ("pc_type", "ilu", "ILU")):
+        refused(parallel(2, "solve", case, f"-equidem_{name}", value), "PETSc refuses an option", told)
+    for form in ("baij", "sbaij", "dense"):
+        refused(parallel(2, "solve", case, "-equidem_mat_type", form), form, "-equidem_mat_type")
+    checked(parallel(2, "solve", case, "-equidem_mat_type", "aijperm"), "aijperm")
 
 
 def start_long():
+    """Two ranks that iterate for minutes."""
     words, environment = command(2, "solve", CASES / "abe1996_fig6.toml", "--set", "assembly.columns=401", "--set",
-                                 "assembly.rows=401", "-equidem_pc_type", "jacobi", "-equidem_ksp_max_it", "100000")
+                                 "assembly.rows=401", "-equidem_pc_type", "jacobi", "-equidem_ksp_max_it", "100000",
+                                 "-equidem_ksp_monitor")
     process = subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     ranks = []
     while len(ranks) < 2 and process.poll() is None:
         time.sleep(0.05)
         children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="utf-8")
         ranks = [int(rank) for rank in children.split()]
-    time.sleep(2)
-    assert process.poll() is None, process.communicate()
+    while "0 KSP Residual" not in process.stdout.readline():
+        assert process.poll() is None, process.communicate()
     return process, ranks
 
 
@@ -254,13 +266,15 @@ def all_end(ranks):
     return not any(map(lives, ranks))
 
 
-def a_rank_that_dies_ends_all(_):
-    process, ranks = start_long()
-    os.kill(ranks[-1], signal.SIGKILL)
-    _, errors = process.communicate(timeout=60)
-    assert process.returncode != 0, errors
-    print(process.returncode, errors)
-    assert all_end(ranks), ranks
+def a_rank_that_dies_ends_all_and_another_names_it(_):
+    for dead in (0, 1):
+        process, ranks = start_long()
+        os.kill(ranks[dead], signal.SIGKILL)
+        _, errors = process.communicate(timeout=60)
+        print(process.returncode, errors)
+        assert process.returncode != 0, errors
+        assert all_end(ranks), ranks
+        assert errors.count("equidem-mpi: rank") == 1 and f"equidem-mpi: rank {dead} of 2 died" in errors, errors
 
 
 def an_interrupted_run_ends(_):

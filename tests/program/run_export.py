@@ -289,7 +289,13 @@ force = [0.0, -1.0]
 
     def test_schedules_and_moments(self):
         schedule = '[[schedule]]\nname = "slow"\nkind = "ramp"\nend = 1e-3\n[run]\nduration = 1e-3\n'
-        self.check_refused(self.bonds(schedule, load='schedule = "slow"'), ENGINES, "schedules", "load on 'top'")
+        self.check_refused(self.bonds(schedule, load='schedule = "slow"'), ["pfc"], "follow a schedule", "load on 'top'")
+        rest = schedule.replace("duration = 1e-3", "until_rest = 1e-6")
+        self.check_refused(self.bonds(rest, load='schedule = "slow"'), ENGINES, "does not carry")
+        turning = schedule + '[[support]]\ngroup = "top"\nrotation = 1e-3\nschedule = "slow"\n'
+        self.check_refused(self.bonds(turning), ["lammps", "pfc"], "rotations that follow a schedule", "support of 'top'")
+        long = schedule.replace('"ramp"\nend = 1e-3', f'"table"\ntimes = {[1e-5 * k for k in range(60)]}\nvalues = {[0.0] * 60}')
+        self.check_refused(self.bonds(long, load='schedule = "slow"'), ENGINES, "does not carry", "load on 'top'")
         self.check_refused(self.bonds(load="moment = 1.0"), ["lammps"], "moments as loads", "yade")
 
     def test_bonds_that_break(self):
@@ -301,14 +307,14 @@ force = [0.0, -1.0]
     def test_damping(self):
         run = "[run]\nduration = 1e-3\ndamping = {{ {} }}\n"
         self.check_refused(self.bonds(run.format("mass = 10.0")), ENGINES, "damping proportional to mass", "local")
-        self.check_refused(self.bonds(run.format("contact = 0.1")), ENGINES, "dashpots in bonds")
+        self.check_refused(self.bonds(run.format("contact = 0.1")), ["yade", "pfc"], "dashpots in bonds")
         self.check_refused(self.bonds(run.format("local = 0.1")), [])
 
     def test_periodic_cells(self):
         cell = self.bonds(assembly="periodic = true").read_text()
         cell = cell[:cell.index("[[support]]")].replace("rows = 4", "rows = 8").replace("columns = 4", "columns = 8")
         (self.folder / "cell.toml").write_text(cell + "[run]\nduration = 1e-4\n")
-        self.check_refused(self.folder / "cell.toml", ["yade", "pfc"], "periodic cells", "lammps")
+        self.check_refused(self.folder / "cell.toml", ["pfc"], "periodic cells", "lammps or yade")
         small = self.folder / "small.toml"
         small.write_text((self.folder / "cell.toml").read_text().replace("columns = 8", "columns = 2"))
         self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry")

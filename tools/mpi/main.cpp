@@ -36,7 +36,7 @@ those of the solver (-equidem_ksp_rtol, -equidem_pc_type, ...); -log_view measur
 named at the end.
 
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted. Where a
-process dies, mpirun ends the others, and its exit code is not 0.)";
+rank dies, a sentence names it, mpirun ends the others, and its exit code is not 0.)";
 
 /// The words of the command line for equidem and for PETSc: a word with one dash and a letter begins an option of
 /// PETSc, one with two dashes an option of equidem; others belong to the option before them.
@@ -115,9 +115,8 @@ int main(int argc, char** argv) {
                     "Leave it out"}}};
   int result = run_program(program, static_cast<int>(words.own.size()) - 1, words.own.data());
   if (parallel) {
-    constexpr int refused = 2;  // before PETSc was asked for anything
     const std::vector<std::string> unused = petsc::unused_options();
-    if (!unused.empty() && result != refused) {
+    if (!unused.empty()) {
       std::fprintf(stderr, "equidem-mpi: PETSc did not use %s: there is no such option, or not with this solver.\n",
                    joined(unused).c_str());
     }

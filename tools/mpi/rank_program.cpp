@@ -14,6 +14,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
+#include "dead_ranks.hpp"
+
 namespace equidem {
 namespace {
 
@@ -54,6 +56,7 @@ void silence_other_ranks() {
 Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
   return [verb] {
     const petsc::Ranks ranks(PETSC_COMM_WORLD);
+    tell_of_dead_ranks(ranks, terminal);
     try {
       verb(ranks);
     } catch (const Error& error) {

@@ -80,6 +80,8 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   if (resolved.strength || !problem->assembly.contact_tension.empty() || !resolved.notches.empty() ||
       !resolved.dead_loads.empty())
     model.found.emplace(EngineFeature::breakage, "");
+  if (model.to_rest && (!model.motions.empty() || !model.timed_loads.empty()))
+    model.found.emplace(EngineFeature::schedules_to_rest, "");
   if (!model.to_rest && model.found.contains(EngineFeature::given_displacements))
     model.found.emplace(EngineFeature::given_at_start, model.found.at(EngineFeature::given_displacements));
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;

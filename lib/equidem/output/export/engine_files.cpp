@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "equidem/core/text.hpp"
+#include "equidem/output/export/engine_formulas.hpp"
 
 namespace equidem {
 namespace {

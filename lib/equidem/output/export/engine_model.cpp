@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/loop_choice.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 
 namespace equidem {
@@ -15,7 +15,7 @@ namespace {
 
 using enum EngineFeature;
 
-constexpr std::size_t most_points_of_motion = 50;  // each is a term of a formula
+constexpr std::size_t most_points_of_schedule = 50;  // each is a term of a formula
 
 void add(FoundFeatures& found, EngineFeature feature, const std::string& instance) {
   found.emplace(feature, instance);
@@ -121,15 +121,17 @@ void find_largest_gap(EngineModel& model) {
   }
 }
 
+void find_features_of_schedule(const Schedule& schedule, const std::string& name, FoundFeatures& found) {
+  if (schedule.times.size() > most_points_of_schedule) add(found, long_tables, name);
+}
+
 /// Walls of either kind of scene.
 void find_features_of_walls(const std::vector<Wall>& walls, FoundFeatures& found) {
   for (const Wall& wall : walls) {
     const std::string name = "wall '" + wall.name + "'";
     if (wall.shape != Wall::Shape::line) add(found, shaped_walls, name);
     if (wall.moves()) add(found, moving_walls, name);
-    for (const Schedule* move : {&wall.move_x, &wall.move_y})
-      if (move->kind == Schedule::Kind::smooth_table || move->times.size() > most_points_of_motion)
-        add(found, recorded_walls, name);
+    for (const Schedule* move : {&wall.move_x, &wall.move_y}) find_features_of_schedule(*move, name, found);
     if (wall.normal.x != 0 && wall.normal.y != 0) add(found, oblique_walls, name);
   }
 }
@@ -140,10 +142,15 @@ void hold(EngineModel& model, const Scene& scene) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& component = *components[k];
       if (!component) continue;
-      if (component->changes()) add(model.found, schedules, "support of '" + support.group + "'");
-      if (component->value != 0) add(model.found, given_displacements, "support of '" + support.group + "'");
-      for (const std::int32_t disc : group(scene.assembly, support.group).discs)
-        model.bodies[disc].held[k] = component->value;
+      const std::string name = "support of '" + support.group + "'";
+      const std::vector<std::int32_t>& discs = group(scene.assembly, support.group).discs;
+      const double at_start = component->at(0);
+      if (at_start != 0) add(model.found, given_displacements, name);
+      for (const std::int32_t disc : discs) model.bodies[disc].held[k] = at_start;
+      if (!component->changes()) continue;
+      add(model.found, k == 2 ? turning_schedules : schedules, name);
+      find_features_of_schedule(*component, name, model.found);
+      model.motions.push_back({k, *component, discs});
     }
   }
 }
@@ -151,15 +158,26 @@ void hold(EngineModel& model, const Scene& scene) {
 void load(EngineModel& model, const Scene& scene) {
   for (const TimedLoad& timed : scene.loads) {
     const Load& given = timed.load;
-    if (timed.factor.changes()) add(model.found, schedules, "load on '" + given.group + "'");
-    if (given.moment != 0) add(model.found, load_moments, "load on '" + given.group + "'");
+    const std::string name = "load on '" + given.group + "'";
+    const bool changes = timed.factor.changes();
+    if (given.moment != 0) add(model.found, load_moments, name);
+    if (changes) {
+      add(model.found, schedules, name);
+      find_features_of_schedule(timed.factor, name, model.found);
+      model.timed_loads.push_back({timed.factor, {}});
+    }
     const DiscGroup& discs = group(scene.assembly, given.group);
     const double share = given.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
     for (std::size_t k = 0; k < discs.discs.size(); ++k) {
       const double weight = given.kind == LoadKind::traction ? discs.tributary_lengths.at(k) : share;
+      const DiscForce part{weight * given.force, share * given.moment};
+      if (changes) {
+        model.timed_loads.back().shares.emplace_back(discs.discs[k], part);
+        continue;
+      }
       DiscForce& sum = model.bodies[discs.discs[k]].load;
-      sum.force += timed.factor.value * weight * given.force;
-      sum.moment += timed.factor.value * share * given.moment;
+      sum.force += timed.factor.value * part.force;
+      sum.moment += timed.factor.value * part.moment;
     }
   }
 }
@@ -242,46 +260,6 @@ std::optional<double> common_mass(const EngineModel& model) {
   return model.bodies.front().inertia.mass;
 }
 
-std::string exact(double value) {
-  return fmt::format("{}", value);
-}
-
-std::string formula_of(const Schedule& schedule, const std::string& time) {
-  const auto negative = [](double value) { return value < 0 ? "(" + exact(value) + ")" : exact(value); };
-  const auto since = [&](double start) { return fmt::format("({0}-{1}+abs({0}-{1}))/2", time, negative(start)); };
-  // The time between two instants, from 0 to their distance.
-  const auto between = [&](double start, double end) {
-    return fmt::format("(abs({0}-{1})-abs({0}-{2})+{3})/2", time, negative(start), negative(end), exact(end - start));
-  };
-  switch (schedule.kind) {
-    case Schedule::Kind::constant:
-      return exact(schedule.value);
-    case Schedule::Kind::ramp:
-      return fmt::format("{}*(1-cos({}*({})))", negative(0.5 * schedule.value),
-                         exact(std::numbers::pi / (schedule.end - schedule.start)),
-                         between(schedule.start, schedule.end));
-    case Schedule::Kind::sine:
-      return fmt::format("{}*sin({}*({}))", negative(schedule.value), exact(2 * std::numbers::pi * schedule.frequency),
-                         since(schedule.start));
-    case Schedule::Kind::cycles:
-      return fmt::format("{}*(1-cos({}*({})))", negative(schedule.value),
-                         exact(2 * std::numbers::pi * schedule.frequency), between(schedule.start, schedule.end));
-    case Schedule::Kind::table: {
-      std::string sum = exact(schedule.values.front());
-      for (std::size_t k = 0; k + 1 < schedule.times.size(); ++k) {
-        const double slope =
-            (schedule.values[k + 1] - schedule.values[k]) / (schedule.times[k + 1] - schedule.times[k]);
-        if (slope != 0)
-          sum += fmt::format("+{}*{}", negative(slope), between(schedule.times[k], schedule.times[k + 1]));
-      }
-      return sum;
-    }
-    case Schedule::Kind::smooth_table:
-      break;
-  }
-  return "0";  // refused: EngineFeature::recorded_walls
-}
-
 double tangential_mass_share(Body body) {
   return 1 / (1 + 1 / inertia_factor(body));
 }
@@ -296,7 +274,8 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
   model.period = assembly.period;
   model.local_damping = options.damping.local;
   if (options.damping.mass != 0) add(model.found, mass_damping, "");
-  if (options.damping.dashpots()) add(model.found, bond_dashpots, "");
+  const bool dashpots = options.damping.dashpots();
+  if (dashpots) add(model.found, bond_dashpots, "");
   if (!on_lines_of_centres(assembly)) add(model.found, off_line_contacts, "");
   if (!assembly.sections.empty()) add(model.found, sections, "");
   const bool restrained = options.rotation == Rotation::restrained;
@@ -307,7 +286,15 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
   }
   for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
     const Contact& c = assembly.contacts[k];
-    model.bonds.push_back({c.i, c.j, norm(assembly.branch(c)), scene.springs[k]});
+    model.bonds.push_back({.i = c.i,
+                           .j = c.j,
+                           .length = norm(assembly.branch(c)),
+                           .springs = scene.springs[k],
+                           .shift_x = c.shift_x,
+                           .shift_y = c.shift_y});
+    if (dashpots)
+      model.bonds.back().dashpots =
+          dashpots_of(options.damping, scene.springs[k], scene.inertia[c.i].mass, scene.inertia[c.j].mass);
   }
   find_features_of_contacts(scene, model.found);
   model.lever_radii = radii_of_levers(assembly);

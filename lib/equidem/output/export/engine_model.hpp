@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/core/vector.hpp"
@@ -27,8 +28,8 @@ struct EngineBody {
   Vec2 velocity = {};   ///< m/s
   double spin = 0;      ///< rad/s
   int kind = 0;         ///< of a grain: row of the table of pairs
-  DiscForce load = {};  ///< without gravity
-  /// Prescribed displacement in x, y (m) and rotation (rad), there from the start; none: free.
+  DiscForce load = {};  ///< constant, without gravity
+  /// Prescribed displacement in x, y (m) and rotation (rad) at the start; none: free.
   std::array<std::optional<double>, 3> held = {};
 };
 
@@ -37,6 +38,22 @@ struct EngineBond {
   std::int32_t i = 0, j = 0;
   double length = 0;  ///< distance of the centres, m
   SpringConstants springs;
+  SpringConstants dashpots = {};  ///< N s/m per m; 0: none
+  std::int32_t shift_x = 0;       ///< periods from j to its image that i is bonded to
+  std::int32_t shift_y = 0;
+};
+
+/// A prescribed displacement that changes with time, m or rad.
+struct EngineMotion {
+  std::size_t component = 0;  ///< 0: x, 1: y, 2: rotation
+  Schedule displacement;
+  std::vector<std::int32_t> bodies;
+};
+
+/// Loads on bodies times a factor that changes with time.
+struct EngineLoad {
+  Schedule factor;
+  std::vector<std::pair<std::int32_t, DiscForce>> shares;
 };
 
 struct EngineModel {
@@ -51,6 +68,8 @@ struct EngineModel {
   std::optional<Vec2> period;  ///< m
   std::vector<EngineBody> bodies;
   std::vector<EngineBond> bonds;
+  std::vector<EngineMotion> motions;
+  std::vector<EngineLoad> timed_loads;
   /// Radii, m, that place the contact point of bodies at a distance d at (d + r_i - r_j)/2 from i, as the bonds have
   /// it; empty: there are none.
   std::vector<double> lever_radii;
@@ -83,12 +102,5 @@ std::optional<double> common_mass(const EngineModel& model);
 
 /// The mass at a contact across its normal, 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), over the reduced mass.
 double tangential_mass_share(Body body);
-
-/// A number in the shortest form that reads back to the same bits.
-std::string exact(double value);
-
-/// A schedule as a formula that LAMMPS and Python read, with abs, sin and cos.
-/// \param time the name of the time in it, s
-std::string formula_of(const Schedule& schedule, const std::string& time);
 
 }  // namespace equidem

@@ -2,6 +2,7 @@
 /// \file
 /// LAMMPS: bpm/rotational is kN and kT at the middle of the branch, linearized (measured: data/interop.md).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -12,16 +13,18 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/output/export/engine_files.hpp"
+#include "equidem/output/export/engine_formulas.hpp"
+#include "equidem/output/export/lammps_actions.hpp"
 
 namespace equidem {
 namespace {
 
 class LammpsWriter {
  public:
-  explicit LammpsWriter(const EngineModel& model) : model_(model) {
-    for (const EngineBond& bond : model.bonds) bond_types_.try_emplace({bond.springs.kN, bond.springs.kT}, 0);
+  LammpsWriter(const EngineModel& model, const LammpsActions& actions) : model_(model), actions_(actions) {
+    for (const EngineBond& bond : model.bonds) bond_types_.try_emplace(coefficients_of(bond), 0);
     int type = 0;
-    for (auto& [springs, number] : bond_types_) number = ++type;
+    for (auto& [coefficients, number] : bond_types_) number = ++type;
     for (const EngineBody& body : model.bodies) types_.try_emplace(body.kind, 0);
     type = 0;
     for (auto& [kind, number] : types_) number = ++type;
@@ -45,7 +48,7 @@ class LammpsWriter {
     text += "\nBonds\n\n";
     for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
       const EngineBond& bond = model_.bonds[k];
-      line(text, "{} {} {} {}", k + 1, bond_types_.at({bond.springs.kN, bond.springs.kT}), bond.i + 1, bond.j + 1);
+      line(text, "{} {} {} {}", k + 1, bond_types_.at(coefficients_of(bond)), bond.i + 1, bond.j + 1);
     }
     return text;
   }
@@ -67,25 +70,16 @@ class LammpsWriter {
     return text;
   }
 
-  /// The loads along x or y as an atomfile variable; empty: there are none.
-  [[nodiscard]] std::string loads(bool along_x) const {
-    std::string rows;
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
-      const Vec2 force = model_.bodies[k].load.force;
-      if (const double value = along_x ? force.x : force.y; value != 0) {
-        line(rows, "{} {}", k + 1, exact(value));
-        ++count;
-      }
-    }
-    return count == 0 ? "" : fmt::format("{}\n{}", count, rows);
-  }
-
  private:
   template <typename... Values>
   static void line(std::string& text, fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
     text += '\n';
+  }
+
+  /// kN, kT and their dashpots.
+  [[nodiscard]] static std::array<double, 4> coefficients_of(const EngineBond& bond) {
+    return {bond.springs.kN, bond.springs.kT, bond.dashpots.kN, bond.dashpots.kT};
   }
 
   [[nodiscard]] const char* style() const { return model_.bonded ? "bpm/sphere" : "sphere"; }
@@ -149,9 +143,9 @@ class LammpsWriter {
 
   [[nodiscard]] std::string bonds() const {
     std::string text = "bond_style bpm/rotational break no smooth no\n";
-    for (const auto& [springs, type] : bond_types_)
-      line(text, "bond_coeff {} {} {} 0 0 1e30 1e30 1e30 1e30 0 0 0 0", type, exact(springs.first),
-           exact(springs.second));
+    for (const auto& [k, type] : bond_types_)
+      line(text, "bond_coeff {} {} {} 0 0 1e30 1e30 1e30 1e30 {} {} 0 0", type, exact(k[0]), exact(k[1]), exact(k[2]),
+           exact(k[3]));
     if (bond_types_.empty()) text += "bond_coeff 1 1 0 0 0 1e30 1e30 1e30 1e30 0 0 0 0\n";
     line(text, "pair_style zero {}\npair_coeff * *", exact(1.2 * longest_bond()));
     line(text, "neighbor {} bin", exact(0.2 * longest_bond()));
@@ -245,7 +239,6 @@ class LammpsWriter {
   /// The walls: each by a fix for each kind of bodies.
   [[nodiscard]] std::string walls() const {
     std::string text;
-    if (std::ranges::any_of(model_.walls, &Wall::moves)) text += "variable t equal step*dt\n";
     for (std::size_t k = 0; k < model_.walls.size(); ++k) {
       const Wall& wall = model_.walls[k];
       if (wall.moves()) {
@@ -289,14 +282,14 @@ class LammpsWriter {
 
   /// Gravity, loads, walls, supports, damping, motion, in the order in which they change the forces.
   [[nodiscard]] std::string actions() const {
-    std::string text = walls();
+    std::string text;
+    if (std::ranges::any_of(model_.walls, &Wall::moves) || !model_.motions.empty() || !model_.timed_loads.empty())
+      text += "variable t equal step*dt\n";
+    text += walls();
     if (model_.gravity != Vec2{})
       line(text, "fix gravity all gravity {} vector {} {} 0", exact(norm(model_.gravity)),
            exact(model_.gravity.x / norm(model_.gravity)), exact(model_.gravity.y / norm(model_.gravity)));
-    const bool x = !loads(true).empty(), y = !loads(false).empty();
-    if (x) text += "variable load_x atomfile load_x.txt\n";
-    if (y) text += "variable load_y atomfile load_y.txt\n";
-    if (x || y) line(text, "fix loads all addforce {} {} 0", x ? "v_load_x" : "0", y ? "v_load_y" : "0");
+    text += actions_.loads;
     const std::string held_x = group_of("held_x", [](const EngineBody& body) { return body.held[0].has_value(); });
     const std::string held_y = group_of("held_y", [](const EngineBody& body) { return body.held[1].has_value(); });
     const std::string rigid = group_of("rigid", [](const EngineBody& body) { return body.held[2].has_value(); });
@@ -305,6 +298,7 @@ class LammpsWriter {
     if (!held_y.empty()) text += "fix hold_y held_y setforce NULL 0 NULL\n";
     if (model_.local_damping > 0)
       line(text, "fix damping all damping/cundall {} {}", exact(model_.local_damping), exact(model_.local_damping));
+    text += actions_.supports;
     const char* of_disc = model_.body == Body::disc ? " disc" : "";
     if (rigid.empty()) {
       line(text, "fix motion all nve/{}{}", style(), of_disc);
@@ -347,18 +341,18 @@ class LammpsWriter {
   static constexpr double smallest_dashpot = 1e-200;
 
   const EngineModel& model_;
-  std::map<std::pair<double, double>, int> bond_types_;
+  const LammpsActions& actions_;
+  std::map<std::array<double, 4>, int> bond_types_;
   std::map<int, int> types_;  // atom type of each kind of bodies
 };
 
 }  // namespace
 
 std::vector<EngineFile> lammps_files(const EngineModel& model) {
-  const LammpsWriter writer(model);
+  const LammpsActions actions = lammps_actions(model);
+  const LammpsWriter writer(model, actions);
   std::vector<EngineFile> files{{"in.equidem", writer.input()}, {"assembly.data", writer.data()}};
-  for (const bool along_x : {true, false})
-    if (std::string text = writer.loads(along_x); !text.empty())
-      files.push_back({along_x ? "load_x.txt" : "load_y.txt", std::move(text)});
+  files.insert(files.end(), actions.tables.begin(), actions.tables.end());
   files.push_back(readme_of(model, Engine::lammps));
   return files;
 }

@@ -12,6 +12,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/output/export/engine_files.hpp"
+#include "equidem/output/export/engine_formulas.hpp"
 
 namespace equidem {
 namespace {
@@ -53,11 +54,16 @@ O.engines = [
     NewtonIntegrator(damping=DAMPING, gravity=GRAVITY),
 ]
 for row in BONDS.strip().split("\n") if BONDS.strip() else []:
-    i, j, kn, ks = row.split()
+    i, j, kn, ks, across, up = row.split()
     bond = utils.createInteraction(int(i), int(j))
     bond.phys.kn, bond.phys.ks = float(kn), float(ks)
     bond.phys.normalAdhesion = bond.phys.shearAdhesion = 1e30 * float(kn)
     bond.phys.unp = bond.geom.penetrationDepth  # no force at the start
+    if O.periodic:  # YADE guesses the image, and not always the bonded one
+        bond.cellDist = (int(across), int(up), 0)
+        first, second = O.bodies[int(i)], O.bodies[int(j)]
+        branch = second.state.pos - first.state.pos + Vector3(int(across) * PERIOD[0], int(up) * PERIOD[1], 0)
+        bond.phys.unp = first.shape.radius + second.shape.radius - branch.norm()
 )";
 
 constexpr std::string_view elastic_law = R"(
@@ -98,7 +104,32 @@ def move_walls():
         O.bodies[number].state.vel = ((then[0] - now[0]) / O.dt, (then[1] - now[1]) / O.dt, 0)
 
 
-O.engines = O.engines[:-1] + [PyRunner(command='move_walls()', iterPeriod=1)] + O.engines[-1:]
+O.engines = O.engines[:-1] + [PyRunner(command='move_walls()', iterPeriod=1, initRun=True)] + O.engines[-1:]
+)";
+
+constexpr std::string_view follow_schedules = R"(
+
+def follow_schedules():
+    """The velocity by which each support is in its place after the step, and the loads."""
+    now, then = O.iter * O.dt, (O.iter + 1) * O.dt
+    for component, place_at, numbers in SUPPORTS:
+        speed = (place_at(then) - place_at(now)) / O.dt
+        for number in numbers:
+            state = O.bodies[number].state
+            if component == 2:
+                state.angVel = (0, 0, speed)
+            else:
+                velocity = state.vel
+                velocity[component] = speed
+                state.vel = velocity
+    for factor_at, shares in LOADS:
+        factor = factor_at(now)
+        for number, fx, fy, torque in shares:
+            O.forces.addF(number, (factor * fx, factor * fy, 0))
+            O.forces.addT(number, (0, 0, factor * torque))
+
+
+O.engines = O.engines[:-1] + [PyRunner(command='follow_schedules()', iterPeriod=1, initRun=True)] + O.engines[-1:]
 )";
 
 constexpr std::string_view run_to_rest = R"(
@@ -135,9 +166,11 @@ O.step()  # tangential forces follow velocities, and none count in the first ste
 for body in O.bodies:
     if isinstance(body.shape, Sphere):  # the velocities after half a step, which it took for those after a whole one
         state = body.state
-        state.vel, state.angVel = state.vel / 2, state.angVel / 2
-        state.pos -= O.dt * state.vel
-        state.ori = Quaternion((0, 0, 1), -O.dt * state.angVel[2]) * state.ori
+        half = Vector3(*(0 if letter in state.blockedDOFs else speed / 2 for letter, speed in zip("xyz", state.vel)))
+        turn = 0 if "Z" in state.blockedDOFs else state.angVel[2] / 2
+        state.vel, state.angVel = state.vel - half, state.angVel - Vector3(0, 0, turn)
+        state.pos -= O.dt * half
+        state.ori = Quaternion((0, 0, 1), -O.dt * turn) * state.ori
 for number, velocity, spin in VELOCITIES:
     state = O.bodies[number].state
     state.pos += O.dt * velocity
@@ -182,6 +215,7 @@ class YadeWriter {
     text += fmt::format("GRAVITY = ({}, {}, 0.0)\n", exact(model_.gravity.x), exact(model_.gravity.y));
     if (model_.to_rest)
       text += fmt::format("TOLERANCE = {}  # N/m, of the unbalanced force\n", exact(1e-10 * force_scale(model_)));
+    if (model_.bonded) text += cell();
     text += bodies();
     if (model_.bonded) text += bonds();
     text += model_.bonded ? std::string(bodies_of_bonds) : damped() ? damped_materials() : materials();
@@ -191,6 +225,7 @@ class YadeWriter {
     text += model_.bonded ? make_bonds : make_contacts;
     text += fmt::format("O.dt = {}\n", exact(model_.time_step));
     if (std::ranges::any_of(model_.walls, &Wall::moves)) text += moving_walls();
+    if (!model_.motions.empty() || !model_.timed_loads.empty()) text += schedules();
     text += "# Motion\n";
     text += model_.to_rest ? run_to_rest : run_steps;
     text += write_end;
@@ -198,6 +233,14 @@ class YadeWriter {
   }
 
  private:
+  /// The period; that of z, in which nothing moves, is any.
+  [[nodiscard]] std::string cell() const {
+    if (!model_.period) return "PERIOD = (0.0, 0.0)\n";
+    const Vec2 period = *model_.period;
+    return fmt::format("PERIOD = ({0}, {1})  # m\nO.periodic = True\nO.cell.setBox({0}, {1}, {0})\n", exact(period.x),
+                       exact(period.y));
+  }
+
   /// The loops above split rows by '\n' and words by ' '.
   [[nodiscard]] std::string bodies() const {
     std::string text =
@@ -211,17 +254,17 @@ class YadeWriter {
             body.velocity.y, body.spin, body.load.force.x, body.load.force.y, body.load.moment})
         text += exact(value) + " ";
       text += fmt::format("{}", model_.bonded ? 0 : body.kind);
-      for (const auto& held : body.held) text += " " + (held ? exact(*held) : "-");
+      for (const auto& held : body.held) text += fmt::format(" {}", held ? exact(*held) : "-");
       text += '\n';
     }
     return text + "\"\"\"\n";
   }
 
   [[nodiscard]] std::string bonds() const {
-    std::string text = "# i j kn ks\nBONDS = \"\"\"\n";
+    std::string text = "# i j kn ks, periods to the image of j\nBONDS = \"\"\"\n";
     for (const EngineBond& bond : model_.bonds)
-      fmt::format_to(std::back_inserter(text), "{} {} {} {}\n", bond.i, bond.j, exact(bond.springs.kN),
-                     exact(bond.springs.kT));
+      fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {}\n", bond.i, bond.j, exact(bond.springs.kN),
+                     exact(bond.springs.kT), bond.shift_x, bond.shift_y);
     return text + "\"\"\"\n";
   }
 
@@ -287,6 +330,22 @@ class YadeWriter {
                           formula_of(wall.move_y, "t"));
     }
     return text + "]\n" + std::string(move_walls);
+  }
+
+  [[nodiscard]] std::string schedules() const {
+    std::string text = "# component (0: x, 1: y, 2: rotation), displacement at the time t, bodies\nSUPPORTS = [\n";
+    for (const EngineMotion& motion : model_.motions)
+      text += fmt::format("    ({}, lambda t: {}, [{}]),\n", motion.component, formula_of(motion.displacement, "t"),
+                          fmt::join(motion.bodies, ", "));
+    text += "]\n# factor at the time t; body, Fx, Fy, moment\nLOADS = [\n";
+    for (const EngineLoad& load : model_.timed_loads) {
+      text += fmt::format("    (lambda t: {}, [\n", formula_of(load.factor, "t"));
+      for (const auto& [body, share] : load.shares)
+        text += fmt::format("        ({}, {}, {}, {}),\n", body, exact(share.force.x), exact(share.force.y),
+                            exact(share.moment));
+      text += "    ]),\n";
+    }
+    return text + "]\n" + std::string(follow_schedules);
   }
 
   const EngineModel& model_;
