@@ -223,6 +223,9 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       // columns
       {"x,y,radus\n0,0,1\n", {"line 1", "column 'radius' is missing", "'radus' may be meant"}},
       {"x y\n0 0\n", {"line 1", "column 'radius' is missing", "x, y"}},
+      {"x_ft,y_ft,radius_ft\n0,0,1\n",
+       {"line 1", "column 'x' is missing", "'x_ft' ends in no unit of length", "'x_mm'"}},
+      {"x [in],y [in],radius [in]\n0,0,1\n", {"line 1", "'x [in]' ends in no unit", "mm"}},
       {"0 0 1 2 3\n", {"line 1", "5 columns without names"}},
       {"x,y,x,r\n0,0,1,1\n", {"line 1", "'x' is there twice"}},
       {"#format jointedPM\n1 2 3\n", {"line 1", "'jointedPM' is no format", "x_y_z_r"}},

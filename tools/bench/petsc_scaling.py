@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""tools/bench/petsc_scaling.py --build FOLDER [--discs N,...] [--repetitions N] [--markdown FILE]
+"""tools/bench/petsc_scaling.py --build FOLDER [--discs N,...] [--largest N] [--repetitions N] [--markdown FILE]
 
 The page data/petsc.md: equidem-mpi on one rank and on two, strong and weak scaling, memory and messages by formula and
 counted, GAMG beside the multigrid of equidem on one, two and four ranks, and what a billion discs on a thousand ranks need by
-these constants. Sizes that the free memory does not bear are left out, with a sentence."""
+these constants. Sizes that the free memory does not bear, and runs that fail, are left out with a sentence that says why."""
 
 import argparse
 import json
@@ -18,9 +18,7 @@ from pathlib import Path
 
 CASE = """schema = "equidem/1"
 [assembly]
-kind = "hexagonal"
-columns = {columns}
-rows = {rows}
+{assembly}
 radius = 0.005
 [springs]
 kN = 1.0e9
@@ -28,7 +26,9 @@ kT = 0.5e9
 [test]
 kind = "uniaxial_tension"
 stress = 1.0e6
+gauge = "quarter"
 """
+ASSEMBLIES = {"hexagonal": 'kind = "hexagonal"\ncolumns = {columns}\nrows = {rows}', "random": 'kind = "delaunay"\ndiscs = {discs}'}
 # Of a network that a cluster has; assumed, not measured.
 LATENCY, BANDWIDTH = 2e-6, 10e9  # s, B/s
 SQRT3 = math.sqrt(3)
@@ -66,15 +66,34 @@ def refusal(discs, of_a_disc):
             f"{si(free)} of memory are free. Give smaller --discs, or run this on a larger machine.")
 
 
-def run(build, folder, discs, ranks, kind="gamg"):
+class Failed(Exception):
+    """A run that ended with an error."""
+
+
+def reason(errors):
+    """The sentence of equidem-mpi, else that of mpirun, else the last words."""
+    lines = [line.strip() for line in errors.splitlines() if line.strip(" -")]
+    for word in ("equidem-mpi:", "mpirun noticed"):
+        for line in lines:
+            if word in line:
+                return line.removeprefix("equidem-mpi: ")
+    return lines[-1] if lines else "it wrote nothing"
+
+
+def run(build, folder, discs, ranks, kind="gamg", assembly="hexagonal"):
     columns, rows = shape(discs)
     case, out = folder / "block.toml", folder / "result.json"
-    case.write_text(CASE.format(columns=columns, rows=rows), encoding="utf-8")
+    made = ASSEMBLIES[assembly].format(columns=columns, rows=rows, discs=discs)
+    case.write_text(CASE.format(assembly=made), encoding="utf-8")
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
                        OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
     used = processor_seconds()
-    subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
-                    "--json", out, "-equidem_pc_type", kind], env=environment, check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
+                           "--json", out, "-equidem_pc_type", kind], env=environment, check=False, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        raise Failed(f"{discs:.0e} discs were left out: the run on {ranks} ranks with {PRECONDITIONERS[kind]} ended with exit code "
+                     f"{done.returncode}: {reason(done.stderr)}")
     result = json.loads(out.read_text(encoding="utf-8"))
     used = processor_seconds() - used
     times = result["times"]
@@ -87,7 +106,8 @@ def run(build, folder, discs, ranks, kind="gamg"):
 
 
 def least(build, folder, jobs, repetitions, base):
-    """The fastest of several runs of each job, which take turns; large ones run once. And the sentences on those left out."""
+    """The fastest of several runs of each job (discs, ranks, preconditioner, assembly), which take turns; large ones run once.
+    And the sentences on those left out."""
     best, left_out, of_a_disc = {}, {}, MEMORY_OF_DISC
     for _ in range(repetitions):
         for job in sorted(jobs):
@@ -100,15 +120,15 @@ def least(build, folder, jobs, repetitions, base):
                 continue
             try:
                 one = run(build, folder, *job)
-            except subprocess.CalledProcessError as failed:  # killed for memory that others took meanwhile, or refused by the program
-                left_out[job[0]] = f"{job[0]:.0e} discs were left out: the run on {job[1]} ranks ended with {failed.returncode}."
-                print(left_out[job[0]], file=sys.stderr)
+            except Failed as failed:  # such as killed for memory that others took meanwhile
+                left_out[job[0]] = str(failed)
+                print(failed, file=sys.stderr)
                 continue
             if one["discs"] >= LARGE / 4:
                 of_a_disc = max(of_a_disc, (one["peak"] - base) / one["owned"])
             if job not in best or one["all"] < best[job]["all"]:
                 best[job] = one
-            print(f"{one['discs']} discs, {one['ranks']} ranks, {PRECONDITIONERS[job[2]]}: {one['all']:.1f} s", file=sys.stderr)
+            print(f"{one['discs']} discs, {job[3]}, {one['ranks']} ranks, {PRECONDITIONERS[job[2]]}: {one['all']:.1f} s", file=sys.stderr)
     return best, list(left_out.values())
 
 
@@ -152,62 +172,105 @@ def base_memory(build, folder):
     return run(build, folder, 100, 1)["peak"]
 
 
-def beside_gamg(sizes, best, base):
-    """Rows for both preconditioners on every number of ranks that was run."""
+def number_of(discs):
+    return f"{discs:,}".replace(",", " ")
+
+
+def pairs(best, assembly):
+    """Size, ranks and the runs (GAMG, the multigrid of equidem) of one block."""
+    return [(discs, ranks, (best[(discs, ranks, "gamg", assembly)], best[(discs, ranks, "equidem", assembly)]))
+            for discs, ranks, kind, made in sorted(best)
+            if (kind, made) == ("gamg", assembly) and (discs, ranks, "equidem", assembly) in best]
+
+
+def both(pair, value, form):
+    return ", ".join(form.format(value(one)) for one in pair)
+
+
+def strong(sizes, largest, best, base):
     rows = []
-    for discs, ranks, kind in sorted(best):
-        if discs not in sizes or kind != "gamg" or (discs, ranks, "equidem") not in best:
+    for discs in sizes:
+        one, two = best[(discs, 1, "gamg", "hexagonal")], best[(discs, 2, "gamg", "hexagonal")]
+        rows += [(one, "1.00"), (two, f"{faster(one, two):.2f}")]
+    if (largest, 2, "gamg", "hexagonal") in best:
+        rows.append((best[(largest, 2, "gamg", "hexagonal")], "one rank was not run"))
+    return [[number_of(r["discs"]), str(r["ranks"]), f"{r['set_up']:.2f}", f"{r['solve']:.2f}", f"{r['all']:.2f}", f"{r['processor']:.1f}",
+             ratio, str(r["iterations"]), f"{r['residual']:.0e}", si(r["peak"]), f"{(r['peak'] - base) / r['owned']:.0f}"] for r, ratio in rows]
+
+
+def weak(sizes, best):
+    rows = []
+    for discs in sizes:
+        jobs = [((discs, 1, kind, "hexagonal"), (2 * discs, 2, kind, "hexagonal")) for kind in PRECONDITIONERS]
+        if not all(job in best for pair in jobs for job in pair):
             continue
-        gamg, ours = best[(discs, ranks, "gamg")], best[(discs, ranks, "equidem")]
-        row = [f"{gamg['discs']:,}".replace(",", " "), str(ranks)]
-        for key, form in (("iterations", "{}"), ("set_up", "{:.2f}"), ("solve", "{:.2f}"), ("processor", "{:.1f}")):
-            row.append(", ".join(form.format(r[key]) for r in (gamg, ours)))
-        row.append(", ".join(f"{(r['peak'] - base) / r['owned']:.0f}" for r in (gamg, ours)))
-        row.append(f"{gamg['processor'] / ours['processor']:.2f}")
-        rows.append(row)
+        ones, twos = [best[one] for one, _ in jobs], [best[two] for _, two in jobs]
+        kept = ", ".join(f"{2 * one['processor'] / two['processor']:.2f}" for one, two in zip(ones, twos))
+        rows.append([f"{discs:.0e}", both(ones, lambda r: r["processor"], "{:.1f}"), both(twos, lambda r: r["processor"], "{:.1f}"), kept,
+                     both(twos, lambda r: r["iterations"], "{}")])
     return rows
 
 
-def page(command, built, sizes, best, cuts, base, left_out):
+def beside_gamg(best, base):
+    """Rows of times and memory for both preconditioners."""
+    rows = []
+    for discs, ranks, pair in pairs(best, "hexagonal"):
+        if ranks > 2:
+            continue
+        gamg, ours = pair
+        ones = [best.get((discs, 1, kind, "hexagonal")) for kind in PRECONDITIONERS]
+        ratios = ", ".join(f"{faster(one, r):.2f}" if one else "one rank was not run" for one, r in zip(ones, pair))
+        rows.append([number_of(gamg["discs"]), str(gamg["ranks"]), both(pair, lambda r: r["set_up"], "{:.2f}"),
+                     both(pair, lambda r: r["solve"], "{:.2f}"), both(pair, lambda r: r["all"], "{:.2f}"),
+                     both(pair, lambda r: r["processor"], "{:.1f}"), ratios,
+                     both(pair, lambda r: (r["peak"] - base) / r["owned"], "{:.0f}"), f"{gamg['processor'] / ours['processor']:.2f}"])
+    return rows
+
+
+def counts(best):
+    """Rows of iterations and messages for both preconditioners, of the smallest block of each assembly."""
+    rows = []
+    for assembly, name in (("hexagonal", "hexagonal"), ("random", "random triangulation")):
+        found = pairs(best, assembly)
+        for discs, ranks, pair in found:
+            if discs != found[0][0]:
+                continue
+            rows.append([f"{number_of(pair[0]['discs'])} discs, {name}", str(ranks), both(pair, lambda r: r["iterations"], "{}"),
+                         both(pair, lambda r: r["messages"], "{}"), both(pair, lambda r: si(r["bytes"]), "{}"),
+                         both(pair, lambda r: r["sums"], "{}")])
+    return rows
+
+
+def page(command, built, sizes, largest, best, cuts, base, left_out):
     lines = ["# Statics on PETSc: measured, and planned past it", "",
              f"`{command}` writes this page. {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the end; equidem-mpi was "
              f"built {built}. Where others work on the machine, times by the clock scatter, and say little; processor times say "
              "more: those of two ranks hold their waiting for each other, so that ratios of them are what is surely kept. Memory, "
              "iterations and messages do not depend on the load.", "",
-             "The tension test of hexagonal blocks, conjugate gradients with GAMG, each pass to 1e-8, two passes to the digits of a "
-             "double. Memory and messages are those of the rank with most.", "",
-             "## Strong scaling", ""]
-    rows = []
-    for discs in sizes:
-        one, two = best[(discs, 1, "gamg")], best[(discs, 2, "gamg")]
-        for r in (one, two):
-            rows.append([f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), f"{r['set_up']:.2f}", f"{r['solve']:.2f}",
-                         f"{r['all']:.2f}", f"{r['processor']:.1f}", f"{faster(one, r):.2f}", str(r["iterations"]), f"{r['residual']:.0e}",
-                         si(r["peak"]), f"{(r['peak'] - base) / r['owned']:.0f}"])
+             "The tension test of blocks, conjugate gradients, each pass to 1e-8, two passes to the digits of a "
+             "double. Memory and messages are those of the rank with most. Pairs are GAMG and the multigrid of equidem.", "",
+             "## Strong scaling", "", "Hexagonal blocks, with GAMG.", ""]
     table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster by at least", "iterations", "residual", "memory of a rank",
-                  f"of it for a disc, B (beyond {si(base)})"], rows)
-    of_a_disc = (best[(max(sizes), 1, "gamg")]["peak"] - base) / best[(max(sizes), 1, "gamg")]["owned"]
-    lines += [f"Four million discs take {si(base + 4e6 * of_a_disc)} by the last column. The peak is that of the assembly of the matrix: its "
-              "coordinates, places and a copy.", ""]
+                  f"of it for a disc, B (beyond {si(base)})"], strong(sizes, largest, best, base))
+    of_a_disc = (best[(max(sizes), 1, "gamg", "hexagonal")]["peak"] - base) / best[(max(sizes), 1, "gamg", "hexagonal")]["owned"]
+    lines += [f"By the last column {largest or 4e6:.0e} discs take {si(base + (largest or 4e6) * of_a_disc)}. The peak is that of the "
+              "assembly of the matrix: its coordinates, places and a copy.", ""]
     lines += [text for sentence in left_out for text in (sentence, "")]
     lines += ["## Weak scaling", "", "Twice the discs on two ranks take twice the processor time of one where nothing is lost.", ""]
-    rows = []
-    for discs in sizes:
-        if (2 * discs, 2, "gamg") in best:
-            one, two = best[(discs, 1, "gamg")], best[(2 * discs, 2, "gamg")]
-            rows.append([f"{discs:.0e}", f"{one['processor']:.1f}", f"{two['processor']:.1f}", f"{2 * one['processor'] / two['processor']:.2f}",
-                         f"{one['iterations']}, {two['iterations']}"])
-    table(lines, ["discs of a rank", "one rank: processor, s", "two ranks: processors, s", "share kept, at least", "iterations"], rows)
+    table(lines, ["discs of a rank", "one rank: processor, s", "two ranks: processors, s", "share kept, at least", "iterations on two"],
+          weak(sizes, best))
     lines += ["## The multigrid of equidem", "",
-              "`-equidem_pc_type equidem`: grids over the whole assembly whose nodes carry rigid motions, the same on every number of ranks. "
-              "Pairs are GAMG and this. Times on more ranks than processors say nothing; iterations do.", ""]
-    table(lines, ["discs", "ranks", "iterations", "set up, s", "solve, s", "processors, s", "memory of a disc, B", "GAMG over this, processors"],
-          beside_gamg(sizes, best, base))
+              "`-equidem_pc_type equidem`: grids over the whole assembly whose nodes carry rigid motions, the same on every number of ranks, "
+              "smoothed and multiplied by PETSc in parallel: no blocks of ranks on their own.", ""]
+    table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster than one rank by at least",
+                  "memory of a disc, B", "GAMG over this, processors"], beside_gamg(best, base))
+    lines += ["Iterations and messages do not depend on the compiler or on what else the machine does.", ""]
+    table(lines, ["assembly", "ranks", "iterations", "messages of the rank with most", "bytes of it", "sums over ranks"], counts(best))
     lines += ["## Messages", "",
               "A rank has a block of w columns and h rows. It sends 8 B for each component of the discs that others mirror: the left "
               "column, the lowest row, and every other disc of the right column, which upper left contacts reach: "
               "24 (h + w + h/2) B where it has neighbours on all sides.", ""]
-    rows = [[f"{r['discs']:,}".replace(",", " "), str(r["ranks"]), si(exchange_by_formula(r["columns"], r["rows"], r["ranks"])),
+    rows = [[number_of(r["discs"]), str(r["ranks"]), si(exchange_by_formula(r["columns"], r["rows"], r["ranks"])),
              si(r["exchange"]), str(r["messages"]), si(r["bytes"]), str(r["sums"]),
              f"{r['messages'] / r['iterations']:.1f}", f"{r['sums'] / r['iterations']:.1f}"] for r in cuts]
     table(lines, ["discs", "ranks", "one exchange by formula", "counted", "messages in all", "bytes in all", "sums over ranks",
@@ -217,14 +280,14 @@ def page(command, built, sizes, best, cuts, base, left_out):
 
 
 def plan(sizes, best, cuts, base):
-    runs = [best[(discs, ranks, "gamg")] for discs in sizes for ranks in (1, 2) if 4 * discs >= max(sizes)]
+    runs = [best[(discs, ranks, "gamg", "hexagonal")] for discs in sizes for ranks in (1, 2) if 4 * discs >= max(sizes)]
     large = max(sizes)
     memory = [(r["peak"] - base) / r["owned"] for r in runs]
     # Of one rank, less what others took of its processor.
     alone = [(r, min(1, r["processor"] / r["all"]) / r["discs"]) for r in runs if r["ranks"] == 1]
     set_up = [(r["before"] + r["set_up"]) * share for r, share in alone]
     step = [r["solve"] * share / r["iterations"] for r, share in alone]
-    small, big = best[(min(sizes), 1, "gamg")], best[(large, 1, "gamg")]
+    small, big = (best[(discs, 1, "gamg", "hexagonal")] for discs in (min(sizes), large))
     decades = math.log10(big["discs"] / small["discs"])
     growth = (big["iterations"] - small["iterations"]) / decades if decades > 0 else 0
     discs, ranks = 1e9, 1000
@@ -274,27 +337,33 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, required=True, help="a build folder with equidem-mpi")
     parser.add_argument("--discs", default="1e5,2e5,5e5,1e6", help="sizes of blocks; default %(default)s")
+    parser.add_argument("--largest", help="one more size, on two ranks alone")
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--markdown", type=Path, help="the page; left out: stdout")
     request = parser.parse_args()
     sizes = sorted(int(float(word)) for word in request.discs.split(","))
+    largest = int(float(request.largest)) if request.largest else None
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         build = request.build.resolve()
         base = base_memory(build, folder)
-        jobs = {(discs, ranks, kind) for discs in sizes for ranks in (1, 2) for kind in PRECONDITIONERS}
-        jobs |= {(2 * discs, 2, "gamg") for discs in sizes if 2 * discs <= max(sizes)}
-        jobs |= {(min(sizes), 4, kind) for kind in PRECONDITIONERS}
+        jobs = {(discs, ranks, kind, "hexagonal") for discs in sizes for ranks in (1, 2) for kind in PRECONDITIONERS}
+        jobs |= {(2 * discs, 2, kind, "hexagonal") for discs in sizes if 2 * discs <= max(sizes) for kind in PRECONDITIONERS}
+        jobs |= {(min(sizes), 4, kind, "hexagonal") for kind in PRECONDITIONERS} | {(min(sizes), 9, "gamg", "hexagonal")}
+        jobs |= {(min(sizes), ranks, kind, "random") for ranks in (1, 2, 4) for kind in PRECONDITIONERS}
+        if largest:
+            jobs |= {(largest, 2, kind, "hexagonal") for kind in PRECONDITIONERS}
         best, left_out = least(build, folder, jobs, request.repetitions, base)
-        sizes = [discs for discs in sizes if all((discs, ranks, "gamg") in best for ranks in (1, 2))]
-        if not sizes:
-            sys.exit(1)
-        cuts = [best[(discs, 2, "gamg")] for discs in sizes]
-        cuts += [best[(sizes[0], 4, "gamg")], run(build, folder, sizes[0], 9)]
+    sizes = [discs for discs in sizes if all((discs, ranks, "gamg", "hexagonal") in best for ranks in (1, 2))]
+    few = [(sizes[0], ranks, "gamg", "hexagonal") for ranks in (4, 9)] if sizes else []
+    if not sizes or not all(job in best for job in few):
+        sys.exit("There is no page without the smallest block on 1, 2, 4 and 9 ranks.")
+    cuts = [best[(discs, 2, "gamg", "hexagonal")] for discs in sizes] + [best[job] for job in few]
     about = subprocess.run([build / "tools" / "equidem-mpi", "--version"], capture_output=True, text=True, check=True).stdout
     built = about.splitlines()[1].partition(", compiler")[0] + f" (preset {build.name})"
-    command = f"tools/bench/petsc_scaling.py --build build/{build.name} --discs {request.discs} --markdown data/petsc.md"
-    text = page(command, built, sizes, best, cuts, base, left_out)
+    further = f"--largest {request.largest} " if largest else ""
+    command = f"tools/bench/petsc_scaling.py --build build/{build.name} --discs {request.discs} {further}--markdown data/petsc.md"
+    text = page(command, built, sizes, largest, best, cuts, base, left_out)
     if request.markdown:
         request.markdown.write_text(text, encoding="utf-8")
     else:

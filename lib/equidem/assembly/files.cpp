@@ -2,6 +2,7 @@
 #include "equidem/assembly/files.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -258,6 +259,14 @@ DiscGroup read_group(const Json& value, const std::string& entry) {
 Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
+  }
+  constexpr std::size_t head = 512;
+  const bool is_text = std::none_of(text.begin(), text.begin() + std::min(head, text.size()), [](char c) {
+    return std::iscntrl(static_cast<unsigned char>(c)) != 0 && std::isspace(static_cast<unsigned char>(c)) == 0;
+  });
+  if (!is_text) {
+    bad_input_at("line 1", "this is not JSON, nor text",
+                 "it is compressed, or written by a program in a form of its own", "Unpack it, or write it as text");
   }
   // Numbers of a line such as "[0.5, 1, 0.25]" take the most: 16 bytes each and a vector that grows. Refused
   // beforehand, because the parser cannot free its values where memory has run out.

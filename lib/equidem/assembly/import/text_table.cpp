@@ -121,6 +121,15 @@ std::size_t TextTable::need(const std::vector<std::string>& names, const std::st
   if (const auto found = find(names)) return *found;
   std::vector<std::string> given;
   for (const ColumnName& column : names_) given.push_back(column.name);
+  const auto with_unit = std::ranges::find_if(given, [&](const std::string& name) {
+    return name.starts_with(names.front() + "_") || name.starts_with(names.front() + "[") ||
+           name.starts_with(names.front() + " ");
+  });
+  if (with_unit != given.end()) {
+    bad_input_at(fmt::format("line {}", line_of_names_), fmt::format("the column '{}' is missing", names.front()),
+                 fmt::format("'{}' ends in no unit of length that is known: m, dm, cm, mm, um, nm, km", *with_unit),
+                 fmt::format("Convert it, and name it as '{0}_mm' or '{0} [mm]'", names.front()));
+  }
   const auto meant = nearest(names.front(), given);
   bad_input_at(fmt::format("line {}", line_of_names_), fmt::format("the column '{}' is missing", names.front()), why,
                meant ? fmt::format("The column '{}' may be meant", *meant)
