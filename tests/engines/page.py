@@ -37,6 +37,9 @@ and the same checks are tests with the label `engines`; they are skipped where a
   diameter, here 1e-3, and settled boxes by which contacts slide because of it; and the slip of a step is taken at
   its end, in equidem in its middle.
 - Friction is exported where `--accept friction` is given, with the levers of the engine.
+- Schedules, dashpots of bonds and pulses: one run as it is, with its finite motion, which falls with the loads (YADE: by
+  ten with loads a tenth; LAMMPS loses digits of small angles then). A support of LAMMPS is driven by the force that
+  puts it into its place in each step.
 - Walls that move: the speed of a wall acts on dashpots; LAMMPS takes the difference of two places over a step.
 - PFC is not free: its commands are not run here.
 '''

@@ -106,12 +106,13 @@ def run(build, folder, discs, ranks, kind="gamg", assembly="hexagonal"):
 
 
 def least(build, folder, jobs, repetitions, base):
-    """The fastest of several runs of each job (discs, ranks, preconditioner, assembly), which take turns; large ones run once.
+    """The fastest of several runs of each job (discs, ranks, preconditioner, assembly), which take turns; large ones, and those of which
+    only counts are told (more than two ranks), run once.
     And the sentences on those left out."""
     best, left_out, of_a_disc = {}, {}, MEMORY_OF_DISC
     for _ in range(repetitions):
         for job in sorted(jobs):
-            if job[0] in left_out or (job in best and job[0] >= LARGE):
+            if job[0] in left_out or (job in best and (job[0] >= LARGE or job[1] > 2)):
                 continue
             sentence = refusal(job[0], of_a_disc)
             if sentence:
@@ -219,7 +220,7 @@ def beside_gamg(best, base):
             continue
         gamg, ours = pair
         ones = [best.get((discs, 1, kind, "hexagonal")) for kind in PRECONDITIONERS]
-        ratios = ", ".join(f"{faster(one, r):.2f}" if one else "one rank was not run" for one, r in zip(ones, pair))
+        ratios = ", ".join(f"{faster(one, r):.2f}" for one, r in zip(ones, pair)) if all(ones) else "one rank was not run"
         rows.append([number_of(gamg["discs"]), str(gamg["ranks"]), both(pair, lambda r: r["set_up"], "{:.2f}"),
                      both(pair, lambda r: r["solve"], "{:.2f}"), both(pair, lambda r: r["all"], "{:.2f}"),
                      both(pair, lambda r: r["processor"], "{:.1f}"), ratios,

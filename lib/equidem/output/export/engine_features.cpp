@@ -34,14 +34,15 @@ void require_carried(const FoundFeatures& found, Engine engine, const std::vecto
 
 std::string engine_features_table() {
   const auto names = names_of<Engine>();
-  std::string text = fmt::format("| part of a model | {} |\n|---|---|---|---|\n", joined(names, " | "));
+  std::string text =
+      fmt::format("| part of a model | {} | why it is refused |\n|---|---|---|---|---|\n", joined(names, " | "));
   for (const EngineFeatureRow& row : EnumNames<EngineFeature>::list) {
     std::vector<std::string> cells;
     for (const auto& engine : EnumNames<Engine>::list) {
       const std::string otherwise = row.accept != nullptr ? fmt::format("with --accept {}", row.accept) : "no";
       cells.push_back(row.carried_by(engine.value) ? "yes" : otherwise);
     }
-    text += fmt::format("| {} | {} |\n", row.name, joined(cells, " | "));
+    text += fmt::format("| {} | {} | {} |\n", row.name, joined(cells, " | "), row.why);
   }
   return text;
 }

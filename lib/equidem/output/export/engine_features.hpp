@@ -124,7 +124,8 @@ struct EnumNames<EngineFeature> {
       {schedules, "displacements and loads that follow a schedule", true, true, false,
        "they would need its programming", "Export to lammps or yade, or take the schedule out"},
       {turning_schedules, "rotations that follow a schedule", false, true, false,
-       "it has no command for the torque on single atoms", "Export to yade, or take the schedule out"},
+       "LAMMPS has no command for the torque on single atoms, PFC would need its programming",
+       "Export to yade, or take the schedule out"},
       {schedules_to_rest, "schedules in a run until rest", false, false, false,
        "its script would end at a rest before the schedule does", "Give run.duration in place of run.until_rest"},
       {long_tables, "schedules of more than 50 points", false, false, false, "a schedule is one formula there",
@@ -138,7 +139,8 @@ struct EnumNames<EngineFeature> {
        "Export to lammps, or take local damping"},
       {walls_of_bonds, "walls that push bonded discs", true, false, false, "they are written for LAMMPS alone",
        "Export to lammps, or hold discs by supports"},
-      {oblique_walls, "walls that are not parallel to an axis", true, false, true, "its walls are", "Export to lammps"},
+      {oblique_walls, "walls that are not parallel to an axis", true, false, true, "its walls are parallel to one",
+       "Export to lammps"},
       {shaped_walls, "segments and arcs as walls", false, false, false, "its walls are planes",
        "Take lines, or 'equidem run'"},
       {moving_walls, "walls that move", true, true, false, "they would need its programming",
@@ -189,7 +191,7 @@ void require_carried(const FoundFeatures& found, Engine engine, const std::vecto
 /// The words of --accept, with the features that they are about.
 std::vector<std::string> acceptable_features();
 
-/// The table in Markdown: a row for each feature, a column for each engine.
+/// The table in Markdown: a row for each feature, a column for each engine, and the reason of its refusals.
 std::string engine_features_table();
 
 }  // namespace equidem
