@@ -253,9 +253,13 @@ def page(command, built, sizes, largest, best, cuts, base, left_out):
              "## Strong scaling", "", "Hexagonal blocks, with GAMG.", ""]
     table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster by at least", "iterations", "residual", "memory of a rank",
                   f"of it for a disc, B (beyond {si(base)})"], strong(sizes, largest, best, base))
-    of_a_disc = (best[(max(sizes), 1, "gamg", "hexagonal")]["peak"] - base) / best[(max(sizes), 1, "gamg", "hexagonal")]["owned"]
-    lines += [f"By the last column {largest or 4e6:.0e} discs take {si(base + (largest or 4e6) * of_a_disc)}. The peak is that of the "
-              "assembly of the matrix: its coordinates, places and a copy.", ""]
+    one = best[(max(sizes), 1, "gamg", "hexagonal")]
+    planned = largest or 4e6
+    lines += [f"By the last column of one rank {planned:.0e} discs take {si(base + planned * (one['peak'] - base) / one['owned'])}. The peak is that "
+              "of the assembly of the matrix: its coordinates, places and a copy."]
+    if (largest, 2, "gamg", "hexagonal") in best:
+        lines[-1] += f" Two ranks took at most {si(2 * best[(largest, 2, 'gamg', 'hexagonal')]['peak'])} together."
+    lines += [""]
     lines += [text for sentence in left_out for text in (sentence, "")]
     lines += ["## Weak scaling", "", "Twice the discs on two ranks take twice the processor time of one where nothing is lost.", ""]
     table(lines, ["discs of a rank", "one rank: processor, s", "two ranks: processors, s", "share kept, at least", "iterations on two"],
