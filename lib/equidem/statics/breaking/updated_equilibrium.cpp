@@ -152,7 +152,10 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   }
   ++unwatched;
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
-  lost_digits = lost_digits || path.share < delicate || path.share > 1 / delicate || !path.held.empty();
+  if (path.share < delicate || path.share > 1 / delicate || !path.held.empty()) {
+    lost_digits = true;
+    caution = std::max(caution, 1.0);  // residuals found before say nothing about such a factor
+  }
   if (carried && (lost_digits || claimed() > state.options.watched_residual || unwatched >= interval)) {
     refine(0, &mechanisms);
   } else if (carried && springs.kN == 0 && springs.kT == 0) {
@@ -204,7 +207,7 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
   }
   measured = after;
   // What rounding may leave is known for all networks; a network leaves less, and how much less is seen here.
-  constexpr double margin = 4, least = 0.25, noise = 1e-14;
+  constexpr double margin = 4, least = 0.125, noise = 1e-14;
   if (found_over_claimed > 1) {
     caution *= 2 * found_over_claimed;
   } else if (!lost_digits && rounding > noise) {
