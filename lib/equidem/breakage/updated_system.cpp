@@ -139,7 +139,8 @@ class UpdatedSystem final : public SolvedStates {
     constexpr double allowed = 1e-12, very_soft = 100;
     const double softer = moved_ ? first_energy_ / energy_ : energy_ / first_energy_;
     const bool soft = moved_ && !(energy_ * very_soft > first_energy_);
-    if (states_[0].carried && (soft || !(softer * softer * equilibrium_.estimated_residual() < allowed))) {
+    const double harm = moved_ ? softer * softer : softer;
+    if (states_[0].carried && (soft || !(harm * equilibrium_.estimated_residual() < allowed))) {
       static_cast<void>(equilibrium_.refine());
       taken_ = false;
       opened_ = nullptr;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/kernels/panel_solve.hpp"
 
+#include <array>
+#include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #define EQUIDEM_INLINE inline __attribute__((always_inline))
 
@@ -37,11 +40,36 @@ EQUIDEM_INLINE void store(Real* to, const Vector<Real>& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
+/// totals[j] = sum of the lanes of v[j].
+template <typename Real, std::size_t N>
+EQUIDEM_INLINE void add_lanes(const Vector<Real> (&v)[N], Real* totals) {
+  if constexpr (std::is_same_v<Real, double> && N == 4) {
+    const auto low = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
+    const auto high = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
+    store<double>(totals,
+                  __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7));
+  } else {
+    for (std::size_t j = 0; j < N; ++j) {
+      totals[j] = 0;
+      for (std::size_t e = 0; e < width<Real>; ++e) totals[j] += v[j][e];
+    }
+  }
+}
+
+/// The last `count` numbers of a vector, < width; 0 before them, whatever stands there.
 template <typename Real>
-EQUIDEM_INLINE Real sum(const Vector<Real>& v) {
-  Real total = 0;
-  for (std::size_t e = 0; e < width<Real>; ++e) total += v[e];
-  return total;
+EQUIDEM_INLINE Vector<Real> load_last(const Real* end, std::size_t count) {
+  using Bits = std::conditional_t<sizeof(Real) == 8, std::int64_t, std::int32_t>;
+  typedef Bits Mask __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
+  static constexpr auto masks = [] {
+    std::array<Bits, 2 * width<Real>> all{};
+    for (std::size_t e = width<Real>; e < all.size(); ++e) all[e] = -1;
+    return all;
+  }();
+  Mask mask, bits;
+  std::memcpy(&mask, masks.data() + count, sizeof mask);
+  std::memcpy(&bits, end - width<Real>, sizeof bits);
+  return reinterpret_cast<Vector<Real>>(bits & mask);
 }
 
 /// Pivots [p, p + N) of L y = b for C columns w of `rows` numbers.
@@ -83,6 +111,8 @@ template <typename Real, std::size_t N, std::size_t C>
 EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w) {
   const std::size_t ld = panel.rows;
   const Real* a = panel.values + p * ld;
+  Real inverse[N];  // of pivots: divisions do not wait for each other
+  for (std::size_t j = 0; j < N; ++j) inverse[j] = 1 / a[j * ld + p + j];
   Vector<Real> sums[C][N] = {};
   std::size_t r = p + N;
   for (; r + width<Real> <= ld; r += width<Real>) {
@@ -96,13 +126,22 @@ EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w)
       for (std::size_t j = 0; j < N; ++j) sums[c][j] += l[j] * v;
     }
   }
+  if (r < ld && ld >= width<Real>) {
+    for (std::size_t c = 0; c < C; ++c) {
+      const Vector<Real> v = load_last(w + (c + 1) * ld, ld - r);
+      for (std::size_t j = 0; j < N; ++j) sums[c][j] += load_last(a + (j + 1) * ld, ld - r) * v;
+    }
+    r = ld;
+  }
   for (std::size_t c = 0; c < C; ++c) {
     Real* column = w + c * ld;
+    Real below[N];
+    add_lanes<Real, N>(sums[c], below);
     for (std::size_t j = N; j-- > 0;) {
-      Real value = column[p + j] - sum<Real>(sums[c][j]);
+      Real value = column[p + j] - below[j];
       for (std::size_t s = r; s < ld; ++s) value -= a[j * ld + s] * column[s];
       for (std::size_t i = j + 1; i < N; ++i) value -= a[j * ld + p + i] * column[p + i];
-      column[p + j] = value / a[j * ld + p + j];
+      column[p + j] = value * inverse[j];
     }
   }
 }

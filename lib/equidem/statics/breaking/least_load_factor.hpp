@@ -20,6 +20,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -148,10 +149,10 @@ inline double utilization_rate(const SpringConstants& k, const ContactStrength& 
 }
 
 /// A set of contacts, seen from lambda = 0: the least |lambda| at which any breaks in the direction of a search, and
-/// the largest utilization under the dead load.
+/// the largest utilization under the dead load, negative where there are no contacts.
 struct Utilization {
   double load_factor = std::numeric_limits<double>::infinity();
-  double dead = 0;
+  double dead = -1;
 
   void include(const Utilization& other) {
     load_factor = std::min(load_factor, other.load_factor);
@@ -160,14 +161,46 @@ struct Utilization {
   /// The worst that it can be where utilizations have changed by at most `by_dead` + lambda `by_live`: a utilization is
   /// convex in lambda, and so at most on the chord from lambda = 0 to the least load factor.
   [[nodiscard]] Utilization after(double by_dead, double by_live) const {
+    if (dead < 0) return *this;
     const double slope = std::max(1 - dead, 0.0) / load_factor + by_live, left = 1 - dead - by_dead;
     const double least = left > 0 ? left / slope : 0;  // infinite without a slope, not a number without a strength
     return {least >= 0 ? std::min(least, load_factor) : 0, dead + by_dead};
   }
   /// No key of these contacts in a search is less.
   [[nodiscard]] double least_key(const LoadFactorSearch& search) const {
+    if (dead < 0) return std::numeric_limits<double>::infinity();
     const double gone = search.direction * search.from;
     return gone >= 0 && load_factor > gone ? load_factor - gone : -std::numeric_limits<double>::infinity();
+  }
+};
+
+/// Contacts are classed by their utilization_rate, in steps of 2 down from the largest one of a network: a bound by the
+/// rate of a few weak contacts would hide that the many others are far from breaking.
+constexpr std::size_t rate_classes = 8;
+
+/// The class of a rate > 0; the last one has all that are lower still.
+inline std::size_t rate_class(double rate, double largest) {
+  if (!(rate < largest)) return 0;
+  return std::min(static_cast<std::size_t>(std::ilogb(largest / rate)), rate_classes - 1);
+}
+
+/// A set of contacts, by their classes.
+struct ClassedUtilization {
+  std::array<Utilization, rate_classes> of{};
+
+  /// A contact that breaks at once may be among them.
+  [[nodiscard]] static ClassedUtilization unknown() {
+    ClassedUtilization all;
+    all.of.fill({0, 0});
+    return all;
+  }
+  void include(const ClassedUtilization& other) {
+    for (std::size_t c = 0; c < rate_classes; ++c) of[c].include(other.of[c]);
+  }
+  [[nodiscard]] double least_key(const LoadFactorSearch& search) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Utilization& one : of) least = std::min(least, one.least_key(search));
+    return least;
   }
 };
 

@@ -24,7 +24,7 @@ struct UpdatedEquilibrium::Implementation {
   bool lost_digits = true;  // since the last refinement: nothing is claimed before another one
   double measured = 0;      // relative residual after the last refinement
   double reacted = 0;       // the largest reaction since then of what holds a mechanism, over the load
-  double caution = 1;       // factor on what rounding is taken to leave, more where a residual was found above it
+  double caution = 1;       // factor on what rounding is taken to leave, from residuals that were found
   LargeVector<double> left{};
   std::optional<OpenedContact> opened{};
 
@@ -152,7 +152,10 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
   }
   ++unwatched;
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
-  lost_digits = lost_digits || path.share < delicate || path.share > 1 / delicate || !path.held.empty();
+  if (path.share < delicate || path.share > 1 / delicate || !path.held.empty()) {
+    lost_digits = true;
+    caution = std::max(caution, 1.0);  // residuals found before say nothing about such a factor
+  }
   if (carried && (lost_digits || claimed() > state.options.watched_residual || unwatched >= interval)) {
     refine(0, &mechanisms);
   } else if (carried && springs.kN == 0 && springs.kT == 0) {
@@ -165,7 +168,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
 double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<HeldMechanism>* found) {
   const auto& options = state.options;
   state.bring_all_up_to_date();
-  const double expected = claimed();
+  const double expected = claimed(), rounding = state.rounding();
   state.fold_motions();
   ++state.counters.refinements;
   const auto improved = [&](double residual) {
@@ -203,11 +206,17 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
     }
   }
   measured = after;
+  // What rounding may leave is known for all networks; a network leaves less, and how much less is seen here.
+  constexpr double margin = 4, least = 0.125, noise = 1e-14;
+  if (found_over_claimed > 1) {
+    caution *= 2 * found_over_claimed;
+  } else if (!lost_digits && rounding > noise) {
+    caution = std::clamp(margin * before / rounding, std::max(least, 0.5 * caution), std::max(1.0, caution));
+  }
   lost_digits = !carried;
   reacted = 0;
   unwatched = 0;
   if (found_over_claimed > 1) {
-    caution *= 2 * found_over_claimed;
     interval = 1;
   } else if (before > options.watched_residual) {
     interval = std::max(interval / 4, 1);

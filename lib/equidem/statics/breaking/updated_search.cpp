@@ -35,20 +35,6 @@ struct LeastKeys {
 
 }  // namespace
 
-void UpdatedState::bound_children(std::size_t number) {
-  thread_local std::vector<double> motion;
-  for (const std::int32_t child : (*blocks_)[number].children) {
-    BlockState& state = states_[child];
-    state.at_worst = state.subtree;
-    if (!boundary_motion(child, motion)) continue;
-    const std::size_t size = motion.size() / cases.size();
-    const auto bound = [&](std::size_t p) {
-      return p < cases.size() ? state.rate * blocks_->force_bound(child, std::span(motion).subspan(p * size, size)) : 0;
-    };
-    state.at_worst = options.skip ? state.subtree.after(bound(1), bound(0)) : Utilization{0, 0};
-  }
-}
-
 std::array<double, 2> UpdatedState::keys_of(std::size_t number, const LoadFactorSearch& search) const {
   LeastKeys keys{search};
   const MotionBlock& block = (*blocks_)[number];
@@ -88,7 +74,7 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
     parallel_tasks(round.size(), [&](std::size_t k, int worker) {
       visits[k] = visit(round[k], nullptr, worker);
       if (states_[round[k]].own.least_key(search) <= keys.second) found[k] = keys_of(round[k], search);
-      bound_children(round[k]);
+      bound_children(round[k], search, keys.second);
     });
     for (std::size_t k = 0; k < round.size(); ++k) {
       account(visits[k]);

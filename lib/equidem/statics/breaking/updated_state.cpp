@@ -16,7 +16,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t entries_at_once = 1 << 13, blocks_at_once = 1 << 6;
+constexpr std::size_t entries_at_once = 1 << 13;
 
 double length_of(std::span<const double> x) {
   return std::sqrt(sums_over<1>(x.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
@@ -48,6 +48,7 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
   boundary_.assign(blocks_->boundaries() * symbolic_->block * cases.size(), 0.0);
   slot_.resize(assembly.contacts.size());
   contacts_.resize(assembly.contacts.size());
+  classes_.assign(assembly.contacts.size(), never_breaks);
   const bool turns = unknowns.per_disc == 3;
   for (std::size_t slot = 0; slot < contacts_.size(); ++slot) {
     const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
@@ -67,15 +68,7 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
                        {}};
   }
   states_.resize(blocks_->all().size());
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    const MotionBlock& block = (*blocks_)[k];
-    for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) {
-      const ContactStrength& strength = contacts_[c].strength;
-      states_[k].rate = std::max(states_[k].rate, utilization_rate(contacts_[c].springs, strength, options.friction));
-      if (strength.shear > 0) states_[k].pressed = std::max(states_[k].pressed, options.friction / strength.shear);
-    }
-    for (const std::int32_t child : block.children) states_[k].rate = std::max(states_[k].rate, states_[child].rate);
-  }
+  class_contacts();
   for (const RightHandSide& given : cases) {
     base.emplace_back(components());
     double affine = 0;
@@ -127,7 +120,11 @@ bool UpdatedState::boundary_motion(std::size_t number, std::vector<double>& moti
 UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* path, int worker) {
   thread_local std::vector<double> motion;
   Visit done;
-  if (!boundary_motion(number, motion) && path == nullptr) return done;
+  const std::array<double, 2> reached = std::exchange(states_[number].reached, {});
+  if (!boundary_motion(number, motion) && path == nullptr) return done;  // nothing in it has moved in all
+  for (const std::int32_t child : (*blocks_)[number].children) {
+    for (std::size_t p = 0; p < cases.size(); ++p) states_[child].reached[p] += reached[p];
+  }
   const MotionBlock& block = (*blocks_)[number];
   const auto& rows = symbolic_->rows[block.root];
   const auto& nodes = symbolic_->tree.nodes;
@@ -189,41 +186,22 @@ void UpdatedState::bring_up_to_date(std::span<const std::int32_t> blocks, const 
   for (const Visit& visit : visits) account(visit);
 }
 
-void UpdatedState::evaluate_block(std::size_t number) {
-  const MotionBlock& block = (*blocks_)[number];
-  BlockState& state = states_[number];
-  const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
-  // A compression that counts as 0 adds nothing to the strength in shear.
-  state.own =
-      utilization_of(contacts, options.friction, search_.direction)
-          .after(state.pressed * std::max(search_.no_dead, 0.0), state.pressed * std::max(search_.no_live, 0.0));
-}
-
-void UpdatedState::evaluate_blocks() {
-  parallel_ranges(states_.size(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) evaluate_block(k);
-  });
-  for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
-    states_[k].subtree = states_[k].own;
-    for (const std::int32_t child : (*blocks_)[k].children) states_[k].subtree.include(states_[child].subtree);
-  }
-}
-
 void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
+  reach_beside(path);
   std::int32_t offset = 0;
   for (const std::int32_t t : path.fronts) {
     path_offset_[t] = offset;
     offset += static_cast<std::int32_t>(symbolic_->pivots(t) * cases.size());
   }
   // The column of a pivot of which little is left has lost digits, which this motion meets, and others after it.
-  constexpr double share_that_doubles = 1.0 / 64, shares_that_double = 4096;
+  constexpr double share_that_doubles = 1.0 / 64, shares_that_double = 1024;
   const double left = std::min(path.share, 1.0), lost = 1 + squared(share_that_doubles / left);
   growth_ += 1 / (shares_that_double * left);
   for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
     Visit done = visit(*block, &path, 0);
     for (double& moved : done.moved) moved *= lost;
     account(done);
-    states_[*block].subtree = {0, 0};  // unknown: its children are looked at
+    states_[*block].subtree = ClassedUtilization::unknown();  // its children are looked at
   }
   for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
 }
@@ -272,7 +250,7 @@ void UpdatedState::set_contact(std::size_t contact, SpringConstants k, std::span
   springs.set(contact, k, assembly.contacts.size());
   BreakingContact& c = contacts_[slot_[contact]];
   c.springs = k;
-  if (k.kN == 0 && k.kT == 0) c.strength = {};
+  if (k.kN == 0 && k.kT == 0) spare(contact);
   c.force.live = forces[0];
   if (forces.size() > 1) c.force.dead = forces[1];
 }
@@ -369,8 +347,8 @@ void UpdatedState::evaluate_contacts() {
 
 double UpdatedState::bytes() const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-  double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(slot_) + of(moved_) +
-                 of(boundary_) + of(path_offset_) + of(moments_);
+  double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(classes_) + of(slot_) +
+                 of(moved_) + of(boundary_) + of(path_offset_) + of(moments_);
   for (const auto& x : scratch_) bytes += of(x);
   for (const PreciseMotion& motion : base) bytes += of(motion.high) + of(motion.low);
   return bytes;

@@ -55,7 +55,10 @@ class UpdatedState {
   /// Stretch and slip of the ends of a contact, as of the last visit.
   [[nodiscard]] ContactDeformation deformation(std::size_t contact, std::size_t of_case) const;
   /// Takes a contact out of all later searches.
-  void spare(std::size_t contact) { contacts_[slot_[contact]].strength = {}; }
+  void spare(std::size_t contact) {
+    contacts_[slot_[contact]].strength = {};
+    classes_[slot_[contact]] = never_breaks;
+  }
   void set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces);
   [[nodiscard]] ContactForce force_of(std::size_t contact, std::size_t of_case) const;
   [[nodiscard]] std::span<const Held> holds() const { return holds_; }
@@ -100,12 +103,15 @@ class UpdatedState {
     std::array<double, 2> accumulated{};  ///< stiffness times motion since the last refinement
   };
   struct BlockState {
-    Utilization own;       ///< of the contacts of the block, as of its last visit
-    Utilization subtree;   ///< at worst, as of its last visit
-    Utilization at_worst;  ///< of its subtree now, where its parent is up to date
-    double rate = 0;       ///< the largest utilization_rate of its subtree
-    double pressed = 0;    ///< the largest friction / shear of its contacts, m/N
-    bool open = false;     ///< of the search at hand: its children are looked at one by one
+    ClassedUtilization own;       ///< of the contacts of the block, as of its last visit
+    ClassedUtilization subtree;   ///< at worst, as of its last visit
+    ClassedUtilization at_worst;  ///< of its subtree now, where its parent is up to date
+    double rate = 0;              ///< the largest utilization_rate of its subtree
+    double pressed = 0;           ///< the largest friction / shear of its contacts, m/N
+    /// Per right-hand side, square root of N: at most the root of sum N²/kN + T²/kT over the changes of forces in its
+    /// subtree since its last visit, by breaks outside it.
+    std::array<double, 2> reached{};
+    bool open = false;  ///< of the search at hand: its children are looked at one by one
   };
 
   [[nodiscard]] std::span<double> column(LargeVector<double>& of, std::size_t of_case) const {
@@ -115,11 +121,17 @@ class UpdatedState {
   bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
   Visit visit(std::size_t block, const FactorPath* path, int worker);
   void account(const Visit& visit);
+  /// Adds to what has reached the subtrees beside the path of a change.
+  void reach_beside(const FactorPath& path);
   /// The right-hand sides whose products with a motion are sum F_i l_j, solved for with L.
   void solve_moments();
+  [[nodiscard]] double rate_of(const BreakingContact& contact) const;
+  void class_contacts();
   void evaluate_block(std::size_t block);
   void evaluate_blocks();
-  void bound_children(std::size_t block);
+  /// Utilizations at worst of the children of a block that is up to date, sharper where keys up to `limit` may be among
+  /// them.
+  void bound_children(std::size_t block, const LoadFactorSearch& search, double limit);
   /// The least key of the contacts of a block, and the least that does not tie with it.
   [[nodiscard]] std::array<double, 2> keys_of(std::size_t block, const LoadFactorSearch& search) const;
   [[nodiscard]] BreakingMoment moment_of(std::int64_t slot, const LoadFactorSearch& search) const {
@@ -132,6 +144,8 @@ class UpdatedState {
   std::unique_ptr<MotionBlocks> blocks_;
   std::vector<BlockState> states_;            // per block
   std::vector<BreakingContact> contacts_;     // in the order of blocks
+  std::vector<std::uint8_t> classes_;         // of contacts_, rate_class or never_breaks
+  double largest_rate_ = 0;                   // utilization_rate
   std::vector<std::int32_t> slot_;            // of each contact in contacts_
   LargeVector<double> moved_;                 // since the last refinement, in the order of elimination, case by case
   LargeVector<double> moments_;               // z of L z = q, xx, xy, yx, yy, in the order of elimination

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/breaking/kernels/breaking_contacts.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace equidem {
 namespace {
 
@@ -42,11 +45,28 @@ void add_forces(std::span<BreakingContact> contacts, int block, const double* li
   add_all<2>(contacts, live, dead);
 }
 
-Utilization utilization_of(std::span<const BreakingContact> contacts, double friction, double direction) {
-  Utilization all;
-  for (const BreakingContact& c : contacts) {
+ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std::span<const std::uint8_t> classes,
+                                  double friction, double direction) {
+  ClassedUtilization all;
+  std::array<double, rate_classes> most{};  // utilization at lambda = 1 of contacts without dead load
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const BreakingContact& c = contacts[k];
+    if (classes[k] == never_breaks) continue;
+    Utilization& its = all.of[classes[k]];
+    const bool no_dead = c.force.dead.normal == 0 && c.force.dead.tangential == 0;
+    if (no_dead && c.strength.tension > 0 && c.strength.shear > 0) {
+      const double pull = direction * c.force.live.normal;
+      const double shear = std::abs(c.force.live.tangential) + friction * pull;
+      its.dead = std::max(its.dead, 0.0);
+      most[classes[k]] = std::max({most[classes[k]], pull / c.strength.tension, shear / c.strength.shear});
+      continue;
+    }
     const double dead = dead_utilization(c.force.dead, c.strength, friction);
-    all.include({dead < 1 ? breaking_moment(c.force, c.strength, friction, {.direction = direction}).t : 0, dead});
+    its.include({dead < 1 ? breaking_moment(c.force, c.strength, friction, {.direction = direction}).t : 0, dead});
+  }
+  constexpr double margin = 1 + 1e-14;  // for round-off of the quotients
+  for (std::size_t c = 0; c < rate_classes; ++c) {
+    if (most[c] > 0) all.of[c].load_factor = std::min(all.of[c].load_factor, 1 / (margin * most[c]));
   }
   return all;
 }

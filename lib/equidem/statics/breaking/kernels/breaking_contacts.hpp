@@ -31,8 +31,11 @@ ContactDeformation opening_of(const BreakingContact& contact, int block, const d
 /// other one, null where there is none: per component, `block` of a disc, m
 void add_forces(std::span<BreakingContact> contacts, int block, const double* live, const double* dead);
 
-/// The least load factor in a direction of lambda, and the largest utilization under the dead load; 0 and infinite
-/// where a contact has no strength.
-Utilization utilization_of(std::span<const BreakingContact> contacts, double friction, double direction);
+constexpr std::uint8_t never_breaks = 255;  ///< in place of the rate_class of a contact
+
+/// The least load factor in a direction of lambda, at most by round-off too low, and the largest utilization under the
+/// dead load; 0 and infinite where a contact has no strength. \param classes rate_class of each contact
+ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std::span<const std::uint8_t> classes,
+                                  double friction, double direction);
 
 }  // namespace equidem
