@@ -135,7 +135,8 @@ void add_trust(Results& out, const UnbondedRun& run) {
                                      counters.unique, counters.not_unique, counters.unchecked));
   out.set("increments/unique", counters.unique)
       .set("increments/not_unique", counters.not_unique)
-      .set("increments/not_decided", counters.unchecked);
+      .set("increments/not_decided", counters.unchecked)
+      .set("increments/not_decided_contacts", counters.most_unchecked_contacts);
   if (counters.not_unique > 0) {
     out.line("", fmt::format("of several answers that which Newton's method reaches from the present states was taken; "
                              "the rates of motion of another differ by {:.2g}, those of load by {:.2g}, relative, at "
@@ -143,10 +144,11 @@ void add_trust(Results& out, const UnbondedRun& run) {
                              counters.largest_motion_difference, counters.largest_load_difference));
   }
   if (counters.unchecked > 0) {
-    out.line(
-        "",
-        "not decided are increments with too many contacts on limits to try all combinations (those of the contacts "
-        "of the event were), or with a combination that has no unique rates");
+    out.line("",
+             fmt::format("not decided are increments with up to {} on limits, for which one answer is not proved and "
+                         "not all combinations were tried (those of the contacts of the event were, where they are "
+                         "few)",
+                         counted(counters.most_unchecked_contacts, "contact")));
   }
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);

@@ -15,10 +15,6 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-ContactForce rate_of_force(const ContactTangent& a, const ContactDeformation& d) {
-  return {a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
-}
-
 constexpr double rounded_rate = 1e-14;  // of motions, as springs take it for a force
 
 /// The residual of the rates: what drives less what contacts take.
@@ -45,7 +41,7 @@ class RateResidual {
       }
       rates.deformation[c] = d;
       stiffest = std::max(stiffest, tangents_[c].nn);
-      const ContactForce f = rate_of_force(tangents_[c], d);
+      const ContactForce f = tangents_[c].rate(d);
       if (f.normal == 0 && f.tangential == 0) continue;
       rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
       contacts_.add_internal(c, f, internal);

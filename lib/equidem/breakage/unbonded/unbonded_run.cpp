@@ -6,7 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/breakage/unbonded/limit_compliance.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
+#include "equidem/breakage/unbonded/unique_rates.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -165,10 +167,17 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
     if (!is_slipping(state_->status()[at.contact]) || answer.status[at.contact] != state_->status()[at.contact])
       fresh.push_back(at.contact);
   }
-  const Branches branches = find_branches(problem, solver_, answer, fresh);
-  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   checked_ = true;
+  const std::vector<double> compliance = limit_compliance(problem, solver_);
+  if (proved_unique(problem, compliance, answer.status)) {
+    ++counters_.unique;
+    return;
+  }
+  const Branches branches = find_branches(problem, compliance, answer, fresh);
+  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   if (!branches.all_tried) {
+    if (branches.others == 0)
+      counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, std::ssize(problem.limits));
     for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
   }
   if (branches.others == 0) return;
@@ -198,9 +207,7 @@ double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStat
   std::vector<double> internal(contacts_.components(), 0.0);
   double sum = 0;
   for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const ContactTangent a = laws_[c].tangent(status[c]);
-    const ContactDeformation& d = rates.deformation[c];
-    const ContactForce f{a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
+    const ContactForce f = laws_[c].tangent(status[c]).rate(rates.deformation[c]);
     contacts_.add_internal(c, f, internal);
     if (!affine_.empty()) sum += f.normal * affine_[c].normal + f.tangential * affine_[c].tangential;
   }

@@ -33,7 +33,8 @@ struct UnbondedCounters {
   std::int64_t factorizations = 0, updates = 0;
   std::int64_t unique = 0;      ///< increments of which no other answer exists
   std::int64_t not_unique = 0;  ///< of which another answer was found
-  std::int64_t unchecked = 0;   ///< with too many contacts on their limits to try all combinations
+  std::int64_t unchecked = 0;   ///< neither proved nor with few enough contacts on limits to try all combinations
+  std::int64_t most_unchecked_contacts = 0;  ///< on limits, of such an increment
   /// Relative, of the rates of motion and of load of the first other answer.
   double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;
