@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/path_estimate.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
@@ -104,20 +105,16 @@ struct Sequence {
 
 /// Size, memory and time of a path, of which only the number of events is not known before.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
-  // Measured on lattices of 2e3 to 1e4 discs: s of an event over that of a solution with its error bound. Samples under
-  // tension broke 1 to 10 % of their contacts, those under compression up to half.
-  constexpr double event = 0.13, broken_share = 0.1;
   Problem& problem = sequence.problem;
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
-  const std::int64_t guess = std::llround(broken_share * static_cast<double>(contacts));
-  const std::int64_t events = most > 0 ? std::min(most, contacts) : guess;
+  const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
   Results further = path_results(sequence.scene(), sequence.cut.size());
   further.line("events").add("estimated_events", "", events, "event", {Shown::count});
   further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
                         : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
                           "them; tension breaks fewer contacts, compression up to half of them");
-  deliver(options, "dry_run", dry_run_results(problem, 1 + event * static_cast<double>(events), further),
+  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events), further),
           problem.times);
   return 0;
 }

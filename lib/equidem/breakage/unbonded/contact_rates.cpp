@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "equidem/breakage/event_path.hpp"
+
 namespace equidem {
 namespace {
 
@@ -14,8 +16,6 @@ double dot(std::span<const double> a, std::span<const double> b) {
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
 }
-
-constexpr double rounded_rate = 1e-14;  // of motions, as springs take it for a force
 
 /// The residual of the rates: what drives less what contacts take.
 class RateResidual {
@@ -57,7 +57,7 @@ class RateResidual {
       sum = std::max(sum, std::abs(residual[k]));
     }
     // Forces that no more than the rounding of motions leaves are none.
-    const double none = rounded_rate * stiffest * fastest;
+    const double none = rounded_motion * stiffest * fastest;
     rates.force_scale = std::max(rates.force_scale, none);
     if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;

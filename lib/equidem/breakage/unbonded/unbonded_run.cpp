@@ -60,11 +60,6 @@ void check_rest(const BreakageScene& scene, const UnbondedOptions& options) {
 }
 
 void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
-  if (scene.springs.any_negative()) {
-    bad_input("a tangential spring is negative, and contacts slip",
-              "with kT < 0 a contact gains energy as it sticks: the limit of friction has no meaning",
-              "Take kT >= 0, or contacts that are gone when they break");
-  }
   if (!(options.friction >= 0) || !std::isfinite(options.friction))
     bad_input(fmt::format("the friction of contacts without a bond is {}", options.friction),
               "it must be finite and not negative", "Correct it");

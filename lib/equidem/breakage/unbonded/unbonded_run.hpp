@@ -44,7 +44,7 @@ class UnbondedRun : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
   /// A contact without a bond whose force at rest pulls, N_r > 0, begins open with the gap N_r/kN.
-  /// \throws Error (bad_input) where a tangential spring is negative, the friction is not a finite number >= 0, or the
+  /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or the
   ///         control is none of those that a path with a history has
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
 
