@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/text.hpp"
@@ -105,6 +106,17 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
   }
   if (events > most) out.line("", fmt::format("with {}: others", counted(events - most, "further event")));
   out.set("idle_discs", std::ssize(run.idle())).set("loosened_discs", loosened);
+}
+
+/// Discs that rubbing contacts have let go: they may be met again.
+void add_untouched(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
+  const std::vector<std::int32_t>& at_first = run.idle();
+  std::vector<std::int32_t> loosened;
+  std::ranges::set_difference(run.untouched(), at_first, std::back_inserter(loosened));
+  if (!at_first.empty()) out.line("idle", fmt::format("{}: nothing touched at first", named(scene.assembly, at_first)));
+  if (!loosened.empty())
+    out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, loosened)));
+  out.set("idle_discs", std::ssize(at_first)).set("loosened_discs", std::ssize(loosened));
 }
 
 void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& system) {
@@ -237,6 +249,7 @@ Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun
   Results out = first_results(outcome, run);
   add_energies(out, run);
   out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
+  add_untouched(out, outcome.scene, run);
   add_trust(out, run);
   return out.append(events_and_curves(outcome, run));
 }

@@ -90,8 +90,27 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
   check_scene(scene_, options_);
   state_ = std::make_unique<UnbondedState>(scene_.assembly, scene_.springs, scene_.path, unknowns_, contacts_, laws_,
                                            first_status(scene_, laws_));
+  idle_ = untouched();
   dead_done_ = !scene_.path.dead;
   if (dead_done_) points_.push_back({0, 0, state_->load(), state_->mean_motion()});
+}
+
+std::vector<std::int32_t> UnbondedRun::untouched() const {
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  std::vector<std::uint8_t> touched(scene_.assembly.size(), 0);
+  for (std::size_t d = 0; d < touched.size(); ++d) {
+    for (std::size_t k = d * b; k < (d + 1) * b; ++k)
+      if (unknowns_.held[k] == DegreesOfFreedom::supported) touched[d] = 1;
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (state_->status()[c] == ContactStatus::open) continue;
+    const Contact& contact = scene_.assembly.contacts[c];
+    touched[static_cast<std::size_t>(contact.i)] = touched[static_cast<std::size_t>(contact.j)] = 1;
+  }
+  std::vector<std::int32_t> discs;
+  for (std::size_t d = 0; d < touched.size(); ++d)
+    if (touched[d] == 0) discs.push_back(static_cast<std::int32_t>(d));
+  return discs;
 }
 
 double UnbondedRun::direction(std::int64_t leg) const {

@@ -54,8 +54,10 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::string& why() const override { return why_; }
   [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
   [[nodiscard]] double direction(std::int64_t leg) const override;
-  /// Always empty: contacts that carry nothing at first may close.
+  /// Discs that touch nothing at first; contacts with a gap may close later.
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
+  /// Discs without a support of which every contact is open as it is now, ascending.
+  [[nodiscard]] std::vector<std::int32_t> untouched() const;
   [[nodiscard]] double lambda() const override { return state_->lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }
   /// At motions since the last event.
