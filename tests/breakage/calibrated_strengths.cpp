@@ -155,6 +155,12 @@ TEST_CASE("a_ratio_that_samples_cannot_have_is_refused_with_the_range_that_they_
   const StrengthTargets none{.tensile = 1e6, .compressive = {}, .toughness = {}, .notches = {}};
   CHECK_THROWS_AS(calibrate_strength(samples, none, {.strengths = scattered(), .shear_over_tension = {}}), Error);
   const StrengthTargets wanted{.tensile = 1e6, .compressive = 1e7, .toughness = {}, .notches = {}};
+  CHECK_THROWS_WITH(
+      calibrate_strength(
+          samples,
+          {.tensile = 1e6, .compressive = {}, .toughness = 1e4, .notches = {0.8 * samples.front().sample.width()}},
+          {.strengths = scattered(), .shear_over_tension = {}}),
+      Catch::Contains("0.7 of the width"));
   CHECK_THROWS_AS(calibrate_strength({}, wanted, {.strengths = scattered(), .shear_over_tension = {}}), Error);
   CHECK_THROWS_AS(
       calibrate_strength(samples, wanted, {.strengths = {.tension = 1, .friction = 0.5}, .shear_over_tension = {}}),

@@ -140,6 +140,37 @@ TEST_CASE("a_gap_closes_where_the_disc_has_crossed_it") {
   CHECK(closed.run().load_left(1.2 * gap) == Approx(1.4 * normal_spring * gap).epsilon(1e-12));
 }
 
+TEST_CASE("loads_under_control_of_their_motion_fall_as_a_bond_lets_go") {
+  // A load between two springs in a row with a bond of its own beside: the motion goes on as the bond breaks, and the
+  // load falls to what the unbonded contact that is pulled no longer carries.
+  const double tension = 2;
+  Assembly chain = chain_of_discs(3, 1);
+  chain.groups["middle"] = {{1}, {}};
+  ContactStrengths strengths = equal_strengths(chain, 1e9, 1e9);
+  strengths.tension[0] = tension;
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 0, 0, 0}, {"middle", {}, 0, 0}};
+  options.loads = {{"middle", LoadKind::per_disc, {1, 0}, 0}};
+  options.control = LoadControl::motion;
+  options.legs = {8, 0};
+  Unbonded pulled(chain, stiff_and_soft, strengths, options, {0.3, {}});
+  pulled.all();
+  CHECK(modes_of(pulled).front() == "tension");
+  CHECK(pulled.event(0).load == Approx(2 * tension).epsilon(1e-12));
+  CHECK(pulled.event(0).motion == Approx(tension / normal_spring).epsilon(1e-12));
+  // With the bond both springs resist the motion, behind it one: the load at the end of the leg follows from it.
+  const LegPoint& end = pulled.run().leg_points()[1];
+  CHECK(end.lambda == Approx(8).epsilon(1e-12));
+  CHECK(end.motion == Approx(8 / normal_spring).epsilon(1e-12));
+  CHECK(pulled.run().state().ledger().released == Approx(tension * tension / (2 * normal_spring)).epsilon(1e-12));
+  CHECK(pulled.run().energy_error() < 1e-12);
+  options.control = LoadControl::load;
+  Unbonded held(chain, stiff_and_soft, strengths, options, {0.3, {}});
+  held.all();
+  // Where the load is held the energy of its further motion is released too.
+  CHECK(held.run().state().ledger().released == Approx(2 * tension * tension / (2 * normal_spring)).epsilon(1e-12));
+}
+
 TEST_CASE("the_gap_to_the_next_bond_is_one_of_lambda_whatever_leg_it_is_on") {
   Assembly chain = chain_of_discs(3, 1);
   chain.groups["middle"] = {{1}, {}};

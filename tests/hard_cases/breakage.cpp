@@ -172,7 +172,7 @@ TEST_CASE("strengths_and_loads_out_of_the_range_of_numbers_are_refused") {
                 {"a Weibull modulus of 0.001 scatters them", "Give a larger modulus"});
   for (const double by : {1e-300, 1e300})
     table.refused("quasistatic, motion " + fmt::format("{:g}", by), path_of(by),
-                  {"motions of supports are", "leave the range of numbers", "Scale them"});
+                  {"the size of the motions of supports is", "leave the range of numbers", "another unit"});
   table.refused("quasistatic, motion 0", path_of(0), {"nothing grows with lambda", "Add [[load]]"});
 }
 

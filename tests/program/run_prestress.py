@@ -85,6 +85,20 @@ class Prestress(ProgramTest):
         self.assertEqual((pushed["unstable_modes"], pushed["status"]), (1, "unstable"))
         self.assertAlmostEqual(pushed["critical_load"]["factor"] * 4000 / found["critical_load"]["factor"], 1, delta=1e-9)
 
+    def test_a_support_that_moves_compresses_a_column_as_a_load_does(self):
+        # The end that moves cannot turn: four times the load of the free one.
+        case, way = self.folder / "moved.toml", 1e-6
+        text = COLUMN.read_text()
+        text = text[:text.index("[[load]]")] + f'[[support]]\ngroup = "right"\nux = {-way}\n'
+        case.write_text(text)
+        quick = ("stability", case, "--set", "effects.prestress=on", "--without-critical-ratio", "--json", "-")
+        found = parse_json(self.done(*quick))
+        pressed, euler = 2 * 1e9 * way / 64, math.pi**2 * 1e9 * 0.005 / 128**2
+        self.assertAlmostEqual(found["critical_load"]["factor"] * pressed / (4 * euler), 1, delta=0.01)
+        dry = parse_json(self.done(*quick, "--dry-run"))
+        self.assertEqual((dry["status"], dry["factorizations"]), ("dry_run", 16))
+        self.assertNotIn("prestress", dry)
+
 
 if __name__ == "__main__":
     unittest.main()

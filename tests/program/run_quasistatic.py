@@ -101,11 +101,16 @@ class Quasistatic(ProgramTest):
         whole, part = self.folder / "whole", self.folder / "part"
         self.check_done(equidem("quasistatic", NOTCH, "--out", whole, *larger))
         stdout, stderr = self.interrupt("quasistatic", NOTCH, "--out", part, *larger,
-                                        when=lambda: (part / "case.toml").exists(), after=0.1)
+                                        when=lambda: (part / "case.toml").exists())
         self.assertIn("not ended: stopped as asked", stdout)
         self.assertIn("--resume", stderr)
         result = parse_json((part / "result.json").read_text())
         self.assertEqual((result["status"], result["complete"]), ("interrupted", False))
+        self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
+        self.check_same_events(self.events_of(whole), self.events_of(part))
+        # Wherever it was interrupted: here after 150 events.
+        rows = (whole / "events.csv").read_text().splitlines(keepends=True)
+        (part / "events.csv").write_text("".join(rows[:151]))
         self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
         self.check_same_events(self.events_of(whole), self.events_of(part))
 
@@ -192,6 +197,11 @@ class Quasistatic(ProgramTest):
         self.assertEqual((out / "events.csv").read_text(), table)
         self.check_error(equidem("quasistatic", case, "--set", "quasistatic.control=path"), 2, "depends on the path")
         self.check_error(equidem("quasistatic", case, "--set", "springs.kT=-1e9"), 2, "kT < 0")
+        self.check_error(equidem("quasistatic", case, "--set", "solver.method=cholmod"), 2, "umfpack alone", "solver.method")
+        self.check_error(equidem("quasistatic", case, "--set", "solver.memory=1e6"), 3, "memory")
+        dry = equidem("quasistatic", case, "--dry-run", "--json", "-")
+        self.assertEqual(dry.returncode, 0, dry.stderr)
+        self.assertEqual(parse_json(dry.stdout)["method"], "umfpack")
         self.check_error(equidem("quasistatic", case, "--set", "strength.residual_friction=-1"), 2, "residual_friction")
 
     def test_other_verbs_tell_that_they_take_no_notch(self):
@@ -229,7 +239,10 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strain.xx=1e-3"), 2, "not periodic")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "springs.kT=-1e8"), 2, "kT < 0", "Take kT >= 0")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.weibull_modulus=1e-3"), 2, "scatters them")
-        self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=1e300"), 2, "range of numbers")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=1e300"), 2,
+                         "the size of the motions of supports is 1e+300", "range of numbers")
+        self.check_error(equidem("quasistatic", NOTCH, "--set", "quasistatic.legs=[0.0]"), 2, "quasistatic.legs",
+                         "nothing happens on it")
 
 
 if __name__ == "__main__":

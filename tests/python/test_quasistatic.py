@@ -24,6 +24,22 @@ def test_strengths_of_arrays_decide_the_order():
     np.testing.assert_allclose([event["load"] for event in events], [3.0, 2.4, 4.0], rtol=1e-12)
 
 
+def test_contacts_without_a_bond_slip_and_stick():
+    # Kt u = mu N begins the slip, and the loop of a cycle of the amplitude A has the area 4 mu N (A - mu N/kT).
+    pair = eq.Assembly([(0.0, 0.0), (2.0, 0.0)], 1.0, [(0, 1)]).with_strengths([(0.0, 0.0)])
+    friction, amplitude = 0.1, 1e-3
+    result = eq.Case(assembly=pair, springs=(1000.0, 300.0), strength={"friction": friction, "after_breaking": "rubs"},
+                     supports=[{"group": [0], "ux": 0.0, "uy": 0.0, "rotation": 0.0},
+                               {"group": [1], "uy": amplitude, "rotation": 0.0}],
+                     dead_loads=[{"group": [1], "force": [-1.0, 0.0]}],
+                     quasistatic={"legs": [1.0, -1.0, 1.0]}).quasistatic()
+    assert [event["mode"] for event in result.events] == ["slip", "stick", "slip", "stick", "slip"]
+    np.testing.assert_allclose(result.events[0]["lambda"], friction / (300.0 * amplitude), rtol=1e-12)
+    slip = amplitude - friction / 300.0
+    np.testing.assert_allclose(result.energies.friction, friction * slip * 5, rtol=1e-12)
+    assert result.increments.not_unique == result.increments.not_decided == 0
+
+
 def test_wrong_strengths_are_refused():
     for wrong in ([(1.0, 1.0)], np.ones((3, 3)), [(1.0, -1.0)] * 3):
         with pytest.raises(eq.BadInput):

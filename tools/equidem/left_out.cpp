@@ -36,15 +36,9 @@ std::set<std::string> names_of_measured_sides(const Assembly& assembly) {
 
 /// Holds bodies whose forces at rest do not balance: something outside loads them, which the case need not give.
 void hold_loaded_at_rest(const Assembly& assembly, std::vector<std::uint8_t>& held) {
-  std::vector<Vec2> sums(assembly.size());
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    const Vec2 on_i = force_on_i(frame_of(assembly, c), force_at_rest(assembly, c));
-    sums[static_cast<std::size_t>(assembly.contacts[c].i)] += on_i;
-    sums[static_cast<std::size_t>(assembly.contacts[c].j)] -= on_i;
-  }
-  const double balanced = largest_imbalance * balance_at_rest(assembly).mean_force;
+  const RestSums sums = sums_at_rest(assembly);
   for (std::size_t d = 0; d < held.size(); ++d)
-    if (norm(sums[d]) > balanced) held[d] = 1;
+    if (norm(sums.forces[d]) > largest_imbalance * sums.mean_force) held[d] = 1;
 }
 
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where

@@ -18,6 +18,7 @@
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/choice/solve_time.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/harmonic/harmonic_solver.hpp"
 
 #include "left_out.hpp"
 #include "prestressed.hpp"
@@ -329,7 +330,7 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
   }
 }
 
-/// \param before s of what the dry run has done already: the assembly
+/// \param before s of what is done beside these solutions
 /// \param memory_limit bytes; 0: what is available
 Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit) {
   Results results;
@@ -358,13 +359,22 @@ Results estimate_results(const SolveEstimate& e, double solutions, double before
 
 }  // namespace
 
-Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys) {
+Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys,
+                        double complex_solutions) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
-  const SolveEstimate estimate =
+  SolveEstimate estimate =
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+  double before = problem.times.total();
+  if (complex_solutions > 0) {
+    constexpr double work = 4;  // multiplications of two complex numbers over those of real ones
+    const SolveEstimate of_complex = estimate_harmonic(problem.assembly, problem.springs.springs, effects);
+    estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + of_complex.peak_bytes);
+    before +=
+        estimate_seconds(of_complex, work * complex_solutions, measure_solve_rates(of_complex.method), thread_count());
+  }
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, solutions, problem.times.total(), problem.resolved.solver.memory_limit));
+      .append(estimate_results(estimate, solutions, before, problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

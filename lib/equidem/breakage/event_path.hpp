@@ -13,6 +13,9 @@
 
 namespace equidem {
 
+/// Of motions: rounding that a spring takes for a force.
+inline constexpr double rounded_motion = 1e-14;
+
 struct BreakEvent {
   std::int64_t leg = 0;  ///< from 0
   double lambda = 0;

@@ -36,6 +36,8 @@ void check_strain(const Assembly& assembly, const Voigt& strain) {
             "Take a periodic assembly, or move the sides by [[support]]");
 }
 
+}  // namespace
+
 void check_legs(const std::vector<double>& legs) {
   double from = 0;
   for (const double to : legs) {
@@ -49,18 +51,21 @@ void check_legs(const std::vector<double>& legs) {
   }
 }
 
+namespace {
+
 [[noreturn]] void refuse_nothing() {
   bad_input("nothing grows with lambda", "the loads, the imposed motions and the mean strain are all zero or absent",
             "Add [[load]], a motion in [[support]], or [strain]");
 }
 
 /// Squares of forces and motions must stay within a double.
-void check_size(const char* what, double size) {
-  if (size >= shortest_length && size <= longest_length) return;
-  bad_input(fmt::format("{} are {:g} in all", what, size),
-            fmt::format("their energies would leave the range of numbers: {:g} to {:g} can be followed",
-                        shortest_length, longest_length),
-            "Scale them; lambda multiplies what grows");
+void check_size(const std::string& what, double size) {
+  constexpr double smallest = 1e-70, largest = 1e70;  // N/m, m or a strain
+  if (size >= smallest && size <= largest) return;
+  bad_input(fmt::format("the size of {} is {:g}", what, size),
+            fmt::format("energies would leave the range of numbers: sizes from {:g} to {:g} can be followed", smallest,
+                        largest),
+            "Choose another unit; lambda multiplies what grows");
 }
 
 /// With kT < 0 every equilibrium is a saddle of the energy (one negative eigenvalue for each rotation): statics solves
@@ -88,12 +93,12 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
   path.pattern.prescribed = unknowns.prescribed;
   std::vector<std::string> driving;
   if (any_nonzero(path.pattern.force)) {
-    driving.emplace_back("loads");
+    driving.emplace_back("the loads");
     path.driven_by = DrivenBy::loads;
     path.size = sum_of_loads(path.pattern.force, static_cast<std::size_t>(unknowns.per_disc));
   }
   if (any_nonzero(path.pattern.prescribed)) {
-    driving.emplace_back("motions of supports");
+    driving.emplace_back("the motions of supports");
     path.driven_by = DrivenBy::motions;
     path.size = 0;
     for (const double u : path.pattern.prescribed) path.size = std::max(path.size, std::abs(u));
@@ -104,7 +109,7 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
     path.pattern.gradient = Tensor2{e.xx, 0.5 * e.xy, 0.5 * e.xy, e.yy};
     const double size = std::max({std::abs(e.xx), std::abs(e.yy), std::abs(e.xy)});
     if (size > 0) {
-      driving.emplace_back("a mean strain");
+      driving.emplace_back("the mean strain");
       path.driven_by = DrivenBy::strain;
       path.size = size;
     }
@@ -115,13 +120,13 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
               "the load and the motion through which it works are then not one pair of numbers",
               "Keep one; loads that stay are [[dead_load]]");
   }
-  check_size(driving.front().c_str(), path.size);
+  check_size(driving.front(), path.size);
   if (!options.dead_loads.empty()) {
     RightHandSide dead;
     dead.force = assemble_loads(assembly, unknowns, options.dead_loads);
     check_inert_loads(assembly, unknowns, dead.force);
     if (any_nonzero(dead.force)) {
-      check_size("dead loads", sum_of_loads(dead.force, static_cast<std::size_t>(unknowns.per_disc)));
+      check_size("the dead loads", sum_of_loads(dead.force, static_cast<std::size_t>(unknowns.per_disc)));
       path.dead = std::move(dead);
     }
   }

@@ -186,7 +186,8 @@ Stability analyze_stability(const Assembly& assembly, const ContactSprings& spri
   s.inertia = find_inertia(assembly, springs, options.rotation, supports);
   s.times.add("inertia", watch.lap());
   if (springs.prestressed()) {
-    s.critical_load = find_critical_load(assembly, springs, supports, {.rotation = options.rotation});
+    s.critical_load = find_critical_load(assembly, springs, supports,
+                                         {.rotation = options.rotation, .memory_limit = options.solver.memory_limit});
     s.times.add("critical load", watch.lap());
     add_without_prestress(assembly, springs.with_prestress({}), supports, inertia, options, s);
     return s;

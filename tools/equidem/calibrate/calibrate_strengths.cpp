@@ -8,6 +8,7 @@
 
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/path_estimate.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -48,13 +49,12 @@ std::vector<SeededSample> build_samples(const Problem& first) {
 }
 
 int dry_run_strengths(const CommonOptions& options, Problem& problem) {
-  // As for a path of quasistatic, with a tenth of the contacts; calibrations took eight values of the unknown.
-  constexpr double event = 0.13, broken_share = 0.1, values = 8;
+  constexpr double values = 8;  // of the unknown: as many as calibrations took
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
   const StrengthTargetCase& target = *problem.resolved.strength_target;
   const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
   const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
-  const double solutions = 1 + event * std::round(broken_share * static_cast<double>(problem.assembly.contacts.size()));
+  const double solutions = solutions_of_path(estimated_events(std::ssize(problem.assembly.contacts)));
   Results results;
   results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});
   results.note(", in each of which a tenth of the contacts breaks");

@@ -132,6 +132,15 @@ void refuse_viscoelastic_samples(const Case& resolved, bool accuracy) {
                "Homogenize one large cell, or use 'equidem sweep' over its seeds");
 }
 
+/// Another method, where it is asked for, is that of the elastic moduli alone.
+void add_solver_of_fronts(Results& results, const SolverOptions& asked) {
+  if (asked.method == SolverMethod::automatic || asked.method == SolverMethod::multifrontal) return;
+  results.line("not used",
+               fmt::format("solver.method = \"{}\" for complex moduli: multifrontal alone factorizes complex "
+                           "matrices",
+                           to_string(asked.method)));
+}
+
 int dry_run_homogenization(const CommonOptions& options, const Problem& problem) {
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -141,13 +150,18 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
                                           "about as large as this",
                                           names));
   results.set("factorizations", boundaries.size());
+  double complex_solutions = 0;
   if (problem.resolved.viscoelastic) {
     const Viscoelasticity springs = build_viscoelasticity(problem.resolved, problem.springs.constants);
     const std::vector<double> frequencies = frequencies_of(problem.resolved, springs);
     results.line("viscoelastic", fmt::format("{} more, each of complex numbers: about four times the work",
                                              counted(std::ssize(frequencies), "factorization")));
+    complex_solutions = 2 * static_cast<double>(frequencies.size());
+    add_solver_of_fronts(results, problem.resolved.solver);
   }
-  deliver(options, "dry_run", dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results),
+  deliver(options, "dry_run",
+          dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results, AssemblyKeys::all,
+                          complex_solutions),
           problem.times);
   return 0;
 }
@@ -187,7 +201,10 @@ int homogenize(const HomogenizeVerb& options) {
   Results results = homogenized_results(problem, homogenized, relation_of(problem));
   results.set("strain_of_states", written_strain);
   if (reached) results.append(accuracy_results(*reached));
-  if (harmonic) results.append(viscoelastic_results(harmonic->springs, harmonic->stiffness));
+  if (harmonic) {
+    results.append(viscoelastic_results(harmonic->springs, harmonic->stiffness));
+    add_solver_of_fronts(results, problem.resolved.solver);
+  }
   if (common.out && result.fluctuations.empty())
     results.line("files", "without states: those are of prescribed strains");
   else if (common.out)

@@ -9,12 +9,14 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/path_estimate.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/choice/solve_time.hpp"
+#include "equidem/statics/choice/solver_choice.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
@@ -65,6 +67,12 @@ struct Sequence {
     if (rubs()) {
       for (const std::size_t contact : cut) strengths.tension[contact] = strengths.shear[contact] = 0;
     }
+    try {
+      check_legs(wanted.legs);
+    } catch (const Error& error) {
+      throw error.at(resolved.where("quasistatic.legs"));
+    }
+    if (rubs()) choose_rubbing_solver();
     path = make_load_path(assembly, problem.springs.springs, effects,
                           {.supports = problem.supports,
                            .loads = problem.load_cases.front().loads,
@@ -77,6 +85,17 @@ struct Sequence {
                            .max_events = wanted.max_events});
   }
 
+  /// The tangent of contacts that slip is not symmetric.
+  void choose_rubbing_solver() {
+    SolverOptions& solver = problem.resolved.solver;
+    if (solver.method != SolverMethod::automatic && solver.method != SolverMethod::umfpack) {
+      bad_input_at(problem.resolved.where("solver.method"),
+                   fmt::format("contacts rub, and the method is {}", to_string(solver.method)),
+                   "the stiffness of contacts that slip is not symmetric, which umfpack alone factorizes",
+                   "Leave out solver.method, or take \"umfpack\"");
+    }
+    solver.method = SolverMethod::umfpack;
+  }
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
   [[nodiscard]] bool rubs() const {
     const auto& strength = problem.resolved.strength;
@@ -88,6 +107,8 @@ struct Sequence {
   void begin() {
     const Stopwatch watch;
     if (rubs()) {
+      check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()),
+                   problem.resolved.solver.memory_limit);
       const StrengthOptions& strength = *problem.resolved.strength;
       UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
@@ -104,21 +125,20 @@ struct Sequence {
 
 /// Size, memory and time of a path, of which only the number of events is not known before.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
-  // Measured on lattices of 2e3 to 1e4 discs: s of an event over that of a solution with its error bound. Samples under
-  // tension broke 1 to 10 % of their contacts, those under compression up to half.
-  constexpr double event = 0.13, broken_share = 0.1;
   Problem& problem = sequence.problem;
-  problem.resolved.solver = factor_to_update(problem.resolved.solver);
+  if (!sequence.rubs()) problem.resolved.solver = factor_to_update(problem.resolved.solver);
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
-  const std::int64_t guess = std::llround(broken_share * static_cast<double>(contacts));
-  const std::int64_t events = most > 0 ? std::min(most, contacts) : guess;
+  const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
   Results further = path_results(sequence.scene(), sequence.cut.size());
   further.line("events").add("estimated_events", "", events, "event", {Shown::count});
   further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
                         : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
                           "them; tension breaks fewer contacts, compression up to half of them");
-  deliver(options, "dry_run", dry_run_results(problem, 1 + event * static_cast<double>(events), further),
-          problem.times);
+  if (sequence.rubs()) {
+    further.line("",
+                 "contacts that open, close, slip and stick are further events, of which no number is known before");
+  }
+  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events), further), problem.times);
   return 0;
 }
 

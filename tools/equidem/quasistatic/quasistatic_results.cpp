@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/text.hpp"
@@ -107,6 +108,17 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
   out.set("idle_discs", std::ssize(run.idle())).set("loosened_discs", loosened);
 }
 
+/// Discs that rubbing contacts have let go: they may be met again.
+void add_untouched(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
+  const std::vector<std::int32_t>& at_first = run.idle();
+  std::vector<std::int32_t> loosened;
+  std::ranges::set_difference(run.untouched(), at_first, std::back_inserter(loosened));
+  if (!at_first.empty()) out.line("idle", fmt::format("{}: nothing touched at first", named(scene.assembly, at_first)));
+  if (!loosened.empty())
+    out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, loosened)));
+  out.set("idle_discs", std::ssize(at_first)).set("loosened_discs", std::ssize(loosened));
+}
+
 void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& system) {
   std::int64_t unstable = 0, unknown = 0, most = 0;
   for (const BreakEvent& event : run.events()) {
@@ -135,7 +147,8 @@ void add_trust(Results& out, const UnbondedRun& run) {
                                      counters.unique, counters.not_unique, counters.unchecked));
   out.set("increments/unique", counters.unique)
       .set("increments/not_unique", counters.not_unique)
-      .set("increments/not_decided", counters.unchecked);
+      .set("increments/not_decided", counters.unchecked)
+      .set("increments/not_decided_contacts", counters.most_unchecked_contacts);
   if (counters.not_unique > 0) {
     out.line("", fmt::format("of several answers that which Newton's method reaches from the present states was taken; "
                              "the rates of motion of another differ by {:.2g}, those of load by {:.2g}, relative, at "
@@ -143,10 +156,11 @@ void add_trust(Results& out, const UnbondedRun& run) {
                              counters.largest_motion_difference, counters.largest_load_difference));
   }
   if (counters.unchecked > 0) {
-    out.line(
-        "",
-        "not decided are increments with too many contacts on limits to try all combinations (those of the contacts "
-        "of the event were), or with a combination that has no unique rates");
+    out.line("",
+             fmt::format("not decided are increments with up to {} on limits, for which one answer is not proved and "
+                         "not all combinations were tried (those of the contacts of the event were, where they are "
+                         "few)",
+                         counted(counters.most_unchecked_contacts, "contact")));
   }
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);
@@ -235,6 +249,7 @@ Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun
   Results out = first_results(outcome, run);
   add_energies(out, run);
   out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
+  add_untouched(out, outcome.scene, run);
   add_trust(out, run);
   return out.append(events_and_curves(outcome, run));
 }

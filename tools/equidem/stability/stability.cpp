@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -40,11 +41,19 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
           .critical_ratio = !command.without_critical_ratio};
 }
 
-/// Where prestress is asked for, the contacts also carry what the loads of the case cause: to first order, as in
-/// Euler's load, that is at the places of before the loads.
+/// Whether the contacts also carry what the loads and the motions of supports of the case cause: where prestress is
+/// asked for.
+bool acts_on_rest(const Problem& problem) {
+  if (problem.resolved.prestress != PrestressChoice::on || problem.load_cases.empty()) return false;
+  const auto moves = [](const Support& support) {
+    return support.ux.value_or(0) != 0 || support.uy.value_or(0) != 0 || support.rotation.value_or(0) != 0;
+  };
+  return !problem.load_cases.front().loads.empty() || std::ranges::any_of(problem.supports, moves);
+}
+
+/// To first order, as in Euler's load, that is at the places of before the loads.
 Problem under_loads(Problem problem) {
-  const bool asked = problem.resolved.prestress == PrestressChoice::on;
-  if (!asked || problem.load_cases.empty() || problem.load_cases.front().loads.empty()) return problem;
+  if (!acts_on_rest(problem)) return problem;
   if (problem.load_cases.size() > 1)
     bad_input_at(problem.resolved.where("load"), "there are several load cases, and prestress is asked for",
                  "stability is that of one state", "Keep the loads of one");
@@ -78,13 +87,19 @@ void draw_mode(const CommonOptions& options, const Problem& problem, const Stabi
                        .displacement_scale = visible * std::max(right.x - left.x, high.y - low.y)});
 }
 
-int dry_run_survey(const StabilityCommand& options, const Problem& problem) {
+/// Loads and motions that make a prestress are not solved for.
+int dry_run_survey(const StabilityCommand& options, Problem given) {
+  const bool acted_on = acts_on_rest(given);
+  const Problem problem =
+      acted_on && !carries_forces(given.assembly) ? std::move(given) : prestressed(std::move(given));
+
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
   const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
-  const int factorizations = assembly.periodic() ? 50 : 15;
+  const int factorizations = (assembly.periodic() ? 50 : 15) + (acted_on ? 1 : 0);
   constexpr double solutions = 2;  // measured: s of a factorization with its eigenvalues over that of a solution
   Results results;
+  if (acted_on) results.line("forces at rest", "those of the loads and motions of the case count: one more solution");
   results.line("factorizations", "about ").add("factorizations", "", factorizations, "of the size below").line("waves");
   results.set("waves", Results());
   if (assembly.periodic()) {
@@ -122,10 +137,10 @@ int stability(const StabilityCommand& options) {
   expect_state(plan, pictures_of(resolved.output), buckling_suffix);
   const auto lock = lock_out(options);
   // Nothing needs to act: an assembly without supports is judged as a free body or a periodic cell.
-  const auto shared_problem = std::make_shared<const Problem>(
-      prestressed(under_loads(acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved)))));
+  Problem built = acts(resolved) ? build_problem(std::move(resolved)) : problem_of(std::move(resolved));
+  if (options.dry_run) return dry_run_survey(options, std::move(built));
+  const auto shared_problem = std::make_shared<const Problem>(prestressed(under_loads(std::move(built))));
   const Problem& problem = *shared_problem;
-  if (options.dry_run) return dry_run_survey(options, problem);
   const auto shared_result = std::make_shared<const Stability>(
       analyze_stability(problem.assembly, problem.springs.springs, problem.supports, options_of(problem, options)));
   const Stability& result = *shared_result;

@@ -205,12 +205,11 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
       "## Strength against the length of a notch\n\n"
       "Hexagonal plates twice as high as wide, equal strengths, tension alone; a straight cut of length 2a along a "
       "close-packed row in the\nmiddle. Linear elastic fracture mechanics: sigma sqrt(sec(pi a/W)) falls as a^(-1/2), "
-      "K_Ic = sigma sqrt(pi a sec(pi a/W)) (Feddersen\n1966, finite width). Fits and means are over notches of 12 d "
+      "K_Ic = sigma sqrt(pi a sec(pi a/W)), the\nsecant for the finite width. Fits and means are over notches of 12 d "
       "and "
       "more, up to 0.6 W.\nA crack that grows by d breaks two contacts, which takes f_t²/kN at "
-      "least (Griffith): K_Ic sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher\n(lattice trapping: Thomson, Hsieh & "
-      "Rana "
-      "1971).\n\n",
+      "least (Griffith): K_Ic sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher:\nthe energy between two breaks is lost, "
+      "too.\n\n",
       100 * test_over, 100 * scattered_test_over);
   text += fits_text(notches);
   text += fmt::format(
@@ -228,8 +227,7 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
   text += sizes_text(weibull.plates, false);
   text += fmt::format(
       "\n{:.1f} s. A plate holds when its weakest contact breaks: its mean falls much more slowly than the weakest "
-      "link, the more slowly the\nlarger it is: no power law (of diluted networks it is a logarithm: Duxbury, Leath & "
-      "Beale 1987), and its "
+      "link, the more slowly the\nlarger it is: no power law, and its "
       "scatter falls with the size:\n\n",
       weibull.seconds_of_plates);
   text += weakening_text(weibull);

@@ -282,6 +282,15 @@ StrengthCalibration calibrate_strength(const std::vector<SeededSample>& samples,
                                        const std::function<void(double)>& progress) {
   check_targets(wanted, options);
   if (samples.empty()) bad_input("there are no samples", "strengths are those of samples", "Give one at least");
+  for (const SeededSample& sample : samples) {
+    for (const double notch : wanted.notches) {
+      const double width = sample.sample.width();
+      if (notch <= longest_notch * width) continue;
+      bad_input(fmt::format("a notch of {:g} m in a sample of {:g} m", notch, width),
+                fmt::format("the toughness is read off notches up to {:g} of the width", longest_notch),
+                "Give shorter notches, or larger samples");
+    }
+  }
   return Search(samples, wanted, options, progress).run();
 }
 

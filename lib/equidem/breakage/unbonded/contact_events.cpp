@@ -50,10 +50,9 @@ NextContactEvent next_contact_event(const UnbondedState& state, std::span<const 
   const double mu = strengths.friction;
   for (std::size_t c = 0; c < laws.size(); ++c) {
     const ContactStatus status = state.status()[c];
-    const ContactTangent a = laws[c].tangent(status);
     const ContactDeformation& d = rates.deformation[c];
     const ContactForce f = state.law_force(c);
-    const double n1 = a.nn * d.normal, t1 = a.tn * d.normal + a.tt * d.tangential;
+    const auto [n1, t1] = laws[c].tangent(status).rate(d);
     switch (status) {
       case ContactStatus::bonded:
         reach(c, f.normal - strengths.tension[c], n1, BreakMode::tension);

@@ -40,10 +40,14 @@ constexpr ContactStatus slipping(double direction) {
   return direction < 0 ? ContactStatus::slips_backward : ContactStatus::slips_forward;
 }
 
-/// dN = nn dn, dT = tn dn + tt ds.
+/// The derivative of the force: dN = nn dn, dT = tn dn + tt ds.
 struct ContactTangent {
   double nn = 0, tn = 0, tt = 0;  ///< Pa
 
+  /// The rate of force at these rates of deformation.
+  [[nodiscard]] ContactForce rate(const ContactDeformation& d) const {
+    return {nn * d.normal, tn * d.normal + tt * d.tangential};
+  }
   friend bool operator==(const ContactTangent&, const ContactTangent&) = default;
 };
 

@@ -113,7 +113,7 @@ CompressedColumns ContactOperator::matrix(std::span<const ContactTangent> tangen
     const FlatRows rows(rows_[c].by, b);
     const std::int64_t* place = &places_[c * 4 * b * b];
     for (std::size_t q = 0; q < 2 * b; ++q) {
-      const double n = a.nn * rows.normal[q], t = a.tn * rows.normal[q] + a.tt * rows.tangential[q];
+      const auto [n, t] = a.rate({rows.normal[q], rows.tangential[q]});
       for (std::size_t p = 0; p < 2 * b; ++p, ++place) {
         if (*place >= 0) k.values[static_cast<std::size_t>(*place)] += rows.normal[p] * n + rows.tangential[p] * t;
       }

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "equidem/breakage/event_path.hpp"
+
 namespace equidem {
 namespace {
 
@@ -14,12 +16,6 @@ double dot(std::span<const double> a, std::span<const double> b) {
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
 }
-
-ContactForce rate_of_force(const ContactTangent& a, const ContactDeformation& d) {
-  return {a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
-}
-
-constexpr double rounded_rate = 1e-14;  // of motions, as springs take it for a force
 
 /// The residual of the rates: what drives less what contacts take.
 class RateResidual {
@@ -45,7 +41,7 @@ class RateResidual {
       }
       rates.deformation[c] = d;
       stiffest = std::max(stiffest, tangents_[c].nn);
-      const ContactForce f = rate_of_force(tangents_[c], d);
+      const ContactForce f = tangents_[c].rate(d);
       if (f.normal == 0 && f.tangential == 0) continue;
       rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
       contacts_.add_internal(c, f, internal);
@@ -61,7 +57,7 @@ class RateResidual {
       sum = std::max(sum, std::abs(residual[k]));
     }
     // Forces that no more than the rounding of motions leaves are none.
-    const double none = rounded_rate * stiffest * fastest;
+    const double none = rounded_motion * stiffest * fastest;
     rates.force_scale = std::max(rates.force_scale, none);
     if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;

@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "equidem/breakage/unbonded/dense_lu.hpp"
+#include "equidem/breakage/unbonded/limit_compliance.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr double same_rates = 1e-6;        // relative, of answers that differ by round-off
+constexpr double same_rates = 1e-6;        // of the forces of answers that differ by round-off, or in what is loose
 constexpr double singular = 1e-10;         // least pivot of a combination that has rates at all
 constexpr std::size_t most_pivoted = 400;  // contacts on limits, of complementary pivots
 
@@ -50,40 +51,6 @@ class Combinations {
   std::vector<std::size_t> digits_;
 };
 
-/// C of the contacts on limits, 2 rows and columns each.
-std::vector<double> compliance(const RateProblem& problem, const TangentSolver& solver) {
-  const ContactOperator& contacts = problem.contacts;
-  const auto& held = contacts.unknowns().held;
-  const std::vector<double>& load = problem.driving.pattern->force;
-  const std::size_t m = problem.limits.size(), n = 2 * m;
-  std::vector<double> c(n * n), along;
-  const auto dot = [&](std::span<const double> x) {
-    double sum = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
-    return sum;
-  };
-  const auto solve = [&](std::vector<double>& x) {
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = held[k] != 0 ? 0 : x[k];
-    solver.solve(x);
-  };
-  if (problem.driving.by_motion) solve(along = load);
-  for (std::size_t q = 0; q < n; ++q) {
-    std::vector<double> z(contacts.components(), 0.0);
-    contacts.add_internal(problem.limits[q / 2].contact, q % 2 == 0 ? ContactForce{1, 0} : ContactForce{0, 1}, z);
-    solve(z);
-    if (problem.driving.by_motion) {
-      const double by = dot(z) / dot(along);
-      for (std::size_t k = 0; k < z.size(); ++k) z[k] -= by * along[k];
-    }
-    for (std::size_t p = 0; p < m; ++p) {
-      const ContactDeformation d = contacts.deformation(problem.limits[p].contact, z);
-      c[2 * p * n + q] = d.normal;
-      c[(2 * p + 1) * n + q] = d.tangential;
-    }
-  }
-  return c;
-}
-
 /// An opening or a slip of a contact on a limit.
 struct Multiplier {
   std::size_t place;  // in RateProblem::limits
@@ -93,7 +60,7 @@ struct Multiplier {
 
 }  // namespace
 
-Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
+Branches find_branches(const RateProblem& problem, std::span<const double> c, const RateAnswer& answer,
                        std::span<const std::size_t> fresh) {
   Branches result;
   Combinations all(problem, {problem.limits.begin(), problem.limits.end()});
@@ -110,14 +77,11 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
   }
   if (place.empty()) return result;
   const std::size_t n = 2 * problem.limits.size();
-  const std::vector<double> c = compliance(problem, solver);
   std::vector<double> d0(n);
-  double largest = 0;
   for (std::size_t p = 0; p < problem.limits.size(); ++p) {
     const std::size_t contact = problem.limits[p].contact;
     d0[2 * p] = answer.rates.deformation[contact].normal;
     d0[2 * p + 1] = answer.rates.deformation[contact].tangential;
-    largest = std::max({largest, std::abs(d0[2 * p]), std::abs(d0[2 * p + 1])});
   }
   const double none = answer.rates.negligible;
   std::vector<double> system(n * n), d;
@@ -143,17 +107,19 @@ Branches find_branches(const RateProblem& problem, const TangentSolver& solver, 
     }
     d = d0;
     solve_dense(system, pivots, d);
-    double change = 0, size = largest;
+    double change = 0, size = 0;
     bool agrees = true;
     for (std::size_t p = 0, k = 0; p < problem.limits.size() && agrees; ++p) {
       const LimitContact& at = problem.limits[p];
       const bool tried = k < place.size() && place[k] == p;
       const ContactStatus status = tried ? all.of(k++) : answer.status[at.contact];
-      agrees = status_after(problem.laws[at.contact], at, {d[2 * p], d[2 * p + 1]}, status, none) == status;
-      for (const std::size_t r : {2 * p, 2 * p + 1}) {
-        change = std::max(change, std::abs(d[r] - d0[r]));
-        size = std::max(size, std::abs(d[r]));
-      }
+      const UnbondedLaw& law = problem.laws[at.contact];
+      const ContactDeformation now{d0[2 * p], d0[2 * p + 1]}, then{d[2 * p], d[2 * p + 1]};
+      agrees = status_after(law, at, then, status, none) == status;
+      const ContactForce f0 = law.tangent(answer.status[at.contact]).rate(now), f = law.tangent(status).rate(then);
+      change = std::max({change, std::abs(f.normal - f0.normal), std::abs(f.tangential - f0.tangential)});
+      for (const ContactDeformation& rate : {now, then})
+        size = std::max({size, std::abs(law.k.kN * rate.normal), std::abs(law.k.kT * rate.tangential)});
     }
     if (!agrees || change <= same_rates * size) continue;
     if (++result.others > 1) continue;
@@ -169,7 +135,7 @@ std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver&
   if (contacts == 0 || contacts > most_pivoted) return {};
   for (const LimitContact& at : problem.limits) status[at.contact] = ContactStatus::stuck;
   const Rates base = rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving);
-  const std::vector<double> c = compliance(problem, solver);
+  const std::vector<double> c = limit_compliance(problem, solver);
   std::vector<Multiplier> unknowns;
   for (std::size_t p = 0; p < contacts; ++p) {
     const LimitContact& at = problem.limits[p];

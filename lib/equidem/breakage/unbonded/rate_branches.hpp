@@ -23,13 +23,13 @@ inline constexpr std::int64_t most_branches = 4096;
 
 struct Branches {
   bool all_tried = false;              ///< every combination; false: they are too many, or one has no unique rates
-  std::int64_t others = 0;             ///< answers with other rates than the one given
+  std::int64_t others = 0;             ///< answers with other rates of force than the one given
   std::vector<ContactStatus> other{};  ///< per contact, of the first of them; empty: none
 };
 
-/// \param solver with the tangents of the answer, which it keeps
+/// \param compliance of the contacts on limits (limit_compliance.hpp), with the tangents of the answer
 /// \param fresh the contacts whose statuses are tried where those of all are too many
-Branches find_branches(const RateProblem& problem, const TangentSolver& solver, const RateAnswer& answer,
+Branches find_branches(const RateProblem& problem, std::span<const double> compliance, const RateAnswer& answer,
                        std::span<const std::size_t> fresh);
 
 /// An answer by complementary pivots, from the network in which all contacts on limits stick: with the openings a, the

@@ -13,8 +13,9 @@ namespace {
 constexpr std::size_t most_changed = 32;  // contacts, after which a new factorization is cheaper
 constexpr double least_pivot = 1e-7;      // of the capacity matrix: below, too few digits are left
 
-ContactForce product(const ContactTangent& a, const ContactTangent& base, double normal, double tangential) {
-  return {(a.nn - base.nn) * normal, (a.tn - base.tn) * normal + (a.tt - base.tt) * tangential};
+/// The rate of force beyond that of the base.
+ContactForce beyond(const ContactTangent& a, const ContactTangent& base, const ContactDeformation& d) {
+  return ContactTangent{a.nn - base.nn, a.tn - base.tn, a.tt - base.tt}.rate(d);
 }
 
 }  // namespace
@@ -69,8 +70,8 @@ bool TangentSolver::update() {
   for (std::size_t q = 0; q < changed_.size(); ++q) {
     const std::size_t contact = changed_[q];
     const Columns& z = columns_of(contact);
-    const ContactForce by_n = product(now_[contact], base_[contact], 1, 0);
-    const ContactForce by_t = product(now_[contact], base_[contact], 0, 1);
+    const ContactForce by_n = beyond(now_[contact], base_[contact], {1, 0});
+    const ContactForce by_t = beyond(now_[contact], base_[contact], {0, 1});
     for (std::size_t p = 0; p < changed_.size(); ++p) {
       const ContactDeformation n_of = contacts_.deformation(changed_[p], z.normal);
       const ContactDeformation t_of = contacts_.deformation(changed_[p], z.tangential);
@@ -97,7 +98,7 @@ void TangentSolver::solve(std::span<double> x) const {
   solve_dense(capacity_, pivots_, w);
   for (std::size_t p = 0; p < changed_.size(); ++p) {
     const std::size_t contact = changed_[p];
-    const ContactForce f = product(now_[contact], base_[contact], w[2 * p], w[2 * p + 1]);
+    const ContactForce f = beyond(now_[contact], base_[contact], {w[2 * p], w[2 * p + 1]});
     const Columns& z = columns_.at(contact);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] -= z.normal[k] * f.normal + z.tangential[k] * f.tangential;
   }

@@ -6,7 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/breakage/unbonded/limit_compliance.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
+#include "equidem/breakage/unbonded/unique_rates.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -58,11 +60,6 @@ void check_rest(const BreakageScene& scene, const UnbondedOptions& options) {
 }
 
 void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
-  if (scene.springs.any_negative()) {
-    bad_input("a tangential spring is negative, and contacts slip",
-              "with kT < 0 a contact gains energy as it sticks: the limit of friction has no meaning",
-              "Take kT >= 0, or contacts that are gone when they break");
-  }
   if (!(options.friction >= 0) || !std::isfinite(options.friction))
     bad_input(fmt::format("the friction of contacts without a bond is {}", options.friction),
               "it must be finite and not negative", "Correct it");
@@ -93,8 +90,27 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
   check_scene(scene_, options_);
   state_ = std::make_unique<UnbondedState>(scene_.assembly, scene_.springs, scene_.path, unknowns_, contacts_, laws_,
                                            first_status(scene_, laws_));
+  idle_ = untouched();
   dead_done_ = !scene_.path.dead;
   if (dead_done_) points_.push_back({0, 0, state_->load(), state_->mean_motion()});
+}
+
+std::vector<std::int32_t> UnbondedRun::untouched() const {
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  std::vector<std::uint8_t> touched(scene_.assembly.size(), 0);
+  for (std::size_t d = 0; d < touched.size(); ++d) {
+    for (std::size_t k = d * b; k < (d + 1) * b; ++k)
+      if (unknowns_.held[k] == DegreesOfFreedom::supported) touched[d] = 1;
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (state_->status()[c] == ContactStatus::open) continue;
+    const Contact& contact = scene_.assembly.contacts[c];
+    touched[static_cast<std::size_t>(contact.i)] = touched[static_cast<std::size_t>(contact.j)] = 1;
+  }
+  std::vector<std::int32_t> discs;
+  for (std::size_t d = 0; d < touched.size(); ++d)
+    if (touched[d] == 0) discs.push_back(static_cast<std::int32_t>(d));
+  return discs;
 }
 
 double UnbondedRun::direction(std::int64_t leg) const {
@@ -165,10 +181,17 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
     if (!is_slipping(state_->status()[at.contact]) || answer.status[at.contact] != state_->status()[at.contact])
       fresh.push_back(at.contact);
   }
-  const Branches branches = find_branches(problem, solver_, answer, fresh);
-  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   checked_ = true;
+  const std::vector<double> compliance = limit_compliance(problem, solver_);
+  if (proved_unique(problem, compliance, answer.status)) {
+    ++counters_.unique;
+    return;
+  }
+  const Branches branches = find_branches(problem, compliance, answer, fresh);
+  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   if (!branches.all_tried) {
+    if (branches.others == 0)
+      counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, std::ssize(problem.limits));
     for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
   }
   if (branches.others == 0) return;
@@ -198,9 +221,7 @@ double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStat
   std::vector<double> internal(contacts_.components(), 0.0);
   double sum = 0;
   for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const ContactTangent a = laws_[c].tangent(status[c]);
-    const ContactDeformation& d = rates.deformation[c];
-    const ContactForce f{a.nn * d.normal, a.tn * d.normal + a.tt * d.tangential};
+    const ContactForce f = laws_[c].tangent(status[c]).rate(rates.deformation[c]);
     contacts_.add_internal(c, f, internal);
     if (!affine_.empty()) sum += f.normal * affine_[c].normal + f.tangential * affine_[c].tangential;
   }

@@ -33,7 +33,8 @@ struct UnbondedCounters {
   std::int64_t factorizations = 0, updates = 0;
   std::int64_t unique = 0;      ///< increments of which no other answer exists
   std::int64_t not_unique = 0;  ///< of which another answer was found
-  std::int64_t unchecked = 0;   ///< with too many contacts on their limits to try all combinations
+  std::int64_t unchecked = 0;   ///< neither proved nor with few enough contacts on limits to try all combinations
+  std::int64_t most_unchecked_contacts = 0;  ///< on limits, of such an increment
   /// Relative, of the rates of motion and of load of the first other answer.
   double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;
@@ -43,7 +44,7 @@ class UnbondedRun : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
   /// A contact without a bond whose force at rest pulls, N_r > 0, begins open with the gap N_r/kN.
-  /// \throws Error (bad_input) where a tangential spring is negative, the friction is not a finite number >= 0, or the
+  /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or the
   ///         control is none of those that a path with a history has
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
 
@@ -53,8 +54,10 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::string& why() const override { return why_; }
   [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
   [[nodiscard]] double direction(std::int64_t leg) const override;
-  /// Always empty: contacts that carry nothing at first may close.
+  /// Discs that touch nothing at first; contacts with a gap may close later.
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
+  /// Discs without a support of which every contact is open as it is now, ascending.
+  [[nodiscard]] std::vector<std::int32_t> untouched() const;
   [[nodiscard]] double lambda() const override { return state_->lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }
   /// At motions since the last event.

@@ -5,15 +5,16 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/breakage/event_path.hpp"
+#include "equidem/breakage/network_response.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::size_t contacts_at_once = 1 << 12;
-constexpr double on_limit = 1e-11;        // of the largest force: a contact is on a limit of its law
-constexpr double no_force = 1e5;          // of the next: nothing carries a force as long as all are below
-constexpr double rounded_motion = 1e-14;  // of motions, as springs take it for a force
+constexpr double on_limit = 1e-11;  // of the largest force: a contact is on a limit of its law
+constexpr double no_force = 1e5;    // of the force of rounded motions: nothing carries a force as long as all are below
 
 ContactForce operator+(const ContactForce& a, const ContactForce& b) {
   return {a.normal + b.normal, a.tangential + b.tangential};
@@ -262,7 +263,7 @@ double UnbondedState::mean_motion() const {
 }
 
 Tensor2 UnbondedState::stress() const {
-  const double area = assembly_.periodic() || !assembly_.cell_areas.empty() ? assembly_.area() : 0;
+  const double area = area_of_stress(assembly_);
   Tensor2 sum;
   if (area <= 0) return sum;
   for (std::size_t c = 0; c < laws_.size(); ++c)

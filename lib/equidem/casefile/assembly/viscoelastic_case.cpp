@@ -33,6 +33,11 @@ std::vector<ViscoelasticCase::Row> read_spring_table(const std::filesystem::path
       file.fail(fmt::format("this row is not of the columns {}", table_header), "five numbers with commas are needed",
                 "Write it like 10,1.0e9,2.0e7,0.5e9,1.0e7: Hz and Pa");
     }
+    if (!(numbers[0] > 0)) {
+      file.fail(fmt::format("the frequency {} Hz is not above 0", numbers[0]),
+                "the springs of a frequency are those of motions that change as exp(i 2 pi frequency t)",
+                "Begin with the lowest frequency that was measured");
+    }
     if (!rows.empty() && numbers[0] <= rows.back().frequency) {
       file.fail(fmt::format("the frequency {} Hz comes after {} Hz", numbers[0], rows.back().frequency),
                 "springs are read between neighbours", "Sort the rows and leave out repeated frequencies");

@@ -19,12 +19,9 @@ bool carries_forces(const Assembly& assembly) {
   return false;
 }
 
-RestBalance balance_at_rest(const Assembly& assembly, const std::vector<std::int32_t>& held) {
-  RestBalance balance;
-  if (assembly.contact_normal_force.empty()) return balance;
-  std::vector<Vec2> forces(assembly.size());
-  std::vector<double> moments(assembly.size());
-  double sum = 0;
+RestSums sums_at_rest(const Assembly& assembly) {
+  RestSums sums{std::vector<Vec2>(assembly.size()), std::vector<double>(assembly.size())};
+  double magnitudes = 0;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const ContactForce force = force_at_rest(assembly, c);
     if (!is_loaded(force)) continue;
@@ -32,24 +29,32 @@ RestBalance balance_at_rest(const Assembly& assembly, const std::vector<std::int
     const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
     const ContactFrame frame = frame_of(assembly, c);
     const Vec2 on_i = force_on_i(frame, force);
-    forces[i] += on_i;
-    forces[j] -= on_i;
-    moments[i] += moment_on_i(frame, force);
-    moments[j] += moment_on_j(frame, force);
-    sum += norm(on_i);
-    ++balance.loaded;
+    sums.forces[i] += on_i;
+    sums.forces[j] -= on_i;
+    sums.moments[i] += moment_on_i(frame, force);
+    sums.moments[j] += moment_on_j(frame, force);
+    magnitudes += norm(on_i);
+    ++sums.loaded;
   }
+  if (sums.loaded > 0) sums.mean_force = magnitudes / static_cast<double>(sums.loaded);
+  return sums;
+}
+
+RestBalance balance_at_rest(const Assembly& assembly, const std::vector<std::int32_t>& held) {
+  const RestSums sums = sums_at_rest(assembly);
+  RestBalance balance;
+  balance.loaded = sums.loaded;
+  balance.mean_force = sums.mean_force;
   if (balance.loaded == 0) return balance;
-  balance.mean_force = sum / static_cast<double>(balance.loaded);
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const auto disc = static_cast<std::int32_t>(d);
     if (std::ranges::binary_search(held, disc)) continue;
-    if (norm(forces[d]) > balance.largest_force) {
-      balance.largest_force = norm(forces[d]);
+    if (norm(sums.forces[d]) > balance.largest_force) {
+      balance.largest_force = norm(sums.forces[d]);
       balance.disc_of_force = disc;
     }
-    if (std::abs(moments[d]) > balance.largest_moment) {
-      balance.largest_moment = std::abs(moments[d]);
+    if (std::abs(sums.moments[d]) > balance.largest_moment) {
+      balance.largest_moment = std::abs(sums.moments[d]);
       balance.disc_of_moment = disc;
     }
   }

@@ -21,6 +21,15 @@ inline ContactForce force_at_rest(const Assembly& assembly, std::size_t contact)
   return {assembly.contact_normal_force[contact], assembly.contact_tangential_force[contact]};
 }
 
+/// The forces at rest that act on every body together, N/m, and their moments about its centre, N.
+struct RestSums {
+  std::vector<Vec2> forces;
+  std::vector<double> moments;
+  std::int64_t loaded = 0;  ///< contacts that carry a force
+  double mean_force = 0;    ///< N/m, magnitude, over those contacts
+};
+RestSums sums_at_rest(const Assembly& assembly);
+
 /// The sums of the forces at rest on every body, which vanish where these forces balance each other. Weight and other
 /// loads are not counted: the part that they balance is told here as lacking.
 struct RestBalance {

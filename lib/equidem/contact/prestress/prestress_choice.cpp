@@ -52,7 +52,14 @@ void refuse_imbalance(const Assembly& assembly, const RestBalance& balance) {
       "Let the packing come to rest, or set effects.prestress = \"off\"");
 }
 
-double largest_share(const Assembly& assembly, const ContactSprings& springs) {
+std::string told(const Assembly& assembly, const RestBalance& balance) {
+  return fmt::format("on one body they lack up to {:.2g} of their mean{}", balance.relative,
+                     assembly.periodic() ? "" : ", which weight, walls and loads balance");
+}
+
+}  // namespace
+
+double largest_prestress(const Assembly& assembly, const ContactSprings& springs) {
   double largest = 0;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     if (springs[c].kN == 0) continue;
@@ -61,13 +68,6 @@ double largest_share(const Assembly& assembly, const ContactSprings& springs) {
   }
   return largest;
 }
-
-std::string told(const Assembly& assembly, const RestBalance& balance) {
-  return fmt::format("on one body they lack up to {:.2g} of their mean{}", balance.relative,
-                     assembly.periodic() ? "" : ", which weight, walls and loads balance");
-}
-
-}  // namespace
 
 std::vector<ContactPrestress> prestress_of(const Assembly& assembly) {
   std::vector<ContactPrestress> all;
@@ -84,7 +84,7 @@ std::optional<PrestressedSprings> choose_prestress(const Assembly& assembly, con
               "Take an assembly file with \"forces\", as pack writes it, or leave effects.prestress out");
   }
   PrestressedSprings result{.springs = springs,
-                            .largest = largest_share(assembly, springs),
+                            .largest = largest_prestress(assembly, springs),
                             .balance = balance_at_rest(assembly),
                             .sentence = {}};
   const std::string size = fmt::format("|N0|/(kN l) is up to {:.2g}", result.largest);

@@ -22,7 +22,10 @@ struct EnumNames<PrestressChoice> {
   static constexpr NamedValue<PrestressChoice> list[] = {{automatic, "auto"}, {on, "on"}, {off, "off"}};
 };
 
-/// Prestress counts by "auto" from this largest |N0|/(kN l) on, l the distance of the centres: to leave it out changes
+/// The largest |N0|/(kN l) of the contacts with a normal spring, l the distance of the centres.
+double largest_prestress(const Assembly& assembly, const ContactSprings& springs);
+
+/// Prestress counts by "auto" from this largest |N0|/(kN l) on: to leave it out changes
 /// moduli of jammed packings with kT = kN/2 by up to 1.05 of that share, as measured (docs/explanation/prestress.md).
 /// Without tangential springs it always counts, since such packings may be rigid by it alone.
 inline constexpr double noticeable_prestress = 1e-4;
@@ -32,7 +35,7 @@ inline constexpr double largest_imbalance = 1e-3;
 /// Springs with or without the geometric stiffness of the forces at rest, and why.
 struct PrestressedSprings {
   ContactSprings springs;
-  double largest = 0;  ///< |N0|/(kN l)
+  double largest = 0;  ///< largest_prestress
   RestBalance balance = {};
   std::string sentence;  ///< what was decided, with the reason
 };

@@ -11,6 +11,7 @@
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 namespace {
@@ -45,16 +46,27 @@ void add_to(HarmonicMotion& motion, std::span<const Complex> x) {
   motion.out_of_phase.add(part);
 }
 
+SolveEstimate estimate_complex(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns) {
+  SolveEstimate size = estimate(symbolic, unknowns, true);
+  size.factor_bytes *= 2;  // numbers of two doubles
+  size.peak_bytes *= 2;
+  return size;
+}
+
 }  // namespace
+
+SolveEstimate estimate_harmonic(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
+  const ContactGraph graph(assembly);
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, {});
+  return estimate_complex(analyze(dissect(assembly, graph), graph, unknowns.per_disc), unknowns);
+}
 
 HarmonicSolver::HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
                                const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms,
                                double memory_limit, StageTimes& times)
     : geometry_(geometry), springs_(springs) {
   Stopwatch watch;
-  SolveEstimate size = estimate(*symbolic, geometry.unknowns, true);
-  size.peak_bytes *= 2;  // numbers of two doubles
-  check_memory(size, memory_limit);
+  check_memory(estimate_complex(*symbolic, geometry.unknowns), memory_limit);
   const auto& [assembly, graph, unused, unknowns] = geometry;
   const StiffnessMatrixOf<Complex> matrix =
       complex_matrix(assemble_stiffness(assembly, graph, springs.storage, unknowns),

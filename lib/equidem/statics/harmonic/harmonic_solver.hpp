@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "equidem/contact/complex_springs.hpp"
+#include "equidem/contact/effects.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/ldlt_factor.hpp"
 #include "equidem/linear/spring_network.hpp"
 #include "equidem/statics/internal_force.hpp"
@@ -31,6 +33,9 @@ struct HarmonicMotion {
 
   [[nodiscard]] double relative_residual() const { return scale > 0 ? residual / scale : 0.0; }
 };
+
+/// Size of the complex factor of an assembly without supports.
+SolveEstimate estimate_harmonic(const Assembly& assembly, const ContactSprings& springs, const Effects& effects);
 
 /// The matrix K = K' + i K'' of one frequency, factorized on the fronts of the elastic matrix: K is symmetric, not
 /// Hermitian, and L D L^T goes without conjugation. All springs lie in one quarter of the complex plane, so that

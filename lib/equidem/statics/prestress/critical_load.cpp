@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -41,7 +42,7 @@ class LoadPencil {
         unknowns_(number_unknowns(assembly, springs, derive_effects(assembly, springs, options.rotation), supports)) {
     hold_free_motions(assembly, graph_, springs, unknowns_);
     symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
-    check_memory(estimate(*symbolic_, unknowns_, true), 0);
+    check_memory(estimate(*symbolic_, unknowns_, true), options.memory_limit);
     geometric_ = assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
   }
 
@@ -120,14 +121,6 @@ bool prove(LoadPencil& pencil, double value, CriticalLoad& result) {
   return false;
 }
 
-/// Largest share of the geometric stiffness across a contact in kN, |N0|/(kN l) of discs.
-double largest_geometric_share(const Assembly& assembly, const ContactSprings& springs) {
-  double largest = 0;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c)
-    if (springs[c].kN != 0) largest = std::max(largest, std::abs(springs.prestress(c)->ss) / springs[c].kN);
-  return largest;
-}
-
 void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
   double safe = 0, unstable = 1;
   for (; pencil.stable(unstable); unstable *= 4) {
@@ -152,7 +145,11 @@ void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
       }
     }
     const double at = safe > 0 ? 0.5 * (safe + unstable) : unstable / 64;
-    if (at < std::numeric_limits<double>::min()) return;
+    if (at < std::numeric_limits<double>::min()) {
+      result.sought = false;
+      result.why = "no factor above 0 is stable: the springs alone resist some motion by no more than round-off";
+      return;
+    }
     (pencil.stable(at) ? safe : unstable) = at;
   }
   result.factor = 0.5 * (safe + unstable);
@@ -176,7 +173,7 @@ CriticalLoad find_critical_load(const Assembly& assembly, const ContactSprings& 
   const auto at_zero = pencil.inertia(0);
   if (at_zero.negative > 0) return not_sought("the springs alone are unstable (kT < 0)");
   if (at_zero.zero > 0) return not_sought("the springs alone leave motions that only the forces at rest resist");
-  const double share = largest_geometric_share(assembly, springs);
+  const double share = largest_prestress(assembly, springs);
   search(pencil, share > 0 ? options.largest / share : options.largest, result);
   result.factorizations = pencil.factorizations();
   return result;

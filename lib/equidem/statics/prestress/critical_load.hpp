@@ -18,8 +18,8 @@ namespace equidem {
 
 struct CriticalLoadOptions {
   Rotation rotation = Rotation::from_scene;
-  double largest = 1e3;  ///< where the search ends: |N0|/(kN l) of the most loaded contact, l its length, or what
-                         ///< stands for it between bodies that are no discs
+  double largest = 1e3;     ///< where the search ends: |N0|/(kN l) of the most loaded contact (largest_prestress)
+  double memory_limit = 0;  ///< bytes; 0: what the machine has free
 };
 
 /// Result of the search.
@@ -28,7 +28,7 @@ struct CriticalLoad {
   double factor = 0;    ///< infinity: none up to `searched`
   double searched = 0;  ///< the largest factor that was tried
   double width = 0;     ///< relative, of the interval that factorizations at its ends prove to hold it
-  std::string why;      ///< why it was not sought; empty: it was
+  std::string why;      ///< why it was not sought, or not found; empty: it was
   std::int64_t factorizations = 0;
   std::vector<DiscMotion> motion;  ///< that is lost, per disc, largest translation 1 m; empty where there is none
 };
