@@ -198,7 +198,7 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", case, "--set", "quasistatic.control=path"), 2, "depends on the path")
         self.check_error(equidem("quasistatic", case, "--set", "springs.kT=-1e9"), 2, "kT < 0")
         self.check_error(equidem("quasistatic", case, "--set", "solver.method=cholmod"), 2, "umfpack alone", "solver.method")
-        self.check_error(equidem("quasistatic", case, "--set", "solver.memory=1e6"), 3, "memory")
+        self.check_error(equidem("quasistatic", case, "--set", "solver.memory_limit=1e5"), 1, "are allowed by memory_limit")
         dry = equidem("quasistatic", case, "--dry-run", "--json", "-")
         self.assertEqual(dry.returncode, 0, dry.stderr)
         self.assertEqual(parse_json(dry.stdout)["method"], "umfpack")

@@ -72,7 +72,7 @@ struct Sequence {
     } catch (const Error& error) {
       throw error.at(resolved.where("quasistatic.legs"));
     }
-    if (rubs()) choose_rubbing_solver();
+    if (rubs()) check_rubbing_solver();
     path = make_load_path(assembly, problem.springs.springs, effects,
                           {.supports = problem.supports,
                            .loads = problem.load_cases.front().loads,
@@ -85,16 +85,19 @@ struct Sequence {
                            .max_events = wanted.max_events});
   }
 
-  /// The tangent of contacts that slip is not symmetric.
-  void choose_rubbing_solver() {
-    SolverOptions& solver = problem.resolved.solver;
-    if (solver.method != SolverMethod::automatic && solver.method != SolverMethod::umfpack) {
-      bad_input_at(problem.resolved.where("solver.method"),
-                   fmt::format("contacts rub, and the method is {}", to_string(solver.method)),
-                   "the stiffness of contacts that slip is not symmetric, which umfpack alone factorizes",
-                   "Leave out solver.method, or take \"umfpack\"");
-    }
-    solver.method = SolverMethod::umfpack;
+  void check_rubbing_solver() const {
+    const SolverMethod method = problem.resolved.solver.method;
+    if (method == SolverMethod::automatic || method == SolverMethod::umfpack) return;
+    bad_input_at(problem.resolved.where("solver.method"),
+                 fmt::format("contacts rub, and the method is {}", to_string(method)),
+                 "the stiffness of contacts that slip is not symmetric, which umfpack alone factorizes",
+                 "Leave out solver.method, or take \"umfpack\"");
+  }
+  /// With the method that the path takes.
+  [[nodiscard]] SolverOptions solver() const {
+    SolverOptions solver = factor_to_update(problem.resolved.solver);
+    if (rubs()) solver.method = SolverMethod::umfpack;
+    return solver;
   }
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
   [[nodiscard]] bool rubs() const {
@@ -107,8 +110,10 @@ struct Sequence {
   void begin() {
     const Stopwatch watch;
     if (rubs()) {
-      check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options()),
-                   problem.resolved.solver.memory_limit);
+      EquilibriumOptions wanted = problem.options();
+      wanted.solver = solver();
+      check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, wanted),
+                   wanted.solver.memory_limit);
       const StrengthOptions& strength = *problem.resolved.strength;
       UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
@@ -126,7 +131,7 @@ struct Sequence {
 /// Size, memory and time of a path, of which only the number of events is not known before.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
-  if (!sequence.rubs()) problem.resolved.solver = factor_to_update(problem.resolved.solver);
+  problem.resolved.solver = sequence.solver();
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
   const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
   Results further = path_results(sequence.scene(), sequence.cut.size());
