@@ -7,7 +7,7 @@ namespace {
 /// With fewer bodies threads wait for one another longer than they work.
 constexpr std::size_t fewest_bodies_of_threads = 4096;
 /// Larger blocks have fewer pairs with bodies of others; of many blocks threads get equal shares.
-constexpr std::size_t fewest_bodies_of_block = 512, most_blocks = 128;
+constexpr std::size_t fewest_bodies_of_block = 1024, most_blocks = 128;
 
 }  // namespace
 
