@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
-#include <cstdint>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -15,6 +13,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/waiting.hpp"
 
 namespace equidem {
 namespace {
@@ -25,7 +24,7 @@ thread_local bool inside_task = false;
 struct Job {
   std::size_t tasks = 0;
   const std::function<void(std::size_t, int)>* body = nullptr;
-  std::atomic<std::size_t> next{0};
+  alignas(64) std::atomic<std::size_t> next{0};
   std::mutex failure_mutex;
   std::exception_ptr failure;
 
@@ -44,7 +43,8 @@ struct Job {
   }
 };
 
-/// Threads that wait for jobs; they live until the process ends.
+/// Threads that wait for jobs; they live until the process ends. A job does not wait for those that come too late for
+/// it, because others have their processors.
 class Pool {
  public:
   Pool() = default;
@@ -55,60 +55,49 @@ class Pool {
   void run(Job& job, int threads) {
     const std::lock_guard one_job_at_a_time(run_mutex_);
     if (helpers_.size() != static_cast<std::size_t>(threads - 1)) resize(threads - 1);
-    {
-      const std::lock_guard lock(mutex_);
-      job_ = &job;
-      busy_ = static_cast<int>(helpers_.size());
-      ++round_;
-    }
-    wake_.notify_all();
+    job_ = &job;
+    begin_round();
     job.work(0);
-    std::unique_lock lock(mutex_);
-    done_.wait(lock, [&] { return busy_ == 0; });
     job_ = nullptr;
+    // whoever has counted itself from now on finds no job
+    for (int busy = busy_; busy != 0; busy = busy_) wait_while_equal(busy_, busy);
   }
 
  private:
+  void begin_round() {
+    ++round_;
+    round_.notify_all();
+  }
+
   void resize(int count) {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    wake_.notify_all();
+    stop_ = true;
+    begin_round();
     for (auto& helper : helpers_) helper.join();
     helpers_.clear();
     stop_ = false;
     for (int worker = 1; worker <= count; ++worker) {
-      helpers_.emplace_back([this, worker, seen = round_] { serve(worker, seen); });
+      helpers_.emplace_back([this, worker, seen = round_.load()] { serve(worker, seen); });
     }
   }
 
-  void serve(int worker, std::uint64_t seen) {
+  void serve(int worker, int seen) {
     while (true) {
-      Job* job = nullptr;
-      {
-        std::unique_lock lock(mutex_);
-        wake_.wait(lock, [&] { return stop_ || round_ != seen; });
-        if (stop_) return;
-        seen = round_;
-        job = job_;
-      }
-      job->work(worker);
-      {
-        const std::lock_guard lock(mutex_);
-        --busy_;
-      }
-      done_.notify_one();
+      wait_while_equal(round_, seen);
+      seen = round_;
+      if (stop_) return;
+      ++busy_;
+      if (Job* job = job_) job->work(worker);
+      if (--busy_ == 0) busy_.notify_one();
     }
   }
 
-  std::mutex run_mutex_, mutex_;
-  std::condition_variable wake_, done_;
+  std::mutex run_mutex_;
   std::vector<std::thread> helpers_;
-  Job* job_ = nullptr;
-  std::uint64_t round_ = 0;
-  int busy_ = 0;
-  bool stop_ = false;
+  // on lines of their own: threads that wait read them all the time
+  alignas(64) std::atomic<int> round_{0};
+  alignas(64) std::atomic<int> busy_{0};  ///< helpers that may hold the job
+  alignas(64) std::atomic<Job*> job_{nullptr};
+  std::atomic<bool> stop_{false};
 };
 
 std::atomic<int> requested_threads{0};

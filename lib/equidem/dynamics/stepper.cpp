@@ -8,32 +8,31 @@
 #include <vector>
 
 #include "equidem/core/threads.hpp"
+#include "equidem/core/waiting.hpp"
 
 namespace equidem {
 namespace {
 
-/// Threads wait for one another between waves of a few microseconds: they spin, and let others run when it takes
-/// longer.
+/// Threads wait for one another between waves of a few microseconds.
 class SpinBarrier {
  public:
   explicit SpinBarrier(int threads) : threads_(threads) {}
 
   void wait() {
-    const std::uint64_t round = round_.load(std::memory_order_acquire);
+    const int round = round_.load(std::memory_order_acquire);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
       arrived_.store(0, std::memory_order_relaxed);
-      round_.store(round + 1, std::memory_order_release);
+      round_.fetch_add(1, std::memory_order_release);
+      round_.notify_all();
       return;
     }
-    for (int spins = 0; round_.load(std::memory_order_acquire) == round; ++spins) {
-      if (spins > 2000) std::this_thread::yield();
-    }
+    wait_while_equal(round_, round);
   }
 
  private:
   const int threads_;
   alignas(64) std::atomic<int> arrived_{0};
-  alignas(64) std::atomic<std::uint64_t> round_{0};
+  alignas(64) std::atomic<int> round_{0};
 };
 
 /// Run body(thread) on `threads` threads at the same time.

@@ -34,6 +34,7 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const auto any_shape = [&](GrainShape shape) {
     return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
   };
+  const std::size_t blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block).count();
   const bool ellipses = any_shape(GrainShape::ellipse), clumps = any_shape(GrainShape::clump);
   Effects effects;
   effects.tangential_springs = springs;
@@ -59,6 +60,8 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
       entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
       entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
       entry("motion of walls", moving, "a wall has a schedule", "no wall moves"),
+      entry("several threads", blocks > 1, fmt::format("the grains are stepped in {} blocks", blocks),
+            "few grains: threads would wait for one another longer than they work"),
   };
   return effects;
 }

@@ -38,12 +38,12 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
     if (!(overlap > 0)) return;
     normal += system.law().energy(candidate.stiffness, overlap);
   };
-  for (const NearParts::List& list : system.contacts.near_parts.lists) {
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       auto [candidate, pair] = candidate_of(system, list, p);
       add(candidate, geometry_of_parts(system, candidate, pair).overlap);
     }
-  }
+  });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
     add(system.contacts.candidates[c], overlap_of(system, c));
   return {normal, tangential};

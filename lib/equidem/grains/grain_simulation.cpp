@@ -46,6 +46,10 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   Implementation& self = *implementation_;
   GrainSystem& system = self.system;
   system.options = options;
+  system.bodies.blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block);
+  system.bodies.sums.resize(system.bodies.blocks.count());
+  system.bodies.ways.resize(system.bodies.blocks.count());
+  system.bodies.inwards.resize(system.bodies.blocks.count());
   order_by_place(system, scene);
   tie_bonds(system, scene);
   self.bond_limit = bond_step_limit(scene, options.bond_step);
@@ -235,16 +239,18 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     }
     contacts.push_back(contact);
   };
-  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
-    const Candidate candidate = candidate_of(system, p);
-    add(candidate, arms_of_discs(system, candidate));
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      const Candidate candidate = candidate_of(system, block, p);
+      add(candidate, arms_of_discs(system, candidate));
+    }
   }
-  for (const NearParts::List& list : system.contacts.near_parts.lists) {
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const auto [candidate, pair] = candidate_of(system, list, p);
       add(candidate, {pair.arm_i, pair.arm_j});
     }
-  }
+  });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
     add(system.contacts.candidates[c], arms_of(system, c));
   std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {

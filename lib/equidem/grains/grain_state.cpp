@@ -83,20 +83,22 @@ void take(const double* numbers, Candidate& candidate) {
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
   std::vector<double> contacts, losses, counts, impulses, bonds;
-  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
-    if (!system.contacts.near.touching(p)) continue;
-    const Candidate candidate = candidate_of(system, p);
-    append(contacts, candidate);
-    if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      const Candidate candidate = candidate_of(system, block, p);
+      append(contacts, candidate);
+      if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
+    }
   }
-  for (const NearParts::List& list : system.contacts.near_parts.lists) {
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const auto [candidate, pair] = candidate_of(system, list, p);
       append(contacts, candidate);
       append(contacts, pair);
     }
-  }
+  });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
     if (!system.contacts.candidates[c].touching) continue;
     append(contacts, system.contacts.candidates[c]);
@@ -197,7 +199,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     load_pair_bodies(system);
     take_near_pairs(system, near);
   }
-  if (system.contacts.near_parts.active) take_near_parts(system, near_parts);
+  if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   find_candidates(system);
   std::size_t c = 0;
   for (const double* contact : others) {

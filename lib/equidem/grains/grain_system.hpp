@@ -11,6 +11,7 @@
 #include "equidem/grains/contacts/touch_instants.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/kernels/bond_loop.hpp"
+#include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
@@ -29,13 +30,6 @@ struct GrainMotion {
 struct GrainBody {
   double radius = 0, inverse_mass = 0, inverse_moment = 0;
   std::int32_t kind = 0;
-};
-
-/// Impulse on a body by its contacts in one step.
-struct alignas(32) BodyImpulse {
-  Vec2 impulse;       ///< N s
-  double torque = 0;  ///< angular impulse, N m s
-  double rim = 0;  ///< tangential impulse on the rim of a disc by near pairs, N s; turn_rims() converts it to a torque
 };
 
 /// Two bodies, or a body and a wall, that may touch soon, with the state of their contact.
@@ -73,8 +67,22 @@ struct WallPlace {
   Vec2 passed_velocity;  ///< velocity_verlet: mean over the previous step
 };
 
+/// Sums over the contacts of a block in a step.
+struct BlockSums {
+  EnergyLedger lost;
+  std::vector<TouchImpulse> touch_impulses;
+  std::int64_t evaluations = 0, contacts = 0;  ///< as in GrainCounters
+  double deepest = 0;                          ///< deepest overlap, m
+
+  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses}; }
+};
+
 /// The bodies sorted by position.
 struct GrainBodies {
+  BodyBlocks blocks;
+  std::vector<BlockSums> sums;  ///< of each block
+  std::vector<double> ways;     ///< of each block: square of the longest displacement in the present step, m²
+  std::vector<std::vector<InwardImpulse>> inwards;  ///< of each block: impulses by near pairs of earlier blocks
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
   std::vector<GrainMotion> next;  ///< motions after the present step
@@ -169,6 +177,9 @@ double dashpot_of(const GrainSystem& system, const Candidate& candidate);
 
 /// Set the constants of a pair that the law needs.
 void set_constants(const GrainSystem& system, Candidate& candidate);
+
+/// Connect the impulses of pairs with bodies of later blocks, when lists of near pairs have been found.
+void connect_blocks(GrainSystem& system);
 
 /// Find all candidates within the margin again; existing contacts keep their state.
 void find_candidates(GrainSystem& system);

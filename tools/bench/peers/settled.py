@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A settled box of discs with friction: steps of discs per second in LAMMPS, YADE and equidem."""
+"""A settled box of discs with friction: steps of discs per second in LAMMPS, YADE and equidem, on one core and on two."""
 
 import json
 import math
@@ -16,6 +16,7 @@ STIFFNESS, MASS = 1e5, 2.2e-3  # N/m, and the reduced mass of two discs of the m
 DASHPOT = (4000.0, 2000.0)  # 1/s, times the mass: normal, tangential
 STEP = 1.5e-5  # s
 SKINS = (0.0005, 0.001, 0.002)  # m, LAMMPS: the best counts
+CORES = (1, 2)
 
 
 def loose_grid(columns, rows, file):
@@ -80,24 +81,33 @@ gravity = [{gravity[0]!r}, {gravity[1]!r}]
     return file, len(discs)
 
 
+def lammps(folder, name, width, skin, steps, angle, discs, ranks):
+    """Steps of discs per second in three runs."""
+    log = folder / "lammps.log"
+    several = ["mpirun", "-n", ranks] if ranks > 1 else []
+    call([*several, "lmp", "-in", "measure.lammps", "-log", log, "-screen", "none", "-var", "restart", folder / f"{name}.restart", "-var", "W", width,
+          "-var", "skin", skin, "-var", "steps", steps, "-var", "angle", angle], folder=HERE,
+         OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    loops = [float(word) for word in re.findall(r"Loop time of (\S+)", log.read_text())][1:]
+    return [discs * steps / loop for loop in loops]
+
+
 def measure(equidem, width, name, steps, angle, rounds, folder):
     dump = folder / f"{name}.dump"
     file, discs = case_of(dump, width, angle, steps, folder)
-    found = {"discs": discs, "angle": angle, "equidem": [], "lammps": {skin: [] for skin in SKINS}, "yade": []}
+    found = {"discs": discs, "angle": angle, "equidem": {cores: [] for cores in CORES},
+             "lammps": {cores: {skin: [] for skin in SKINS} for cores in CORES}, "yade": []}
     for _ in range(rounds):
-        result = json.loads(call([equidem, "run", file, "--json", "-", "--quiet", "--threads", 1]))
-        found["equidem"].append(result["particle_steps_per_second"])
+        for cores in CORES:
+            result = json.loads(call([equidem, "run", file, "--json", "-", "--quiet", "--threads", cores]))
+            found["equidem"][cores].append(result["particle_steps_per_second"])
+            for skin in SKINS:
+                found["lammps"][cores][skin] += lammps(folder, name, width, skin, steps // 3, angle, discs, cores)
         found["contacts_per_disc"] = result["touching"] / discs
         found["bytes_per_disc"] = result["bytes_per_grain"]
-        for skin in SKINS:
-            log = folder / "lammps.log"
-            call(["lmp", "-in", "measure.lammps", "-log", log, "-screen", "none", "-var", "restart", folder / f"{name}.restart", "-var", "W", width,
-                  "-var", "skin", skin, "-var", "steps", steps // 3, "-var", "angle", angle], folder=HERE)
-            loops = [float(word) for word in re.findall(r"Loop time of (\S+)", log.read_text())][1:]
-            found["lammps"][skin] += [discs * (steps // 3) / loop for loop in loops]
         text = call(["yade", "-n", "-x", "-j1", HERE / "settled_yade.py", dump, width, max(50, steps // 40), angle])
         found["yade"] += result_of(text)["rates"]
-    tell(f"settled: {discs} discs, {angle} degrees: equidem {spread(found['equidem'])}")
+    tell(f"settled: {discs} discs, {angle} degrees: equidem {spread(found['equidem'][1])}")
     return found
 
 
@@ -119,14 +129,17 @@ def compare(equidem, quick, rounds):
 def report(found):
     rows = []
     for box in found:
-        lammps = max(box["lammps"].values(), key=median)
-        ours = median(box["equidem"])
         state = "settled" if box["angle"] == 0 else f"flowing, gravity tilted by {box['angle']} degrees"
-        rows.append([box["discs"], state, spread(box["equidem"]), spread(lammps), spread(box["yade"]), number(ours / median(lammps)),
-                     number(ours / median(box["yade"])), number(box["contacts_per_disc"])])
-    head = ["discs", "state", "equidem", "LAMMPS, best skin", "YADE", "equidem over LAMMPS", "over YADE", "contacts a disc"]
+        for cores in CORES:
+            theirs = max(box["lammps"][cores].values(), key=median)
+            ours = median(box["equidem"][cores])
+            yade = [spread(box["yade"]), number(ours / median(box["yade"]))] if cores == 1 else ["", ""]
+            rows.append([box["discs"], state, cores, spread(box["equidem"][cores]), spread(theirs), yade[0], number(ours / median(theirs)),
+                         yade[1], number(box["contacts_per_disc"])])
+    head = ["discs", "state", "cores", "equidem", "LAMMPS, best skin", "YADE", "equidem over LAMMPS", "over YADE", "contacts a disc"]
     return (
         "## The same box: discs with friction, steps of discs per second\n\nRadii 0.5 to 1 cm, linear springs and dashpots, tangential springs capped "
-        "by friction 0.5, rotation, three walls, settled by LAMMPS; one core each. LAMMPS: gran/hooke/history, Debian's build. YADE: "
+        "by friction 0.5, rotation, three walls, settled by LAMMPS; one core, or two: two threads of equidem, two MPI ranks of LAMMPS side by side in x. LAMMPS: "
+        "gran/hooke/history, Debian's build. YADE: "
         "Cundall and Strack's law with local damping. equidem: `run`, its histories and checks included.\n\n" + table(head, rows)
     )

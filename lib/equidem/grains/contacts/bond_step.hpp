@@ -3,6 +3,7 @@
 /// Bonds of discs in a step (contact/viscous_bond.hpp): impulses, step limit, deformation.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,6 +47,12 @@ void refuse_crept_bonds(const GrainSystem& system);
 inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std::int32_t i, std::int32_t j) {
   while (next < bonds.size() && (bonds[next].i < i || (bonds[next].i == i && bonds[next].j < j))) ++next;
   return next < bonds.size() && bonds[next].i == i && bonds[next].j == j;
+}
+
+/// Position of the first bond whose first body is `body` or a later one, for are_tied().
+inline std::size_t first_bond_from(const std::vector<TiedPair>& bonds, std::int32_t body) {
+  const auto before = [](const TiedPair& bond, std::int32_t i) { return bond.i < i; };
+  return static_cast<std::size_t>(std::lower_bound(bonds.begin(), bonds.end(), body, before) - bonds.begin());
 }
 
 /// Add the impulses of bonds to those of the step, after all contacts.

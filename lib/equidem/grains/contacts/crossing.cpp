@@ -89,22 +89,24 @@ void refuse_runaway(const GrainSystem& system, double reach) {
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
-  for (std::size_t p = 0; p < system.contacts.near.count; ++p) {
-    Candidate pair;
-    pair.i = system.contacts.near.first(p);
-    pair.j = system.contacts.near.second(p);
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
-    check_discs(system, pair,
-                {system.bodies.motions[j].position - system.bodies.motions[i].position,
-                 system.bodies.next[j].position - system.bodies.next[i].position, system.bodies.constants[i].radius,
-                 system.bodies.constants[j].radius});
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      Candidate pair;
+      pair.i = block.first(p);
+      pair.j = block.second(p);
+      const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+      check_discs(system, pair,
+                  {system.bodies.motions[j].position - system.bodies.motions[i].position,
+                   system.bodies.next[j].position - system.bodies.next[i].position, system.bodies.constants[i].radius,
+                   system.bodies.constants[j].radius});
+    }
   }
-  for (const NearParts::List& list : system.contacts.near_parts.lists) {
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       const auto [candidate, pair] = candidate_of(system, list, p);
       check_parts(system, candidate, pair);
     }
-  }
+  });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
     const Candidate& candidate = system.contacts.candidates[c];
     const PartPair parts = system.shapes.parts.empty() ? PartPair{} : system.contacts.part_pairs[c];

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/verlet_contact.hpp"
@@ -133,18 +134,11 @@ void collide_candidates_by_verlet(GrainSystem& system) {
 template <class Law, bool friction>
 void collide_by(GrainSystem& system) {
   if constexpr (friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  if (friction || !system.free_flight)
-    std::fill(system.bodies.impulses.begin(), system.bodies.impulses.end(), BodyImpulse{});
+  const bool clear = friction || !system.free_flight;
   constexpr bool map = Law::kind == LawKind::map;
   if (map && !system.free_flight) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   system.free_flight = true;
-  if (system.contacts.near.active) {
-    system.contacts.near.loop(system);
-    if (friction && system.options.verlet()) {
-      for (std::size_t i = 0; i < system.bodies.constants.size(); ++i)
-        turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
-    }
-  }
+  collide_near(system, clear);
   if constexpr (!map) {
     if (system.options.verlet()) return collide_candidates_by_verlet<Law, friction>(system);
   }
@@ -278,15 +272,19 @@ void drift_of_verlet(GrainSystem& system) {
 
 void kick_of_verlet(GrainSystem& system) {
   const Vec2 fall = system.dt() * system.scene.gravity;
-  if (system.free_flight) {
-    for (GrainMotion& motion : system.bodies.motions) motion.velocity += 0.5 * fall;
-    return give_touch_impulses(system);
-  }
-  for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
-    const GrainBody& body = system.bodies.constants[i];
-    system.bodies.motions[i].velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
-    system.bodies.motions[i].spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
-  }
+  const BodyBlocks& blocks = system.bodies.blocks;
+  blocks.each([&](std::size_t block) {
+    for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
+      GrainMotion& motion = system.bodies.motions[i];
+      if (system.free_flight) {
+        motion.velocity += 0.5 * fall;
+        continue;
+      }
+      const GrainBody& body = system.bodies.constants[i];
+      motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
+      motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+    }
+  });
   give_touch_impulses(system);
 }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/contacts/verlet_contact.hpp"
 
@@ -142,17 +142,9 @@ template <class Law, bool friction>
 void collide_parts(GrainSystem& system) {
   load_part_bodies(system);
   if constexpr (friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  if (friction || !system.free_flight)
-    std::fill(system.bodies.impulses.begin(), system.bodies.impulses.end(), BodyImpulse{});
+  const bool clear = friction || !system.free_flight;
   system.free_flight = true;
-  if (system.contacts.near.active) system.contacts.near.loop(system);
-  for (NearParts::List& list : system.contacts.near_parts.lists) {
-    if (list.count > 0) list.loop(system, list);
-  }
-  if (system.contacts.near.active && friction && system.options.verlet()) {
-    for (std::size_t i = 0; i < system.bodies.constants.size(); ++i)
-      turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
-  }
+  collide_near(system, clear);
   const bool verlet = system.options.verlet();
   const double dt = system.dt();
   const double length = system.length;

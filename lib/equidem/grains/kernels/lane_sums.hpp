@@ -18,16 +18,15 @@ struct LaneSums {
   Choice evaluations{}, begun{};
 };
 
-EQUIDEM_ALWAYS_INLINE void add(const LaneSums& sums, GrainSystem& system) {
-  system.lost.lost_dashpot += sums.lost[0];
-  system.lost.lost_slip += sums.lost[1];
-  system.lost.lost_tangential_dashpot += sums.lost[2];
-  system.lost.lost_release += sums.lost[3];
+EQUIDEM_ALWAYS_INLINE void add(const LaneSums& sums, BlockSums& block) {
+  block.lost.lost_dashpot += sums.lost[0];
+  block.lost.lost_slip += sums.lost[1];
+  block.lost.lost_tangential_dashpot += sums.lost[2];
+  block.lost.lost_release += sums.lost[3];
   for (int k = 0; k < 8; ++k) {
-    system.counters.evaluations += sums.evaluations[k];
-    system.counters.contacts += sums.begun[k];
-    if (sums.evaluations[k] > 0) system.free_flight = false;
-    system.deepest = std::max(system.deepest, sums.deepest[k]);
+    block.evaluations += sums.evaluations[k];
+    block.contacts += sums.begun[k];
+    block.deepest = std::max(block.deepest, sums.deepest[k]);
   }
 }
 

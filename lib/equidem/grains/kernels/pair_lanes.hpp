@@ -121,6 +121,9 @@ EQUIDEM_ALWAYS_INLINE void rows_of(const Lanes& a, const Lanes& b, const Lanes& 
   row[7] = __builtin_shufflevector(r57, r57, 4, 5, 6, 7);
 }
 
+EQUIDEM_ALWAYS_INLINE void put(const Half& row, void* to) {
+  std::memcpy(to, &row, sizeof row);
+}
 /// to += change, for the rows of a body.
 EQUIDEM_ALWAYS_INLINE void add(void* to, const Half& change) {
   Half sum;

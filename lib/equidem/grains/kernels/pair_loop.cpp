@@ -34,7 +34,8 @@ struct LoopNumbers {
   std::int64_t now = 0;  ///< step before the one being made
   bool corrected = false;
   bool record = false;
-  GrainSystem* system = nullptr;
+  const GrainSystem* system = nullptr;
+  BlockSums* block = nullptr;
 };
 
 template <PairLoopKind kind>
@@ -221,28 +222,30 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
         lever[k] = numbers.system->bodies.constants[static_cast<std::size_t>(group.i[k])].radius;
       lever = lever / load(group.reach) * geometry.distance;
       const Lanes other = lever - geometry.distance;
-      count_instants(*numbers.system, {begun,
-                                       ended,
-                                       slides,
-                                       group.i,
-                                       group.j,
-                                       nx,
-                                       ny,
-                                       lever * nx,
-                                       lever * ny,
-                                       other * nx,
-                                       other * ny,
-                                       mean_closing,
-                                       slip,
-                                       choose(begun, deep, deep_before),
-                                       choose(begun, elastic, elastic_before) * dt,
-                                       choose(begun, impulse, impulse_before),
-                                       dashpot,
-                                       mass,
-                                       law.least,
-                                       tangential_kick,
-                                       sticking_dashpot,
-                                       0.5 * law.tangential_stiffness * kept * kept});
+      count_instants(*numbers.system,
+                     {begun,
+                      ended,
+                      slides,
+                      group.i,
+                      group.j,
+                      nx,
+                      ny,
+                      lever * nx,
+                      lever * ny,
+                      other * nx,
+                      other * ny,
+                      mean_closing,
+                      slip,
+                      choose(begun, deep, deep_before),
+                      choose(begun, elastic, elastic_before) * dt,
+                      choose(begun, impulse, impulse_before),
+                      dashpot,
+                      mass,
+                      law.least,
+                      tangential_kick,
+                      sticking_dashpot,
+                      0.5 * law.tangential_stiffness * kept * kept},
+                     *numbers.block);
     }
   }
   if (numbers.record) {
@@ -253,10 +256,23 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& g
   }
 }
 
-template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, BodyImpulse* impulses, LaneSums& sums) {
+/// Where the impulses of a group go.
+struct Receivers {
+  BodyImpulse* impulses = nullptr;
+  BodyImpulse* outward = nullptr;  ///< next place for a body behind the block
+  std::int32_t end = 0;            ///< of the bodies of the block
+};
+
+/// \tparam outward some bodies are behind the block
+template <PairLoopKind kind, bool outward>
+EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, Receivers& to, LaneSums& sums) {
   constexpr long long minus = std::numeric_limits<long long>::min();
-  if (!outcome.any) return;
+  if (!outcome.any) {
+    for (int k = 0; outward && k < 8; ++k) {
+      if (group.j[k] >= to.end) *to.outward++ = {};
+    }
+    return;
+  }
   Half row[8];
   if constexpr (kind.friction) {
     rows_of(outcome.normal_loss, outcome.slip_loss, outcome.dashpot_loss, outcome.release, row);
@@ -269,20 +285,25 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, 
   // of both bodies the rim is pushed the same way round, and its lever is the radius
   const HalfChoice turned = {0, 0, 0, minus};
   for (int k = 0; k < 8; ++k) {
-    subtract(&impulses[group.i[k]], row[k]);
+    subtract(&to.impulses[group.i[k]], row[k]);
     if constexpr (kind.friction) row[k] = reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned);
-    add(&impulses[group.j[k]], row[k]);
+    if (outward && group.j[k] >= to.end) {
+      put(row[k], to.outward++);
+    } else {
+      add(&to.impulses[group.j[k]], row[k]);
+    }
   }
 }
 
 template <class Law, PairLoopKind kind>
 struct CollidePairs {
-  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t b);
 };
 
 template <class Law, PairLoopKind kind>
-void CollidePairs<Law, kind>::run(GrainSystem& system) {
-  NearPairs& near = system.contacts.near;
+void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
+  const NearPairs& near = system.contacts.near;
+  PairBlock& block = system.contacts.near.blocks[b];
   const bool verlet = system.options.verlet();
   const PairLaw& law = near.law;
   const LoopNumbers numbers{{all(law.stiffness), all(law.least), all(law.friction), all(law.tangential_stiffness),
@@ -291,18 +312,20 @@ void CollidePairs<Law, kind>::run(GrainSystem& system) {
                             system.step - (verlet ? 1 : 0),
                             system.options.integrator == GrainOptions::Integrator::corrected_verlet,
                             near.record,
-                            &system};
-  near.records.resize(near.record ? near.groups.size() : 0);
+                            &system,
+                            &system.bodies.sums[b]};
+  block.records.resize(near.record ? block.groups.size() : 0);
   LaneSums sums;
   const PairBody* bodies = near.bodies.data();
-  BodyImpulse* impulses = system.bodies.impulses.data();
+  Receivers to{system.bodies.impulses.data(), block.outward.impulses.data(),
+               static_cast<std::int32_t>(system.bodies.blocks.end(b))};
   Geometry geometry[groups_at_once];
   Outcome outcome[groups_at_once];
-  const std::size_t count = near.groups.size();
-  PairGroup* groups = near.groups.data();
-  PairSlips* slips = near.slips.data();
-  const PairLaws* laws = near.laws.data();
-  PairRecords* records = near.records.data();
+  const std::size_t count = block.groups.size();
+  PairGroup* groups = block.groups.data();
+  PairSlips* slips = block.slips.data();
+  const PairLaws* laws = block.laws.data();
+  PairRecords* records = block.records.data();
   for (std::size_t first = 0; first < count; first += groups_at_once) {
     const std::size_t here = std::min(groups_at_once, count - first);
     for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
@@ -311,14 +334,18 @@ void CollidePairs<Law, kind>::run(GrainSystem& system) {
                          kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
                          outcome[g]);
     }
-    for (std::size_t g = 0; g < here; ++g) give<kind>(groups[first + g], outcome[g], impulses, sums);
+    if (first + here <= block.first_outward) {
+      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, sums);
+    } else {
+      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, sums);
+    }
   }
-  add(sums, system);
+  add(sums, *numbers.block);
 }
 
 template <class Law, PairLoopKind kind>
 NearPairs::Loop choose_pair_loop() {
-  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&>();
+  return by_vector_width<CollidePairs<Law, kind>, GrainSystem&, std::size_t>();
 }
 
 template <class Law, bool equal>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 
@@ -25,17 +26,17 @@ EQUIDEM_ALWAYS_INLINE void store_pair(const Pair& pair, Number& to) {
 
 /// \return the longest way of a body, squared, m²; no number where one is none
 template <bool turning>
-double move(GrainSystem& system) {
+double move(GrainSystem& system, std::size_t block) {
   const double dt = system.dt();
   const Pair fall = dt * load_pair(system.scene.gravity);
-  const std::size_t count = system.bodies.motions.size();
+  const std::size_t end = system.bodies.blocks.end(block);
   const GrainBody* bodies = system.bodies.constants.data();
   const GrainMotion* motions = system.bodies.motions.data();
   GrainMotion* next = system.bodies.next.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   PairBody* pair_bodies = system.contacts.near.bodies.data();
   double longest = 0, none = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = system.bodies.blocks.begin(block); i < end; ++i) {
     const GrainBody& body = bodies[i];
     const GrainMotion& before = motions[i];
     GrainMotion& after = next[i];
@@ -71,7 +72,8 @@ double move(GrainSystem& system) {
 
 void move_pair_bodies(GrainSystem& system) {
   const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
-  system.longest_way = turning ? move<true>(system) : move<false>(system);
+  find_longest_way(system,
+                   [&](std::size_t block) { return turning ? move<true>(system, block) : move<false>(system, block); });
 }
 
 }  // namespace equidem

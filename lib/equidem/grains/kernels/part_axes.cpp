@@ -29,14 +29,14 @@ EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
 
 /// Two eights at a time: of one alone each product would wait for the last.
 struct TurnAxes {
-  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t begin, std::size_t end);
 };
 
-void TurnAxes::run(GrainSystem& system) {
+/// Of the shaped bodies begin .. end.
+void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
   constexpr std::size_t most = 16;
-  const std::size_t count = system.shapes.shaped.size();
-  for (std::size_t first = 0; first < count; first += most) {
-    const std::size_t used = std::min(most, count - first);
+  for (std::size_t first = begin; first < end; first += most) {
+    const std::size_t used = std::min(most, end - first);
     double angle[most] = {}, largest = 0;
     for (std::size_t k = 0; k < used; ++k) {
       angle[k] = system.bodies.motions[static_cast<std::size_t>(system.shapes.shaped[first + k])].angle;
@@ -59,7 +59,9 @@ void TurnAxes::run(GrainSystem& system) {
 }  // namespace
 
 void turn_axes(GrainSystem& system) {
-  by_vector_width<TurnAxes, GrainSystem&>()(system);
+  const auto turn = by_vector_width<TurnAxes, GrainSystem&, std::size_t, std::size_t>();
+  system.bodies.blocks.each_piece(system.shapes.shaped.size(),
+                                  [&](std::size_t begin, std::size_t end) { turn(system, begin, end); });
 }
 
 }  // namespace equidem

@@ -23,7 +23,9 @@ struct PartLoopNumbers {
   double dt = 0;
   std::int64_t now = 0;  ///< step before the one being made
   bool corrected = false, record = false;
-  GrainSystem* system = nullptr;
+  const GrainSystem* system = nullptr;
+  BlockSums* block = nullptr;
+  std::int32_t end = 0;  ///< of the bodies of the block
 };
 
 EQUIDEM_ALWAYS_INLINE Lanes closing_of(const Standing& s, const Vectors& n, const Vectors& arm_i,
@@ -41,10 +43,11 @@ EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
           load(group.numbers[PartGroup::beyond_cap]), 1 / (spring > 0 ? spring : all(1))};
 }
 
+/// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind>
 EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const PartBody* bodies,
                                          const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
-                                         LaneSums& sums) {
+                                         BodyImpulse*& outward, LaneSums& sums) {
   const double dt = numbers.dt;
   Choice since;
   std::memcpy(&since, group.since, sizeof since);
@@ -65,6 +68,9 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
     std::memcpy(group.since, &since, sizeof since);
     sums.begun -= begun;
   } else if (!any(touch)) {
+    for (int k = 0; outward && k < 8; ++k) {
+      if (body_of_part[group.j[k]] >= numbers.end) *outward++ = {};
+    }
     return;
   }
   sums.evaluations -= touch;
@@ -165,28 +171,30 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
       }
       const Vectors normal = choose(begun, n, normal_before);
       const Vectors arm_i = choose(begun, at.arm_i, arm_i_before), arm_j = choose(begun, at.arm_j, arm_j_before);
-      count_instants(*numbers.system, {begun,
-                                       ended,
-                                       slides,
-                                       i,
-                                       j,
-                                       normal.x,
-                                       normal.y,
-                                       arm_i.x,
-                                       arm_i.y,
-                                       arm_j.x,
-                                       arm_j.y,
-                                       mean_closing,
-                                       mean_slip,
-                                       choose(begun, deep, deep_before),
-                                       choose(begun, elastic, elastic_before) * dt,
-                                       choose(begun, impulse, impulse_before),
-                                       dashpot,
-                                       inverse_mass,
-                                       least,
-                                       tangential_kick,
-                                       sticking_dashpot,
-                                       stored});
+      count_instants(*numbers.system,
+                     {begun,
+                      ended,
+                      slides,
+                      i,
+                      j,
+                      normal.x,
+                      normal.y,
+                      arm_i.x,
+                      arm_i.y,
+                      arm_j.x,
+                      arm_j.y,
+                      mean_closing,
+                      mean_slip,
+                      choose(begun, deep, deep_before),
+                      choose(begun, elastic, elastic_before) * dt,
+                      choose(begun, impulse, impulse_before),
+                      dashpot,
+                      inverse_mass,
+                      least,
+                      tangential_kick,
+                      sticking_dashpot,
+                      stored},
+                     *numbers.block);
     }
   }
   if (kind.verlet || numbers.record) {
@@ -206,35 +214,46 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
   rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, other);
   for (int k = 0; k < 8; ++k) {
     subtract(&impulses[body_of_part[group.i[k]]], row[k]);
-    add(&impulses[body_of_part[group.j[k]]], other[k]);
+    const std::int32_t receiver = body_of_part[group.j[k]];
+    if (outward && receiver >= numbers.end) {
+      put(other[k], outward++);
+    } else {
+      add(&impulses[receiver], other[k]);
+    }
   }
 }
 
 template <class Law, PartLoopKind kind>
 struct CollideParts {
-  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearParts::List& list);
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearParts::List& list, std::size_t block);
 };
 
 template <class Law, PartLoopKind kind>
-void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list) {
-  const PartLoopNumbers numbers{system.dt(), system.step - (kind.verlet ? 1 : 0),
+void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
+  const PartLoopNumbers numbers{system.dt(),
+                                system.step - (kind.verlet ? 1 : 0),
                                 system.options.integrator == GrainOptions::Integrator::corrected_verlet,
-                                system.contacts.near.record, &system};
+                                system.contacts.near.record,
+                                &system,
+                                &system.bodies.sums[block],
+                                static_cast<std::int32_t>(system.bodies.blocks.end(block))};
   LaneSums sums;
-  for (PartGroup& group : list.groups) {
+  BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
+  for (std::size_t g = 0; g < list.groups.size(); ++g) {
     collide_group<Law, kind>(numbers, system.contacts.near_parts.bodies.data(), system.shapes.body_of_part.data(),
-                             system.bodies.impulses.data(), group, sums);
+                             system.bodies.impulses.data(), list.groups[g], g < list.first_outward ? none : outward,
+                             sums);
   }
-  add(sums, system);
+  add(sums, *numbers.block);
 }
 
 template <class Law, PartLoopKind kind>
-NearParts::List::Loop choose_part_loop() {
-  return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearParts::List&>();
+NearParts::Loop choose_part_loop() {
+  return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearParts::List&, std::size_t>();
 }
 
 template <class Law, bool round>
-NearParts::List::Loop choose_part_loop(const GrainSystem& system) {
+NearParts::Loop choose_part_loop(const GrainSystem& system) {
   if (system.options.verlet()) {
     return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, true}>()
                            : choose_part_loop<Law, PartLoopKind{round, false, true}>();
@@ -245,8 +264,8 @@ NearParts::List::Loop choose_part_loop(const GrainSystem& system) {
 
 }  // namespace
 
-NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round) {
-  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::List::Loop {
+NearParts::Loop near_part_loop(const GrainSystem& system, bool round) {
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::Loop {
     if constexpr (Law::kind == LawKind::force) {
       return round ? choose_part_loop<Law, true>(system) : choose_part_loop<Law, false>(system);
     } else {

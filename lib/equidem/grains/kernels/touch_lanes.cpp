@@ -3,7 +3,7 @@
 
 namespace equidem::eight {
 
-void count_instants(GrainSystem& system, const TouchLanes& lanes) {
+void count_instants(const GrainSystem& system, const TouchLanes& lanes, BlockSums& block) {
   const auto dashpot = system.law().dashpot;
   for (int k = 0; k < 8; ++k) {
     if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
@@ -25,9 +25,9 @@ void count_instants(GrainSystem& system, const TouchLanes& lanes) {
     contact.slides = lanes.slides[k] != 0;
     contact.pulls = lanes.least[k] < 0;
     if (lanes.begun[k] != 0) {
-      begin_within_drift(system, contact, system.sums());
+      begin_within_drift(system, contact, block.sums());
     } else {
-      end_within_drift(system, contact, system.sums());
+      end_within_drift(system, contact, block.sums());
     }
   }
 }

@@ -19,6 +19,7 @@ struct TouchLanes {
   Lanes tangential, tangential_dashpot, stored;
 };
 
-void count_instants(GrainSystem& system, const TouchLanes& lanes);
+/// \param block sums of the pairs of its block
+void count_instants(const GrainSystem& system, const TouchLanes& lanes, BlockSums& block);
 
 }  // namespace equidem::eight

@@ -52,12 +52,14 @@ FrictionKinds friction_kinds(const GrainScene& scene) {
   return found;
 }
 
-/// The lists as they come to be, from lanes of the lists before and from new pairs.
+/// The lists of a block as they come to be, from lanes of the lists before and from new pairs.
 class PairLists {
  public:
-  explicit PairLists(GrainSystem& system)
+  PairLists(const GrainSystem& system, PairBlock& block, std::size_t end)
       : system_(system),
-        near_(system.contacts.near),
+        near_(block),
+        equal_(system.contacts.near.equal),
+        end_(static_cast<std::int32_t>(end)),
         groups_(std::move(near_.groups)),
         slips_(std::move(near_.slips)),
         laws_(std::move(near_.laws)),
@@ -67,12 +69,14 @@ class PairLists {
     near_.slips.clear();
     near_.laws.clear();
     near_.records.clear();
+    near_.outward.clear();
     const std::size_t room = groups_.size() + groups_.size() / 16 + 8;
     near_.groups.reserve(room);
     if (system.friction) near_.slips.reserve(room);
-    if (!near_.equal) near_.laws.reserve(room);
+    if (!equal_) near_.laws.reserve(room);
     if (!records_.empty()) near_.records.reserve(room);
     near_.count = 0;
+    near_.first_outward = std::numeric_limits<std::size_t>::max();
   }
 
   /// Pairs of the list before up to (i, j): contacts stay until the loop has seen them end.
@@ -112,7 +116,7 @@ class PairLists {
       slips.dashpot[k] = candidate.sliding.dashpot;
       slips.stretch[k] = slips.impulse[k] = 0;
     }
-    if (!near_.equal) {
+    if (!equal_) {
       const PairLaw law = law_of(candidate);
       PairLaws& laws = near_.laws.back();
       laws.stiffness[k] = law.stiffness;
@@ -131,15 +135,22 @@ class PairLists {
     const std::size_t k = near_.count % lanes_of_pairs;
     if (k == 0) {
       near_.groups.emplace_back();
+      // unused lanes have bodies of this block, to which they give nothing
+      std::fill_n(near_.groups.back().i, lanes_of_pairs, i);
+      std::fill_n(near_.groups.back().j, lanes_of_pairs, i);
       std::fill_n(near_.groups.back().since, lanes_of_pairs, PairGroup::unused);
       std::fill_n(near_.groups.back().reach, lanes_of_pairs, 1.0);  // anything that can be divided by
       if (system_.friction) near_.slips.emplace_back();
-      if (!near_.equal) near_.laws.emplace_back();
+      if (!equal_) near_.laws.emplace_back();
       if (!records_.empty()) near_.records.emplace_back();
     }
     ++near_.count;
     near_.groups.back().i[k] = i;
     near_.groups.back().j[k] = j;
+    if (j >= end_) {
+      near_.first_outward = std::min(near_.first_outward, near_.groups.size() - 1);
+      near_.outward.add(j);
+    }
     return k;
   }
 
@@ -153,7 +164,7 @@ class PairLists {
       copy(slips_[g], from, near_.slips.back(), to, &PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch,
            &PairSlips::impulse);
     }
-    if (!near_.equal) {
+    if (!equal_) {
       copy(laws_[g], from, near_.laws.back(), to, &PairLaws::stiffness, &PairLaws::least, &PairLaws::friction,
            &PairLaws::tangential_stiffness, &PairLaws::beyond_cap);
     }
@@ -169,8 +180,10 @@ class PairLists {
     (((to_group.*columns)[to] = (group.*columns)[from]), ...);
   }
 
-  GrainSystem& system_;
-  NearPairs& near_;
+  const GrainSystem& system_;
+  PairBlock& near_;
+  bool equal_;
+  std::int32_t end_;  ///< of the bodies of the block
   LaneVector<PairGroup> groups_;
   LaneVector<PairSlips> slips_;
   LaneVector<PairLaws> laws_;
@@ -178,12 +191,39 @@ class PairLists {
   std::size_t count_, at_ = 0;
 };
 
+void find_pairs_of_block(GrainSystem& system, std::size_t b) {
+  const NeighbourList& list = *system.contacts.near.outer;
+  NearPairs& near = system.contacts.near;
+  const BodyBlocks& blocks = system.bodies.blocks;
+  PairLists lists(system, near.blocks[b], blocks.end(b));
+  const bool shapes = !system.shapes.parts.empty();
+  std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
+  for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
+    const Vec2 centre = system.bodies.motions[i].position;
+    const double own = system.bodies.constants[i].radius + near.margin;
+    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+      const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
+      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner)) continue;
+      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
+      const auto j = static_cast<std::size_t>(partner);
+      const Vec2 branch = system.bodies.motions[j].position - centre;
+      const double far = own + system.bodies.constants[j].radius;
+      lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
+    }
+  }
+  lists.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+}
+
 }  // namespace
 
 std::size_t NearPairs::bytes() const {
-  return bodies.capacity() * sizeof(PairBody) + groups.capacity() * sizeof(PairGroup) +
-         slips.capacity() * sizeof(PairSlips) + laws.capacity() * sizeof(PairLaws) +
-         records.capacity() * sizeof(PairRecords);
+  std::size_t sum = bodies.capacity() * sizeof(PairBody);
+  for (const PairBlock& block : blocks) {
+    sum += block.groups.capacity() * sizeof(PairGroup) + block.slips.capacity() * sizeof(PairSlips) +
+           block.laws.capacity() * sizeof(PairLaws) + block.records.capacity() * sizeof(PairRecords) +
+           block.outward.bytes();
+  }
+  return sum;
 }
 
 bool eight_at_a_time(const GrainSystem& system) {
@@ -219,31 +259,16 @@ void prepare_near_pairs(GrainSystem& system) {
   }
   near.loop = near_pair_loop(system);
   near.bodies.resize(system.bodies.constants.size());
+  near.blocks.resize(system.bodies.blocks.count());
   load_pair_bodies(system);
 }
 
 void find_near_pairs(GrainSystem& system, double reach) {
-  const NeighbourList& list = *system.contacts.near.outer;
   NearPairs& near = system.contacts.near;
   near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
   near.moved = 0;
-  PairLists lists(system);
-  const bool shapes = !system.shapes.parts.empty();
-  std::size_t next_bond = 0;
-  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
-    const Vec2 centre = system.bodies.motions[i].position;
-    const double own = system.bodies.constants[i].radius + near.margin;
-    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
-      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner)) continue;
-      if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
-      const auto j = static_cast<std::size_t>(partner);
-      const Vec2 branch = system.bodies.motions[j].position - centre;
-      const double far = own + system.bodies.constants[j].radius;
-      lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
-    }
-  }
-  lists.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+  system.bodies.blocks.each([&](std::size_t block) { find_pairs_of_block(system, block); });
+  connect_blocks(system);
 }
 
 void refresh_near_pairs(GrainSystem& system, double reach) {
@@ -263,19 +288,19 @@ void load_pair_bodies(GrainSystem& system) {
 }
 
 void touch_near_pairs(GrainSystem& system) {
-  NearPairs& near = system.contacts.near;
   const bool verlet = system.options.verlet();
-  for (std::size_t p = 0; p < near.count; ++p) {
-    const auto i = static_cast<std::size_t>(near.first(p)), j = static_cast<std::size_t>(near.second(p));
-    const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
-    if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
-    near.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
-    ++system.counters.contacts;
+  for (PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      const auto i = static_cast<std::size_t>(block.first(p)), j = static_cast<std::size_t>(block.second(p));
+      const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
+      if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
+      block.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
+      ++system.counters.contacts;
+    }
   }
 }
 
-Candidate candidate_of(const GrainSystem& system, std::size_t p) {
-  const NearPairs& near = system.contacts.near;
+Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::size_t p) {
   const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
   Candidate candidate;
   candidate.i = near.first(p);
@@ -301,43 +326,49 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
   const NearPairs& near = system.contacts.near;
   const auto energy = system.law().energy;
   double normal = 0, tangential = 0;
-  for (std::size_t p = 0; p < near.count; ++p) {
-    const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-    if (system.friction) {
-      const double spring = near.equal ? near.law.tangential_stiffness : near.laws[g].tangential_stiffness[k];
-      tangential += 0.5 * spring * near.slips[g].stretch[k] * near.slips[g].stretch[k];
+  for (const PairBlock& block : near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+      if (system.friction) {
+        const double spring = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
+        tangential += 0.5 * spring * block.slips[g].stretch[k] * block.slips[g].stretch[k];
+      }
+      const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(block.second(p))].position -
+                          system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
+      const double overlap = block.groups[g].reach[k] - norm(branch);
+      if (!(overlap > 0)) continue;
+      const double stiffness = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
+      normal += energy(stiffness, overlap);
     }
-    const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(near.second(p))].position -
-                        system.bodies.motions[static_cast<std::size_t>(near.first(p))].position;
-    const double overlap = near.groups[g].reach[k] - norm(branch);
-    if (!(overlap > 0)) continue;
-    const double stiffness = near.equal ? near.law.stiffness : near.laws[g].stiffness[k];
-    normal += energy(stiffness, overlap);
   }
   return {normal, tangential};
 }
 
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
-  NearPairs& near = system.contacts.near;
-  near.groups.clear();
-  near.slips.clear();
-  near.laws.clear();
-  near.count = 0;
-  near.records.resize(1);  // that there are some
-  PairLists lists(system);
-  for (const Candidate& contact : contacts) {
-    lists.add(contact.i, contact.j);
-    const std::size_t k = (near.count - 1) % lanes_of_pairs;
-    near.groups.back().since[k] = system.step - contact.steps;
-    near.groups.back().impulse[k] = contact.impulse;
-    PairRecords& records = near.records.back();
-    records.overlap[k] = contact.overlap;
-    records.closing[k] = contact.closing;
-    records.normal_x[k] = contact.normal.x;
-    records.normal_y[k] = contact.normal.y;
-    if (!system.friction) continue;
-    near.slips.back().stretch[k] = contact.stretch;
-    near.slips.back().impulse[k] = contact.tangential_impulse;
+  const BodyBlocks& blocks = system.bodies.blocks;
+  auto contact = contacts.begin();
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    PairBlock& block = system.contacts.near.blocks[b];
+    block.groups.clear();
+    block.slips.clear();
+    block.laws.clear();
+    block.count = 0;
+    block.records.resize(1);  // that there are some
+    PairLists lists(system, block, blocks.end(b));
+    for (; contact != contacts.end() && blocks.of(static_cast<std::size_t>(contact->i)) == b; ++contact) {
+      lists.add(contact->i, contact->j);
+      const std::size_t k = (block.count - 1) % lanes_of_pairs;
+      block.groups.back().since[k] = system.step - contact->steps;
+      block.groups.back().impulse[k] = contact->impulse;
+      PairRecords& records = block.records.back();
+      records.overlap[k] = contact->overlap;
+      records.closing[k] = contact->closing;
+      records.normal_x[k] = contact->normal.x;
+      records.normal_y[k] = contact->normal.y;
+      if (!system.friction) continue;
+      block.slips.back().stretch[k] = contact->stretch;
+      block.slips.back().impulse[k] = contact->tangential_impulse;
+    }
   }
 }
 

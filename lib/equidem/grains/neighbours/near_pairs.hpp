@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
+#include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
@@ -21,7 +22,6 @@ struct GrainSystem;
 struct Candidate;
 struct GrainBody;
 struct GrainMotion;
-struct BodyImpulse;
 
 constexpr std::size_t lanes_of_pairs = 8;
 using PairLanes = double[lanes_of_pairs];
@@ -72,8 +72,25 @@ struct alignas(64) PairRecords {
   PairLanes overlap, closing, normal_x, normal_y;
 };
 
+/// The pairs of a block of bodies, ordered by (i, j).
+struct PairBlock {
+  std::size_t count = 0;
+  LaneVector<PairGroup> groups;
+  LaneVector<PairSlips> slips;      ///< with friction
+  LaneVector<PairLaws> laws;        ///< law of each pair, if not equal
+  LaneVector<PairRecords> records;  ///< set after a recorded step
+  OutwardImpulses outward;
+  std::size_t first_outward = 0;  ///< first group with a body of a later block
+
+  [[nodiscard]] std::int32_t first(std::size_t p) const { return groups[p / lanes_of_pairs].i[p % lanes_of_pairs]; }
+  [[nodiscard]] std::int32_t second(std::size_t p) const { return groups[p / lanes_of_pairs].j[p % lanes_of_pairs]; }
+  [[nodiscard]] bool touching(std::size_t p) const {
+    return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
+  }
+};
+
 struct NearPairs {
-  using Loop = void (*)(GrainSystem& system);
+  using Loop = void (*)(GrainSystem& system, std::size_t block);
 
   bool active = false;  ///< the scene has such pairs
   bool equal = false;   ///< one law for all pairs
@@ -83,19 +100,10 @@ struct NearPairs {
   Loop loop = nullptr;
   const NeighbourList* outer = nullptr;  ///< list of the finder, with the margin of the candidates
   LaneVector<PairBody> bodies;
-  std::size_t count = 0;
-  LaneVector<PairGroup> groups;
-  LaneVector<PairSlips> slips;      ///< with friction
-  LaneVector<PairLaws> laws;        ///< law of each pair, if not equal
-  LaneVector<PairRecords> records;  ///< set after a recorded step
-  double margin = 0, moved = 0;     ///< margin of these pairs; upper bound of the motion since they were found, m
+  std::vector<PairBlock> blocks;
+  double margin = 0, moved = 0;  ///< margin of these pairs; upper bound of the motion since they were found, m
 
   [[nodiscard]] std::size_t bytes() const;
-  [[nodiscard]] std::int32_t first(std::size_t p) const { return groups[p / lanes_of_pairs].i[p % lanes_of_pairs]; }
-  [[nodiscard]] std::int32_t second(std::size_t p) const { return groups[p / lanes_of_pairs].j[p % lanes_of_pairs]; }
-  [[nodiscard]] bool touching(std::size_t p) const {
-    return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
-  }
 };
 
 /// Whether contacts of parts can be vectorized: a force law, no contact that always slides.
@@ -123,7 +131,7 @@ void touch_near_pairs(GrainSystem& system);
 void move_pair_bodies(GrainSystem& system);
 
 /// A pair with the state of its contact, without its constants.
-Candidate candidate_of(const GrainSystem& system, std::size_t p);
+Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
 
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
@@ -131,7 +139,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 /// Replace the pairs by the contacts of a saved state, ordered by (i, j).
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts);
 
-/// The loop compiled for the law of the scene; it computes the impulses of this step.
+/// The loop compiled for the law of the scene; it computes the impulses of this step by the pairs of a block.
 NearPairs::Loop near_pair_loop(const GrainSystem& system);
 
 }  // namespace equidem

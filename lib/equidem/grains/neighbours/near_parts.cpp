@@ -12,15 +12,21 @@
 namespace equidem {
 namespace {
 
-using Column = PartGroup::Column;
+using PartColumn = PartGroup::Column;
 
-/// A list as it comes to be, from lanes of the list before and from new pairs.
+/// A list of a block as it comes to be, from lanes of the list before and from new pairs.
 class NewList {
  public:
-  NewList(GrainSystem& system, NearParts::List& list)
-      : system_(system), list_(list), old_(std::move(list.groups)), count_(list.count) {
+  NewList(const GrainSystem& system, NearParts::List& list, std::size_t block)
+      : system_(system),
+        list_(list),
+        end_(static_cast<std::int32_t>(system.bodies.blocks.end(block))),
+        old_(std::move(list.groups)),
+        count_(list.count) {
     list_.groups.clear();
     list_.groups.reserve(old_.size() + old_.size() / 16 + 8);
+    list_.outward.clear();
+    list_.first_outward = std::numeric_limits<std::size_t>::max();
     list_.count = 0;
   }
 
@@ -65,7 +71,7 @@ class NewList {
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
     for (PairLanes& column : group.numbers) column[k] = 0;
-    const auto set = [&](Column column, double number) { group.numbers[column][k] = number; };
+    const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
     set(PartGroup::reach, part_i.a + part_j.a);
     set(PartGroup::a_i, part_i.a);
     set(PartGroup::b_i, part_i.b);
@@ -98,12 +104,20 @@ class NewList {
     if (k == 0) {
       list_.groups.emplace_back();
       PartGroup& group = list_.groups.back();
+      // unused lanes have parts of this block, to which they give nothing
+      std::fill_n(group.i, lanes_of_pairs, i);
+      std::fill_n(group.j, lanes_of_pairs, i);
       std::fill_n(group.since, lanes_of_pairs, PairGroup::unused);
       std::fill_n(&group.numbers[0][0], PartGroup::columns * lanes_of_pairs, 1.0);  // anything that can be divided by
     }
     ++list_.count;
     list_.groups.back().i[k] = i;
     list_.groups.back().j[k] = j;
+    const std::int32_t body = system_.shapes.body_of_part[static_cast<std::size_t>(j)];
+    if (body >= end_) {
+      list_.first_outward = std::min(list_.first_outward, list_.groups.size() - 1);
+      list_.outward.add(body);
+    }
     return k;
   }
   void keep() {
@@ -113,8 +127,9 @@ class NewList {
     for (std::size_t c = 0; c < PartGroup::columns; ++c) group.numbers[c][to] = old().numbers[c][lane()];
   }
 
-  GrainSystem& system_;
+  const GrainSystem& system_;
   NearParts::List& list_;
+  std::int32_t end_;  ///< of the bodies of the block
   LaneVector<PartGroup> old_;
   std::size_t count_, at_ = 0;
   bool listed_ = false;
@@ -169,17 +184,15 @@ double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double 
 
 void find_met_parts(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;
-  std::vector<bool> met(system.shapes.parts.size());
-  for (const NearParts::List& list : near.lists) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      const PartGroup& group = list.groups[p / lanes_of_pairs];
-      met[static_cast<std::size_t>(group.i[p % lanes_of_pairs])] = true;
-      met[static_cast<std::size_t>(group.j[p % lanes_of_pairs])] = true;
+  std::fill(near.met.begin(), near.met.end(), char{0});
+  for (const NearParts::Block& block : near.blocks) {
+    for (const NearParts::List& list : block.lists) {
+      for (std::size_t p = 0; p < list.count; ++p) {
+        const PartGroup& group = list.groups[p / lanes_of_pairs];
+        for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]})
+          near.met[static_cast<std::size_t>(part)] = 1;
+      }
     }
-  }
-  near.met.clear();
-  for (std::size_t k = 0; k < met.size(); ++k) {
-    if (met[k]) near.met.push_back(static_cast<std::int32_t>(k));
   }
 }
 
@@ -190,12 +203,10 @@ std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
 }
 
 /// All but pairs of whole discs.
-void find_close_parts(GrainSystem& system) {
+void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<NearParts::Close>& close) {
   const NeighbourList& neighbours = *system.contacts.near.outer;
-  NearParts& near = system.contacts.near_parts;
-  near.close.clear();
-  near.travelled = near.moved = 0;
-  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
+  close.clear();
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
     const auto body = static_cast<std::int32_t>(i);
     const bool disc = are_discs(system, body, body);
     for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
@@ -206,21 +217,18 @@ void find_close_parts(GrainSystem& system) {
         for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
           NearParts::Close pair{p, q, 0, {}};
           pair.clear = gap_of(system, p, q, system.contacts.margin, pair.apart);
-          if (pair.clear <= system.contacts.margin) near.close.push_back(pair);
+          if (pair.clear <= system.contacts.margin) close.push_back(pair);
         }
       }
     }
   }
 }
 
-/// Those of the close parts that are nearer than the margin.
-void find_nearest_parts(GrainSystem& system, double reach) {
-  NearParts& near = system.contacts.near_parts;
-  near.margin = margin_of_near_pairs(system, near.size, reach);
-  near.travelled += near.moved;
-  near.moved = 0;
-  std::array<NewList, 2> lists{NewList(system, near.lists[0]), NewList(system, near.lists[1])};
-  for (NearParts::Close& pair : near.close) {
+/// Those of the close parts of a block that are nearer than the margin.
+void find_nearest_parts(const GrainSystem& system, std::size_t b, NearParts::Block& block) {
+  const NearParts& near = system.contacts.near_parts;
+  std::array<NewList, 2> lists{NewList(system, block.lists[0], b), NewList(system, block.lists[1], b)};
+  for (NearParts::Close& pair : block.close) {
     if (pair.clear - 2 * near.travelled > near.margin) continue;
     NewList& list = lists[list_of(system, pair.i, pair.j)];
     if (list.keep_contact(pair.i, pair.j)) continue;
@@ -231,15 +239,26 @@ void find_nearest_parts(GrainSystem& system, double reach) {
     if (!list.leave(is_near) && is_near) list.add(pair.i, pair.j, pair.apart);
   }
   for (NewList& list : lists) list.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+}
+
+void find_nearest_parts(GrainSystem& system, double reach) {
+  NearParts& near = system.contacts.near_parts;
+  near.margin = margin_of_near_pairs(system, near.size, reach);
+  near.travelled += near.moved;
+  near.moved = 0;
+  system.bodies.blocks.each([&](std::size_t block) { find_nearest_parts(system, block, near.blocks[block]); });
   find_met_parts(system);
+  connect_blocks(system);
 }
 
 }  // namespace
 
 std::size_t NearParts::bytes() const {
-  std::size_t sum =
-      bodies.capacity() * sizeof(PartBody) + met.capacity() * sizeof(std::int32_t) + close.capacity() * sizeof(Close);
-  for (const List& list : lists) sum += list.groups.capacity() * sizeof(PartGroup);
+  std::size_t sum = bodies.capacity() * sizeof(PartBody) + met.capacity();
+  for (const Block& block : blocks) {
+    sum += block.close.capacity() * sizeof(Close);
+    for (const List& list : block.lists) sum += list.groups.capacity() * sizeof(PartGroup) + list.outward.bytes();
+  }
   return sum;
 }
 
@@ -255,15 +274,18 @@ void prepare_near_parts(GrainSystem& system) {
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
-  near.lists[0].loop = near_part_loop(system, true);
-  near.lists[1].loop = near_part_loop(system, false);
+  near.loops = {near_part_loop(system, true), near_part_loop(system, false)};
+  near.blocks.resize(system.bodies.blocks.count());
   near.bodies.resize(system.shapes.parts.size());
+  near.met.resize(system.shapes.parts.size());
   near.size = std::numeric_limits<double>::infinity();
   for (const GrainPart& part : system.shapes.parts) near.size = std::min(near.size, part.size);
 }
 
 void find_near_parts(GrainSystem& system, double reach) {
-  find_close_parts(system);
+  NearParts& near = system.contacts.near_parts;
+  near.travelled = near.moved = 0;
+  system.bodies.blocks.each([&](std::size_t b) { find_close_parts(system, b, near.blocks[b].close); });
   find_nearest_parts(system, reach);
 }
 
@@ -274,32 +296,41 @@ void refresh_near_parts(GrainSystem& system, double reach) {
 }
 
 void load_part_bodies(GrainSystem& system) {
-  for (const std::int32_t p : system.contacts.near_parts.met) {
-    const auto k = static_cast<std::size_t>(p), b = static_cast<std::size_t>(system.shapes.body_of_part[k]);
-    const GrainMotion& motion = system.bodies.motions[b];
-    const GrainBody& body = system.bodies.constants[b];
-    const GrainPart& part = system.shapes.parts[k];
-    const BodyImpulse& push = system.bodies.impulses[b];
-    PartBody& seen = system.contacts.near_parts.bodies[k];
-    seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
-    seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
-    seen.velocity = motion.velocity;
-    seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
-    seen.spin = motion.spin;
-    seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
-  }
+  NearParts& near = system.contacts.near_parts;
+  if (!near.active) return;
+  system.bodies.blocks.each_piece(system.bodies.motions.size(), [&](std::size_t begin, std::size_t end_body) {
+    for (std::size_t b = begin; b < end_body; ++b) {
+      const GrainMotion& motion = system.bodies.motions[b];
+      const GrainBody& body = system.bodies.constants[b];
+      const BodyImpulse& push = system.bodies.impulses[b];
+      const auto end_part = static_cast<std::size_t>(system.shapes.first_part[b + 1]);
+      for (auto k = static_cast<std::size_t>(system.shapes.first_part[b]); k < end_part; ++k) {
+        if (near.met[k] == 0) continue;
+        const GrainPart& part = system.shapes.parts[k];
+        PartBody& seen = near.bodies[k];
+        seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
+        seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
+        seen.velocity = motion.velocity;
+        seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
+        seen.spin = motion.spin;
+        seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
+      }
+    }
+  });
 }
 
 void touch_near_parts(GrainSystem& system) {
-  for (NearParts::List& list : system.contacts.near_parts.lists) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      auto [candidate, pair] = candidate_of(system, list, p);
-      if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
-      PartGroup& group = list.groups[p / lanes_of_pairs];
-      const std::size_t k = p % lanes_of_pairs;
-      group.since[k] = system.step - (system.options.verlet() ? 1 : 0);
-      group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
-      ++system.counters.contacts;
+  for (NearParts::Block& block : system.contacts.near_parts.blocks) {
+    for (NearParts::List& list : block.lists) {
+      for (std::size_t p = 0; p < list.count; ++p) {
+        auto [candidate, pair] = candidate_of(system, list, p);
+        if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
+        PartGroup& group = list.groups[p / lanes_of_pairs];
+        const std::size_t k = p % lanes_of_pairs;
+        group.since[k] = system.step - (system.options.verlet() ? 1 : 0);
+        group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
+        ++system.counters.contacts;
+      }
     }
   }
 }
@@ -307,7 +338,7 @@ void touch_near_parts(GrainSystem& system) {
 std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
   const PartGroup& group = list.groups[p / lanes_of_pairs];
   const std::size_t k = p % lanes_of_pairs;
-  const auto number = [&](Column column) { return group.numbers[column][k]; };
+  const auto number = [&](PartColumn column) { return group.numbers[column][k]; };
   const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
   Candidate candidate;
   candidate.i = system.shapes.body_of_part[static_cast<std::size_t>(group.i[k])];
@@ -334,26 +365,32 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
   return {candidate, pair};
 }
 
-void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts) {
-  std::array<NearParts::List, 2>& lists = system.contacts.near_parts.lists;
-  for (NearParts::List& list : lists) list.count = 0;
-  std::array<NewList, 2> taken{NewList(system, lists[0]), NewList(system, lists[1])};
-  for (const auto& [contact, pair] : contacts) {
-    const std::size_t l = list_of(system, pair.i, pair.j);
-    taken[l].add(pair.i, pair.j, contact.normal);
-    PartGroup& group = lists[l].groups.back();
-    const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
-    group.since[k] = system.step - contact.steps;
-    const auto set = [&](Column column, double number) { group.numbers[column][k] = number; };
-    set(PartGroup::impulse, contact.impulse);
-    set(PartGroup::tangential_impulse, contact.tangential_impulse);
-    set(PartGroup::stretch, contact.stretch);
-    set(PartGroup::overlap, contact.overlap);
-    set(PartGroup::closing, contact.closing);
-    set(PartGroup::arm_i_x, pair.arm_i.x);
-    set(PartGroup::arm_i_y, pair.arm_i.y);
-    set(PartGroup::arm_j_x, pair.arm_j.x);
-    set(PartGroup::arm_j_y, pair.arm_j.y);
+void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts) {
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const auto& a, const auto& b) { return a.first.i < b.first.i; });
+  auto next = contacts.begin();
+  for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
+    auto& lists = system.contacts.near_parts.blocks[b].lists;
+    lists[0].count = lists[1].count = 0;
+    std::array<NewList, 2> taken{NewList(system, lists[0], b), NewList(system, lists[1], b)};
+    for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->first.i)) == b; ++next) {
+      const auto& [contact, pair] = *next;
+      const std::size_t l = list_of(system, pair.i, pair.j);
+      taken[l].add(pair.i, pair.j, contact.normal);
+      PartGroup& group = lists[l].groups.back();
+      const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
+      group.since[k] = system.step - contact.steps;
+      const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
+      set(PartGroup::impulse, contact.impulse);
+      set(PartGroup::tangential_impulse, contact.tangential_impulse);
+      set(PartGroup::stretch, contact.stretch);
+      set(PartGroup::overlap, contact.overlap);
+      set(PartGroup::closing, contact.closing);
+      set(PartGroup::arm_i_x, pair.arm_i.x);
+      set(PartGroup::arm_i_y, pair.arm_i.y);
+      set(PartGroup::arm_j_x, pair.arm_j.x);
+      set(PartGroup::arm_j_y, pair.arm_j.y);
+    }
   }
 }
 

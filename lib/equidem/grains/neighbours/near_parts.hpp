@@ -12,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -73,15 +72,17 @@ struct alignas(64) PartGroup {
 };
 
 struct NearParts {
+  /// Those of a block of bodies, ordered by i, then j.
   struct List {
-    using Loop = void (*)(GrainSystem& system, List& list);
-    Loop loop = nullptr;
     LaneVector<PartGroup> groups;
     std::size_t count = 0;
+    OutwardImpulses outward;
+    std::size_t first_outward = 0;  ///< first group with a body of a later block
     [[nodiscard]] bool touching(std::size_t p) const {
       return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
     }
   };
+  using Loop = void (*)(GrainSystem& system, List& list, std::size_t block);
 
   /// Two parts that may touch while the list of the neighbour finder is valid.
   struct Close {
@@ -90,18 +91,31 @@ struct NearParts {
     Vec2 apart;        ///< a direction along which they were apart, or {}
   };
 
-  bool active = false;            ///< the scene has such pairs
-  std::array<List, 2> lists;      ///< round parts, ellipses
-  std::vector<Close> close;       ///< ordered by i, then j
-  LaneVector<PartBody> bodies;    ///< one for each part
-  std::vector<std::int32_t> met;  ///< parts that are in the lists
-  double size = 0;                ///< smallest GrainPart::size, m
-  double margin = 0, moved = 0;   ///< margin of the lists; upper bound of the motion since they were found, m
+  struct Block {
+    std::array<List, 2> lists;  ///< round parts, ellipses
+    std::vector<Close> close;   ///< ordered by i, then j
+  };
+
+  bool active = false;           ///< the scene has such pairs
+  std::array<Loop, 2> loops{};   ///< of the lists of a block
+  std::vector<Block> blocks;     ///< of bodies
+  LaneVector<PartBody> bodies;   ///< one for each part
+  std::vector<char> met;         ///< whether a part is in the lists
+  double size = 0;               ///< smallest GrainPart::size, m
+  double margin = 0, moved = 0;  ///< margin of the lists; upper bound of the motion since they were found, m
   double travelled =
       0;  ///< upper bound of the displacement of any point from the construction of `close` to that of the lists, m
 
   [[nodiscard]] std::size_t bytes() const;
 };
+
+/// Call work(list) for the lists of round parts of all blocks, then for those of ellipses.
+template <class Work>
+void each_list_of_parts(const NearParts& near, const Work& work) {
+  for (std::size_t l = 0; l < near.loops.size(); ++l) {
+    for (const NearParts::Block& block : near.blocks) work(block.lists[l]);
+  }
+}
 
 /// Determine whether contacts of parts use the loops over near parts: a force law, the exact contact, no contact that
 /// always slides.
@@ -127,9 +141,10 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// Replace the pairs by the contacts of a saved state, in the order of the lists.
-void take_near_parts(GrainSystem& system, std::span<const std::pair<Candidate, PartPair>> contacts);
+void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts);
 
-/// The loop compiled for round parts or for ellipses; it computes the impulses of this step.
-NearParts::List::Loop near_part_loop(const GrainSystem& system, bool round);
+/// The loop compiled for round parts or for ellipses; it computes the impulses of this step by the
+/// pairs of a block.
+NearParts::Loop near_part_loop(const GrainSystem& system, bool round);
 
 }  // namespace equidem

@@ -24,11 +24,20 @@ void place_parts(GrainSystem& system) {
 }
 
 double longest_turn(const GrainSystem& system) {
+  const std::vector<std::int32_t>& shaped = system.shapes.shaped;
+  std::vector<double> ways(system.bodies.blocks.count());
+  system.bodies.blocks.each_piece(shaped.size(), [&](std::size_t begin, std::size_t end) {
+    double longest = 0;
+    for (std::size_t k = begin; k < end && longest == longest; ++k) {
+      const auto i = static_cast<std::size_t>(shaped[k]);
+      const double way =
+          std::abs(system.bodies.next[i].angle - system.bodies.motions[i].angle) * system.bodies.constants[i].radius;
+      if (way > longest || way != way) longest = way;
+    }
+    ways[system.bodies.blocks.of(begin)] = longest;
+  });
   double longest = 0;
-  for (const std::int32_t body : system.shapes.shaped) {
-    const auto i = static_cast<std::size_t>(body);
-    const double way =
-        std::abs(system.bodies.next[i].angle - system.bodies.motions[i].angle) * system.bodies.constants[i].radius;
+  for (const double way : ways) {
     if (way > longest || way != way) longest = way;
     if (way != way) break;
   }

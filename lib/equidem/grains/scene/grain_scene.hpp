@@ -117,6 +117,9 @@ struct GrainOptions {
     exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no step limit
     explicit_euler,  ///< velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): step limit (bond_step.hpp)
   } bond_step = BondStep::exact;
+  /// Bodies of a block, the work that a thread does at a time (body_blocks.hpp); 0: chosen from the number of bodies,
+  /// one block of few. The order of sums, and so the last bits, depend on it.
+  std::size_t bodies_per_block = 0;
   bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
 };
 
