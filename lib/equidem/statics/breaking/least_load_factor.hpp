@@ -170,7 +170,8 @@ struct Utilization {
   [[nodiscard]] double least_key(const LoadFactorSearch& search) const {
     if (dead < 0) return std::numeric_limits<double>::infinity();
     const double gone = search.direction * search.from;
-    return gone >= 0 && load_factor > gone ? load_factor - gone : -std::numeric_limits<double>::infinity();
+    constexpr double less = 1 - 1e-14;  // for round-off: keys are found from search.from, load factors from 0
+    return gone >= 0 && load_factor > gone ? less * load_factor - gone : -std::numeric_limits<double>::infinity();
   }
 };
 

@@ -100,7 +100,7 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
 FirstToBreak UpdatedState::first_of_open(const LoadFactorSearch& search, double limit) const {
   std::vector<std::pair<BreakingMoment, std::int64_t>> contacts;
   for (const std::int32_t k : open_) {
-    if (states_[k].own.least_key(search) > limit) continue;
+    if (states_[k].own.least_key(search) > limit + tie_distance(limit, search)) continue;  // to round-off of `own`
     const MotionBlock& block = (*blocks_)[k];
     for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c) {
       const BreakingMoment moment = moment_of(c, search);

@@ -64,9 +64,8 @@ ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std
     const double dead = dead_utilization(c.force.dead, c.strength, friction);
     its.include({dead < 1 ? breaking_moment(c.force, c.strength, friction, {.direction = direction}).t : 0, dead});
   }
-  constexpr double margin = 1 + 1e-14;  // for round-off of the quotients
   for (std::size_t c = 0; c < rate_classes; ++c) {
-    if (most[c] > 0) all.of[c].load_factor = std::min(all.of[c].load_factor, 1 / (margin * most[c]));
+    if (most[c] > 0) all.of[c].load_factor = std::min(all.of[c].load_factor, 1 / most[c]);
   }
   return all;
 }

@@ -33,8 +33,8 @@ void add_forces(std::span<BreakingContact> contacts, int block, const double* li
 
 constexpr std::uint8_t never_breaks = 255;  ///< in place of the rate_class of a contact
 
-/// The least load factor in a direction of lambda, at most by round-off too low, and the largest utilization under the
-/// dead load; 0 and infinite where a contact has no strength. \param classes rate_class of each contact
+/// The least load factor in a direction of lambda, to round-off, and the largest utilization under the dead load; 0 and
+/// infinite where a contact has no strength. \param classes rate_class of each contact
 ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std::span<const std::uint8_t> classes,
                                   double friction, double direction);
 
