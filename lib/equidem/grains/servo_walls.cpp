@@ -163,7 +163,7 @@ void check_along(const Wall& wall, Vec2 direction, const Wall& owner) {
                     "Leave out the displacement, or give it a direction across that of the servo");
 }
 
-void check_length(const GrainScene& scene, const Wall& wall) {
+void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
   const Servo& servo = *wall.servo;
   if (!servo.is_stress || servo.length > 0) return;
   for (const std::string& name : servo.between) {
@@ -188,7 +188,7 @@ void check_servos(const GrainScene& scene, NormalLaw law) {
       refuse_servo_wall(wall, fmt::format("meets bodies by the law {}", to_string(law)),
                         "a map gives impulses and no force that could be held",
                         fmt::format("Use exact_flow, {}", names_of_laws(LawKind::force)));
-    check_length(scene, wall);
+    check_length_of_stress(scene, wall);
     check_along(wall, wall.servo->direction, wall);
     if (wall.servo->mirror.empty()) continue;
     check_mirror(scene, wall);

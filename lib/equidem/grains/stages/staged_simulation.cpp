@@ -18,7 +18,7 @@ constexpr std::int64_t steps_between_rests = 256, steps_between_places = 16;
 
 constexpr std::size_t numbers_per_stage = 8;
 
-constexpr double rounding = 1e-13;  // of sums over all bodies and contacts
+constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
 
 std::size_t index_of(const std::vector<WallState>& walls, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(walls, name, &WallState::name) - walls.begin());
@@ -179,7 +179,7 @@ void StagedSimulation::begin_stage() {
   const EnergyLedger after = present_->energy();
   potential_ = before.potential;
   const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
-  if (std::abs(change) > rounding * stored) changes_ += change;
+  if (std::abs(change) > energy_rounding * stored) changes_ += change;
 }
 
 std::int64_t StagedSimulation::milestone() const {
