@@ -26,7 +26,7 @@ const std::vector<Probe> probes = {
 };
 
 void record(ProbeWriter& writer, std::int64_t step) {
-  writer.record(step, time_at(step), motions_at(step, discs), velocities_at(step, discs), ledger_at(step));
+  writer.record(step, time_at(step), motions_at(step, discs), velocities_at(step, discs), {}, ledger_at(step));
 }
 
 /// Steps of the rows of a file, all of which must be whole.
@@ -192,7 +192,7 @@ TEST_CASE("a_damaged_history_is_refused_and_stays_as_it_is") {
     ProbeWriter writer(path, probes, discs, {});
     for (std::int64_t step = 0; step < 4; ++step) record(writer, step);
     mark = writer.mark();
-    writer.record(5, time_at(5), motions_at(5, discs), velocities_at(5, discs), ledger_at(5), false);
+    writer.record(5, time_at(5), motions_at(5, discs), velocities_at(5, discs), {}, ledger_at(5), false);
     CHECK(writer.mark().length == mark.length);
   }
   const std::string good = read_file(path);

@@ -89,6 +89,7 @@ class Page(RunTest):
             text = section("Histories (CSV)")
             for column in header_of(out / name):
                 known = names_in_tables(text) | {"step", "time_s"}
+                column = re.sub(r"^wall_\w+?_(?=(v?[xy]|force|moment|impulse|work)_)", "wall_NAME_", column)
                 end = re.search(r"_(ux_m|uy_m|rotation_rad|x_m|y_m|angle_rad|vx_m_per_s|vy_m_per_s|spin_rad_per_s|J(_per_m)?)$",
                                 column)
                 self.assertTrue(column in known or (end and end[0] in text), f"{name}: {column}")

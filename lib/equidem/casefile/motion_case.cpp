@@ -8,23 +8,14 @@
 namespace equidem::casefile {
 namespace {
 
-Vec2 unit_vector(const Vec2& given, const TomlValue& table, const char* key, const std::string& use) {
+Vec2 unit_vector(const Vec2& given, const TomlValue& table, const std::string& path, const char* key,
+                 const std::string& use) {
   const double length = norm(given);
   if (length == 0)
-    fail_at(*table.find(key), fmt::format("wall.{}", key),
+    fail_at(*table.find(key), fmt::format("{}.{}", path, key),
             fmt::format("the {} of wall '{}' is zero", key, table.find("name")->text), use,
             "Give a direction, such as [0.0, 1.0]");
   return given / length;
-}
-
-void set_motion(const TomlValue& table, const WallTable& read, std::span<const NamedSchedule> schedules, Wall& wall) {
-  if (!read.displacement) return;
-  if (!read.direction && wall.shape != Wall::Shape::line)
-    fail_at(*table.find("displacement"), "wall.displacement", fmt::format("wall '{}' has no direction", wall.name),
-            "only a line has a normal to move along", "Add direction = [..., ...]");
-  const Vec2 direction =
-      read.direction ? unit_vector(*read.direction, table, "direction", "it says where the wall moves") : wall.normal;
-  move_along(wall, direction, scheduled(table, "wall", *read.displacement, schedules));
 }
 
 /// The key at fault where a wall is refused.
@@ -38,16 +29,6 @@ const char* culprit_of(Wall::Shape shape) {
       break;
   }
   return "to";
-}
-
-Wall wall_of(const TomlValue& table, const WallTable& read, std::span<const NamedSchedule> schedules) {
-  Wall wall = read.wall;
-  if (wall.shape == Wall::Shape::line)
-    wall.normal = unit_vector(wall.normal, table, "normal", "it says on which side the bodies are");
-  if (wall.shape != Wall::Shape::arc) wall.to = 0;
-  with_key(table, "wall", culprit_of(wall.shape), [&] { check(wall); });
-  set_motion(table, read, schedules, wall);
-  return wall;
 }
 
 }  // namespace
@@ -180,12 +161,38 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
           meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Add a [[schedule]] of that name, or correct it");
 }
 
+void set_motion(const TomlValue& table, const std::string& path, const WallTable& read,
+                std::span<const NamedSchedule> schedules, Wall& wall) {
+  if (!read.displacement) return;
+  if (!read.direction && wall.shape != Wall::Shape::line)
+    fail_at(*table.find("displacement"), path + ".displacement", fmt::format("wall '{}' has no direction", wall.name),
+            "only a line has a normal to move along", "Add direction = [..., ...]");
+  const Vec2 direction = read.direction
+                             ? unit_vector(*read.direction, table, path, "direction", "it says where the wall moves")
+                             : wall.normal;
+  move_along(wall, direction, scheduled(table, path, *read.displacement, schedules));
+}
+
+Wall wall_of(const TomlValue& table, const std::string& path, const WallTable& read,
+             std::span<const NamedSchedule> schedules) {
+  Wall wall = read.wall;
+  if (wall.shape == Wall::Shape::line)
+    wall.normal = unit_vector(wall.normal, table, path, "normal", "it says on which side the bodies are");
+  if (wall.shape != Wall::Shape::arc) wall.to = 0;
+  with_key(table, path, culprit_of(wall.shape), [&] { check(wall); });
+  set_motion(table, path, read, schedules, wall);
+  return wall;
+}
+
 std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>& tables,
                              std::span<const NamedSchedule> schedules) {
   check_names(root, "wall");
   std::vector<Wall> walls;
-  for (std::size_t k = 0; k < tables.size(); ++k)
-    walls.push_back(wall_of(repeated(root, "wall")[k], tables[k], schedules));
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const TomlValue& table = repeated(root, "wall")[k];
+    walls.push_back(wall_of(table, "wall", tables[k], schedules));
+    read_servo(table, "wall", schedules, walls.back());
+  }
   return walls;
 }
 

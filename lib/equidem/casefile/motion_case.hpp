@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
+#include "equidem/casefile/servo_case.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/motion/schedule.hpp"
@@ -65,6 +66,11 @@ void bind_motion(File<F>& file, BodyFamily family, Links... probes) {
              "how a motion or load changes in a run; without one it acts from the start")
       .keys(schedule_keys());
   file.table("wall", &MotionTables::wall_tables, "a wall of infinite mass, in a run").keys(wall_keys(family));
+  if (family == BodyFamily::colliding)
+    file.table("wall.servo",
+               "the wall moves so that it pushes the bodies with a wanted force or stress; its works are in "
+               "the ledger")
+        .described(servo_keys());
   file.table("probe", probes..., "a history of some bodies in a run").keys(probe_keys(family));
 }
 
@@ -85,6 +91,15 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
 ///         an arc that `check` refuses, a displacement without a direction
 std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>& tables,
                              std::span<const NamedSchedule> schedules);
+
+/// One wall of a table with its motion by a displacement.
+/// \param path of the table, for errors: "wall"
+/// \throws Error (bad_input) as read_walls
+Wall wall_of(const TomlValue& table, const std::string& path, const WallTable& read,
+             std::span<const NamedSchedule> schedules);
+/// Set the displacement of a wall; nothing where the table has none.
+void set_motion(const TomlValue& table, const std::string& path, const WallTable& read,
+                std::span<const NamedSchedule> schedules, Wall& wall);
 
 /// Check the names of the probes of a document.
 /// \throws Error (bad_input) with line and key: two probes of one name, a name that is not plain

@@ -108,6 +108,8 @@ class Simulation final : public AnySimulation {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   /// Kinetic energy of velocities(), elastic energy of motions().
   [[nodiscard]] EnergyLedger energy() const override;
+  /// Forces of springs at motions(); impulses and works of single walls are not summed up.
+  [[nodiscard]] std::vector<WallState> walls() const override;
   [[nodiscard]] double bytes_per_body() const override;
   /// Arrays: motions and previous (one step before), (n, 3); velocities as stored by the integrator (leapfrog: half a
   /// step behind), (n, 3); sums of losses and work of the loop.

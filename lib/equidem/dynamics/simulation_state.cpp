@@ -214,6 +214,25 @@ std::vector<BodyContact> Simulation::body_contacts() const {
   return bonded_contacts(s.scene, s.kind.motion, s.motions(), s.time_at(s.steps));
 }
 
+std::vector<WallState> Simulation::walls() const {
+  const Implementation& s = *implementation_;
+  const double now = s.time_at(s.steps), next = s.time_at(s.steps + 1);
+  std::vector<WallState> walls;
+  for (const Wall& wall : s.scene.walls) {
+    const Vec2 moved = wall.displacement(now);
+    walls.push_back(
+        {.name = wall.name, .place = wall.point + moved, .velocity = (wall.displacement(next) - moved) / (next - now)});
+  }
+  const std::vector<DiscMotion> motions = s.motions();
+  for (const auto& [w, disc, gap] : wall_contacts(s.scene, motions, now)) {
+    const Wall& wall = s.scene.walls[w];
+    const Vec2 centre = s.scene.assembly.centres[disc] + motions[disc].u, on_wall = wall.kN * gap * wall.normal;
+    walls[w].force += on_wall;
+    walls[w].moment += cross(centre - s.scene.assembly.radii[disc] * wall.normal - walls[w].place, on_wall);
+  }
+  return walls;
+}
+
 std::vector<DiscMotion> Simulation::velocities() const {
   return implementation_->synchronous_velocities();
 }

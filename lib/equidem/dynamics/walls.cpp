@@ -20,6 +20,10 @@ void check_alone(const Wall& wall, const Assembly& assembly) {
     bad_input(fmt::format("wall '{}' is a segment or an arc", wall.name), "bonded discs meet straight walls alone",
               "Give it the shape of a line");
   }
+  if (wall.servo) {
+    bad_input(fmt::format("wall '{}' has a servo", wall.name), "walls of bonded discs move by schedules alone",
+              "Give it a displacement, or load the discs");
+  }
   check(wall);
   if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
     bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",

@@ -57,9 +57,10 @@ void BoxMeasures::restore(std::vector<MeasuredMoment> moments, const std::vector
   throws_ = std::move(throws);
 }
 
-const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const std::vector<Grain>& grains) {
+const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const std::vector<Grain>& grains,
+                                          const std::vector<Wall>& walls) {
   const Vec2 moved = shaking_ ? shaking_->motion.displacement.at(time) * shaking_->direction : Vec2{};
-  const GrainBox box = box_of(scene_.walls, grains, time);
+  const GrainBox box = box_of(walls, grains, time);
   const std::vector<char> heap = heap_of(grains, options_.thrown_gap * diameter_);
   MeasuredMoment moment;
   moment.step = step;
@@ -127,7 +128,7 @@ Sloshing BoxMeasures::sloshing() const {
 
 CoarseFields BoxMeasures::fields(const GrainSimulation& simulation) const {
   const std::vector<Grain> grains = simulation.grains();
-  const GrainBox box = box_of(scene_.walls, grains, simulation.time());
+  const GrainBox box = box_of(simulation.placed_walls(), grains, simulation.time());
   Region region = box.inside;
   if (!box.lid)
     region.high.y = *std::max_element(last_.heights.begin(), last_.heights.end(),

@@ -68,7 +68,9 @@ class BoxMeasures {
   BoxMeasures(const GrainScene& scene, MeasureOptions options, const std::optional<Shaking>& shaking = {});
 
   /// \param grains in the order of the scene
-  const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains);
+  /// \param walls at their places (GrainSimulation::placed_walls)
+  const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains,
+                               const std::vector<Wall>& walls);
   /// Continue the history of an earlier run.
   /// \param moments at least one
   /// \param profiles of the surface at the moments

@@ -31,6 +31,7 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   const bool springs = any_pair([](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; });
   const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
   const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
+  const bool servo = std::ranges::any_of(scene.walls, [](const Wall& w) { return w.servo.has_value(); });
   const auto any_shape = [&](GrainShape shape) {
     return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
   };
@@ -59,7 +60,8 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
             sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
       entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
       entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
-      entry("motion of walls", moving, "a wall has a schedule", "no wall moves"),
+      entry("motion of walls", moving, "a wall has a schedule", "no wall moves by a schedule"),
+      entry("servo walls", servo, "a wall follows a force or a stress", "no wall follows a force or a stress"),
       entry("several threads", blocks > 1, fmt::format("the grains are stepped in {} blocks", blocks),
             "few grains: threads would wait for one another longer than they work"),
   };

@@ -17,6 +17,7 @@
 #include "equidem/grains/contacts/part_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
 namespace {
@@ -38,9 +39,17 @@ std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
   return {system.contacts.part_pairs[c].arm_i, system.contacts.part_pairs[c].arm_j};
 }
 
+void begin_loads_of_walls(GrainSystem& system) {
+  for (WallLoad& load : system.walls.loads) load.begin_step();
+}
+
 }  // namespace
 
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
+    : GrainSimulation(scene, options, std::vector<std::size_t>()) {}
+
+GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
+                                 const std::vector<std::size_t>& order)
     : AnySimulation(BodyFamily::colliding, options.time_step), implementation_(hidden<Implementation>()) {
   check(scene, options);
   Implementation& self = *implementation_;
@@ -50,7 +59,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.bodies.sums.resize(system.bodies.blocks.count());
   system.bodies.ways.resize(system.bodies.blocks.count());
   system.bodies.inwards.resize(system.bodies.blocks.count());
-  order_by_place(system, scene);
+  order_by_place(system, scene, order);
   tie_bonds(system, scene);
   self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
@@ -75,6 +84,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
+  find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
   pack_bonds(system);
@@ -83,6 +93,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
       system.shapes.parts.empty() ? system.contacts.near.active : system.contacts.near_parts.active;
   system.contacts.base_margin = options.margin > 0 ? options.margin : (listed_twice ? 0.6 : 0.2) * smallest_size;
   system.contacts.margin = std::max(system.contacts.base_margin, 8 * fastest * options.time_step);
+  if (!system.walls.servos.empty()) limit_free_way(system);
   system.walls.joints = joints_of(system.scene.walls, joint_gap * system.smallest_radius);
   find_candidates(system);
   touch_near_pairs(system);
@@ -97,6 +108,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (self.verlet()) {
     self.find_impulses();
     system.lost = {};  // there was no drift before the start
+    std::fill(system.walls.loads.begin(), system.walls.loads.end(), WallLoad{});
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -112,12 +124,14 @@ void GrainSimulation::Implementation::make_step() {
 
 void GrainSimulation::Implementation::step_together() {
   system.deepest = 0;
+  begin_loads_of_walls(system);
   flow(system);  // contacts, motion and candidates
   start_next_step();
 }
 
 void GrainSimulation::Implementation::step_by_euler() {
   system.deepest = 0;
+  begin_loads_of_walls(system);
   find_impulses();
   move_by_euler(system);
   update_candidates();
@@ -130,6 +144,7 @@ void GrainSimulation::Implementation::step_by_verlet() {
   update_candidates();
   start_next_step();
   system.deepest = 0;
+  begin_loads_of_walls(system);  // servo walls were steered by those of the last step
   find_impulses();
   kick_of_verlet(system);
 }
@@ -150,6 +165,7 @@ void GrainSimulation::Implementation::update_candidates() {
 void GrainSimulation::Implementation::start_next_step() {
   system.bodies.motions.swap(system.bodies.next);
   ++system.step;
+  if (!system.walls.servos.empty()) steer_walls(system);
   place_walls(system);
   turn_axes(system);
   cover_joints(system);
@@ -277,6 +293,42 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
 
 EnergyLedger GrainSimulation::energy() const {
   return implementation_->energy();
+}
+
+std::vector<WallState> GrainSimulation::walls() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<WallState> walls(system.scene.walls.size());
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const Wall& wall = system.scene.walls[w];
+    const WallPlace& place = system.walls.places[w];
+    const WallLoad& load = system.walls.loads[w];
+    walls[system.walls.wall_of[w]] = {.name = wall.name,
+                                      .place = wall.point + place.displacement,
+                                      .velocity = place.velocity,
+                                      .force = load.step_impulse / system.dt(),
+                                      .moment = load.step_angular / system.dt(),
+                                      .impulse = load.impulse + load.step_impulse,
+                                      .work = load.work};
+  }
+  return walls;
+}
+
+std::vector<Wall> GrainSimulation::placed_walls() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<Wall> walls(system.scene.walls.size());
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    Wall wall = system.scene.walls[w];
+    wall.point += system.walls.places[w].displacement;
+    wall.end += system.walls.places[w].displacement;
+    wall.move_x = wall.move_y = {};
+    wall.servo.reset();
+    walls[system.walls.wall_of[w]] = std::move(wall);
+  }
+  return walls;
+}
+
+std::vector<ServoReport> GrainSimulation::servos() const {
+  return reports_of(implementation_->system);
 }
 
 const GrainCounters& GrainSimulation::counters() const {

@@ -63,6 +63,17 @@ class GrainSimulation final : public AnySimulation {
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
 
+  /// A simulation of the bodies of another one in a changed scene: they are where they are in `before`, which is taken
+  /// over by take_over() or restore().
+  /// \param scene its bodies are those of `before`; places and motions are not read
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before);
+  /// The same with places and motions of a state that such a simulation saved. \param first with the same bodies
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& first,
+                  const SavedState& state);
+  /// Go on from the step of `before` with its contacts, losses and counters. Contacts with walls that are no longer
+  /// there end, the control of servo walls that both have goes on, and their errors are counted anew.
+  void take_over(const GrainSimulation& before);
+
   [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres
   ///         would pass each other (the message names step, bodies, speed and a sufficient time step); if motions are
@@ -74,10 +85,16 @@ class GrainSimulation final : public AnySimulation {
   /// Contacts of the last step, then bonds (contacts_of_bonds), each ordered by (i, j).
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   [[nodiscard]] EnergyLedger energy() const override;
+  [[nodiscard]] std::vector<WallState> walls() const override;
+  /// The walls at their present places, without motion, in the caller's order.
+  [[nodiscard]] std::vector<Wall> placed_walls() const;
+  /// One for each servo wall, in the caller's order.
+  [[nodiscard]] std::vector<ServoReport> servos() const;
   [[nodiscard]] double bytes_per_body() const override;
   /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop stores them;
   /// impulses (n, 3) and bonds (b, 3) of the last step, if the next step needs them; losses: the terms of the ledger;
-  /// counters.
+  /// counters; walls (w, 6): impulse before the last step and in it, its moment, work; servos: ServoState; start:
+  /// potential, energy.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
@@ -93,6 +110,8 @@ class GrainSimulation final : public AnySimulation {
   void stop_all();
 
  private:
+  /// \param order caller's number of the k-th body; empty: by place
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order);
   void go_back_to(const SavedState& state);
 
   struct Implementation;

@@ -18,6 +18,13 @@ constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_impulse = 3;
 constexpr std::size_t numbers_per_bond = 3;
 
+constexpr std::size_t numbers_per_wall = 6;
+constexpr double ServoState::*servo_saved[] = {
+    &ServoState::way,    &ServoState::speed,  &ServoState::passed_speed,   &ServoState::free_way,
+    &ServoState::wanted, &ServoState::force,  &ServoState::largest_wanted, &ServoState::overshoot,
+    &ServoState::pace,   &ServoState::errors, &ServoState::steps,          &ServoState::touched,
+    &ServoState::reached};
+
 constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
                                                            &GrainCounters::rebuilds, &GrainCounters::sweeps,
                                                            &GrainCounters::doubtful};
@@ -82,7 +89,7 @@ void take(const double* numbers, Candidate& candidate) {
 
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
-  std::vector<double> contacts, losses, counts, impulses, bonds;
+  std::vector<double> contacts, losses, counts, impulses, bonds, walls, servos;
   for (const PairBlock& block : system.contacts.near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
       if (!block.touching(p)) continue;
@@ -116,6 +123,11 @@ SavedState GrainSimulation::save() const {
       bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
     }
   }
+  for (const WallLoad& load : system.walls.loads)
+    walls.insert(walls.end(), {load.impulse.x, load.impulse.y, load.step_impulse.x, load.step_impulse.y,
+                               load.step_angular, load.work});
+  for (const ServoState& servo : system.walls.servos)
+    for (const auto number : servo_saved) servos.push_back(servo.*number);
   return {.step = system.step,
           .arrays = {{"motions", 3, numbers_of(motions())},
                      {"velocities", 3, numbers_of(velocities())},
@@ -123,7 +135,10 @@ SavedState GrainSimulation::save() const {
                      {"impulses", numbers_per_impulse, std::move(impulses)},
                      {"bonds", numbers_per_bond, std::move(bonds)},
                      {"losses", 1, std::move(losses)},
-                     {"counters", 1, std::move(counts)}}};
+                     {"counters", 1, std::move(counts)},
+                     {"walls", numbers_per_wall, std::move(walls)},
+                     {"servos", std::size(servo_saved), std::move(servos)},
+                     {"start", 1, {implementation_->potential_at_start, implementation_->energy_at_start}}}};
 }
 
 void GrainSimulation::stop_all() {
@@ -153,12 +168,16 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
       contacts.size() % numbers_per_contact != 0 || state["impulses"].size() != impulses ||
       state["bonds"].size() != bonds || losses.size() != energy_terms(BodyFamily::colliding).size() ||
-      counts.size() != std::size(counters_saved)) {
+      counts.size() != std::size(counters_saved) ||
+      state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
+      state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {
     bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
               fmt::format("the scene has {}", system.bodies.motions.size()),
               "Resume with the scene that the state was saved from");
   }
   system.step = state.step;
+  implementation_->potential_at_start = state["start"][0];
+  implementation_->energy_at_start = state["start"][1];
   const double* loss = losses.data();
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value = *loss++;
   for (std::size_t k = 0; k < system.bodies.motions.size(); ++k) {
@@ -173,6 +192,14 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     const double* impulse = state["bonds"].data() + numbers_per_bond * b;
     take_last_impulse(system, system.bonds.tied[b], {impulse[0], impulse[1], impulse[2]});
   }
+  const double* wall = state["walls"].data();
+  for (WallLoad& load : system.walls.loads) {
+    load = {{wall[0], wall[1]}, {wall[2], wall[3]}, wall[4], wall[5]};
+    wall += numbers_per_wall;
+  }
+  const double* servo_number = state["servos"].data();
+  for (ServoState& servo : system.walls.servos)
+    for (const auto number : servo_saved) servo.*number = *servo_number++;
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   place_walls(system);

@@ -74,7 +74,21 @@ struct BlockSums {
   std::int64_t evaluations = 0, contacts = 0;  ///< as in GrainCounters
   double deepest = 0;                          ///< deepest overlap, m
 
-  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses}; }
+  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, nullptr}; }
+};
+
+/// The control of a servo wall at the start of a step.
+struct ServoState {
+  std::size_t wall = 0, mirror = 0;          ///< places of the walls; equal: no mirror
+  std::size_t between[2] = {};               ///< places of the walls between which the length is measured
+  double way = 0;                            ///< m
+  double speed = 0, passed_speed = 0;        ///< in the present step and in the one before, m/s
+  double pace = 0;                           ///< mean speed of the last steps, m/s
+  double free_way = 0;                       ///< m, since the wall last touched a body
+  double wanted = 0, force = 0;              ///< of the last step, N
+  double largest_wanted = 0, overshoot = 0;  ///< N; largest F - W over largest_wanted
+  double errors = 0, steps = 0;              ///< sum of |F - W| over largest_wanted, number of its steps
+  double touched = 0, reached = 0;           ///< 0 or 1
 };
 
 /// The bodies sorted by position.
@@ -106,6 +120,9 @@ struct Shapes {
 /// The walls sorted by position.
 struct Walls {
   std::vector<WallPlace> places;
+  std::vector<WallLoad> loads;
+  std::vector<ServoState> servos;
+  double longest_free_way = 0;              ///< of a servo wall, m
   std::vector<WallJoints> joints;           ///< joints of each wall; empty if no walls join
   std::vector<std::size_t> wall_of;         ///< caller's number of the k-th
   std::vector<std::int32_t> place_of_wall;  ///< its inverse
@@ -152,7 +169,7 @@ struct GrainSystem {
   EnergyLedger lost;                         ///< losses and work since the start
   GrainCounters counters;
 
-  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses}; }
+  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, &walls.loads}; }
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
@@ -167,7 +184,8 @@ struct GrainSystem {
 };
 
 /// Sort grains and walls by position, so that results do not depend on the caller's order.
-void order_by_place(GrainSystem& system, const GrainScene& scene);
+/// \param order that the grains take instead, as GrainBodies::grain_of; empty: by position
+void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vector<std::size_t>& order);
 
 /// Compute Law::dissipation for every pair of kinds.
 void find_dissipations(GrainSystem& system);
@@ -193,6 +211,21 @@ double reach_of(const GrainSystem& system);
 
 /// Reset the state of a contact that has ended; what its tangential spring stored is lost.
 void forget_contact(Candidate& candidate, EnergyLedger& lost);
+
+/// Count an impulse of a body on a wall, and the work that the wall does on the body.
+/// \param wall as Candidate::j
+/// \param point at which it acts, m
+/// \param velocity of the wall, m/s
+inline void push_wall(const GrainSystem& system, std::int32_t wall, Vec2 point, Vec2 impulse, Vec2 velocity,
+                      ContactSums sums) {
+  const auto w = static_cast<std::size_t>(~wall);
+  WallLoad& load = (*sums.on_walls)[w];
+  const double work = -dot(impulse, velocity);
+  sums.lost.work_of_walls += work;
+  load.work += work;
+  load.step_impulse += impulse;
+  load.step_angular += cross(point - (system.scene.walls[w].point + system.walls.places[w].displacement), impulse);
+}
 
 /// Set the displacement of walls at the start of the step and their mean velocity over it.
 void place_walls(GrainSystem& system);

@@ -13,6 +13,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 
@@ -24,9 +25,14 @@ class AnySimulation {
   [[nodiscard]] BodyFamily family() const { return family_; }
   /// Active effects, and the reason for each inactive one.
   [[nodiscard]] virtual const Effects& effects() const = 0;
-  /// Advance by a number of steps. Results are bit-identical for any division of the steps into calls.
+  /// Advance by a number of steps, or to the next milestone before. Results are bit-identical for any division of the
+  /// steps into calls.
   virtual void advance(std::int64_t steps) = 0;
   [[nodiscard]] virtual std::int64_t step() const = 0;
+  /// The present step where something has ended at it that is to be recorded, such as a stage; else -1.
+  [[nodiscard]] virtual std::int64_t milestone() const { return -1; }
+  /// Whether there is nothing left to step.
+  [[nodiscard]] virtual bool over() const { return false; }
   [[nodiscard]] double time() const { return static_cast<double>(step()) * time_step_; }  ///< s
   /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad.
   [[nodiscard]] virtual std::vector<DiscMotion> motions() const = 0;
@@ -36,6 +42,8 @@ class AnySimulation {
   /// bonds.
   [[nodiscard]] virtual std::vector<BodyContact> body_contacts() const = 0;
   [[nodiscard]] virtual EnergyLedger energy() const = 0;
+  /// In the caller's order. Works of colliding bodies add up to that of the ledger.
+  [[nodiscard]] virtual std::vector<WallState> walls() const { return {}; }
   /// Bytes of all arrays of the loop, per body.
   [[nodiscard]] virtual double bytes_per_body() const = 0;
 

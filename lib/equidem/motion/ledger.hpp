@@ -35,6 +35,8 @@ struct EnergyLedger {
   double lost_release = 0;
   double lost_bond = 0;  ///< dashpots of bonds
   double work_of_loads = 0, work_of_supports = 0, work_of_walls = 0;
+  /// Kinetic and elastic energy that changes of the scene have added where a stage began.
+  double work_of_stages = 0;
   double initial = 0;  ///< kinetic + elastic at the start
 
   [[nodiscard]] double elastic() const { return elastic_bonded + elastic_normal + elastic_tangential + elastic_bond; }

@@ -167,6 +167,13 @@ Schedule scaled(Schedule schedule, double factor) {
   return schedule;
 }
 
+Schedule delayed(Schedule schedule, double time) {
+  schedule.start += time;
+  schedule.end += time;
+  for (double& at : schedule.times) at += time;
+  return schedule;
+}
+
 void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column) {
   TableFile file(path);
   while (file.next()) {

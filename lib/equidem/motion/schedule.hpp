@@ -75,6 +75,9 @@ Schedule scaled(Schedule schedule, double factor);
 /// \throws Error (bad_input) with file and line: a row that is not two numbers, times that do not ascend, no rows
 void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column);
 
+/// The schedule of a time that begins later, s.
+Schedule delayed(Schedule schedule, double time);
+
 struct NamedSchedule {
   std::string name;
   Schedule schedule;

@@ -64,6 +64,12 @@ void move_along(Wall& wall, Vec2 direction, const Schedule& displacement) {
   if (direction.y != 0) wall.move_y = scaled(displacement, direction.y);
 }
 
+std::vector<std::string> names_of(std::span<const Wall> walls) {
+  std::vector<std::string> names;
+  for (const Wall& wall : walls) names.push_back(wall.name);
+  return names;
+}
+
 void check(const Wall& wall) {
   if (!is_finite(wall.point)) {
     refuse(wall, fmt::format("stands at ({}, {}) m", wall.point.x, wall.point.y), "it stands nowhere",
@@ -82,6 +88,7 @@ void check(const Wall& wall) {
   }
   check(wall.move_x);
   check(wall.move_y);
+  if (wall.servo) check(*wall.servo, wall.name);
 }
 
 }  // namespace equidem

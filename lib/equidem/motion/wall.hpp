@@ -3,11 +3,15 @@
 /// Walls: lines, segments, arcs; at rest or moving.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/motion/schedule.hpp"
+#include "equidem/motion/servo.hpp"
 
 namespace equidem {
 
@@ -28,8 +32,11 @@ struct Wall {
   Schedule move_x = {}, move_y = {};  ///< displacement over time, m; constant 0: at rest
   int kind = 0;                       ///< colliding bodies: row of the table of pairs
   double kN = 0;                      ///< bonded discs: force per m of overlap, Pa, > 0
+  std::optional<Servo> servo = {};    ///< motion that is added to the displacement; colliding bodies
 
+  /// Whether a schedule moves it.
   [[nodiscard]] bool moves() const { return move_x.changes() || move_y.changes(); }
+  /// Displacement by its schedules.
   [[nodiscard]] Vec2 displacement(double time) const { return {move_x.at(time), move_y.at(time)}; }
   /// Displacement of a line along its normal, m.
   [[nodiscard]] double displacement_along_normal(double time) const { return dot(normal, displacement(time)); }
@@ -42,9 +49,22 @@ struct EnumNames<Wall::Shape> {
   static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}, {arc, "arc"}};
 };
 
+/// A wall of a simulation at its time, and what bodies have done to it. N, J, N s: of discs per metre of depth.
+struct WallState {
+  std::string name = {};
+  Vec2 place = {};     ///< of Wall::point, m
+  Vec2 velocity = {};  ///< in the step that follows, m/s
+  Vec2 force = {};     ///< of the bodies on the wall, mean over the last step, N
+  double moment = 0;   ///< of this force about `place`, counter-clockwise, N m
+  Vec2 impulse = {};   ///< of this force since the start, N s
+  double work = 0;     ///< done on the bodies since the start, J
+};
+
 /// Prescribe the displacement of a wall along a direction.
 /// \param direction unit
 void move_along(Wall& wall, Vec2 direction, const Schedule& displacement);
+
+std::vector<std::string> names_of(std::span<const Wall> walls);
 
 /// \throws Error (bad_input) on numbers that are not finite, a normal that is not a unit vector, a segment of length 0,
 ///         an arc of radius 0 or with angles out of order

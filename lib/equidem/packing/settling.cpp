@@ -9,6 +9,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
+#include "equidem/grains/stages/unbalance.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 
@@ -131,33 +132,6 @@ GrainScene scene_of_box(double width, const SettlingOptions& options) {
   return scene;
 }
 
-SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts,
-                         std::span<const GrainBond> bonds, Vec2 gravity) {
-  std::vector<Vec2> forces(grains.size());
-  for (std::size_t k = 0; k < grains.size(); ++k) forces[k] = grains[k].inertia.mass * gravity;
-  double carried = 0;
-  for (const GrainContact& contact : contacts) {
-    const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
-    forces[static_cast<std::size_t>(contact.i)] -= on_j;
-    if (contact.j >= 0) forces[static_cast<std::size_t>(contact.j)] += on_j;
-    carried += norm(on_j);
-  }
-  for (const GrainBond& bond : bonds) {
-    forces[bond.i] += forces[bond.j];
-    forces[bond.j] = {};
-  }
-  SettlingReport report;
-  double sum = 0, largest = 0;
-  for (const Vec2 force : forces) {
-    sum += norm(force);
-    largest = std::max(largest, norm(force));
-  }
-  const double mean = contacts.empty() ? 0 : carried / static_cast<double>(contacts.size());
-  report.unbalanced = mean > 0 ? sum / static_cast<double>(grains.size() - bonds.size()) / mean : INFINITY;
-  report.largest_unbalanced = mean > 0 ? largest / mean : INFINITY;
-  return report;
-}
-
 SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options) {
   check(options);
   SettlingEstimate estimate{.time_step = chosen_step(scene, options)};
@@ -206,8 +180,9 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     if (kinetic <= resting_drop * weight_radius) {
       const auto grains = simulation.grains();
       const auto contacts = simulation.contacts();
-      SettlingReport report = unbalance(grains, contacts, scene.bonds, scene.gravity);
-      if (report.unbalanced <= options.rest) {
+      const Unbalance unbalance = unbalance_of(grains, contacts, scene.bonds, scene.gravity);
+      if (unbalance.mean <= options.rest) {
+        SettlingReport report{.unbalanced = unbalance.mean, .largest_unbalanced = unbalance.largest};
         report.time_step = step;
         report.time = simulation.time();
         report.steps = simulation.step();
@@ -221,10 +196,10 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
       peak = 0;
     }
   }
-  const SettlingReport report = unbalance(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
+  const Unbalance unbalance = unbalance_of(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
   computation_failed(fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
                      fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
-                                 report.unbalanced, options.rest),
+                                 unbalance.mean, options.rest),
                      scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
                                          : "Let the bonds creep less (a larger bond_share), or give them longer");
 }

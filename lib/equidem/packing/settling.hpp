@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "equidem/grains/grain_simulation.hpp"
@@ -38,8 +37,8 @@ struct SettlingReport {
   double time_step = 0;           ///< s
   double time = 0;                ///< s of motion
   std::int64_t steps = 0;
-  EnergyLedger ledger;
-  BondReport bonds;  ///< how far bonded pairs drifted
+  EnergyLedger ledger = {};
+  BondReport bonds = {};  ///< how far bonded pairs drifted
 };
 
 /// Bodies at rest.
@@ -76,9 +75,5 @@ struct SettlingEstimate {
 
 /// 	hrows Error (bad_input) as settle
 SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options);
-
-/// Unbalanced forces: contact forces plus weights. Bonded grains are one body.
-SettlingReport unbalance(std::span<const Grain> grains, std::span<const GrainContact> contacts,
-                         std::span<const GrainBond> bonds, Vec2 gravity);
 
 }  // namespace equidem

@@ -102,6 +102,9 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
 
 CaseModel grain_model(const ExportOptions& options, Engine engine) {
   const auto resolved = std::make_shared<const GrainCase>(read_grain_case(options.case_file, options.set));
+  if (!resolved->stages.empty())
+    bad_input_at(resolved->where("stage"), "the case is in stages", "an exported model is one scene from its start on",
+                 "Export a case of one stage");
   const double step = choose_grain_step(*resolved).step;
   const GrainScene scene = build_grain_scene(*resolved, step);
   CaseModel made{.model = engine_model(scene, grain_options(*resolved, step), resolved->body)};

@@ -209,6 +209,7 @@ RunPlan BondedRun::plan() {
           .frame_discs = &problem_.assembly,
           .frames = {.contacts = output.frame_contacts},
           .probes = probes_,
+          .walls = names_of(run().walls),
           .recorder = waves_.empty() ? nullptr : &waves_,
           .watch = [this](const EnergyLedger& energy) { watch_.look(simulation_, energy); },
           .watch_between = true};

@@ -59,7 +59,8 @@ void add_film(const std::string& title, const Assembly& assembly, std::span<cons
              enlarged);
 }
 
-void add_film(const GrainCase& resolved, std::span<const int> colours, std::span<const FilmFrame> frames) {
+void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<const int> colours,
+              std::span<const FilmFrame> frames) {
   if (frames.size() < 2) return;
   std::vector<GrainFrame> places;
   for (const FilmFrame& frame : frames) {
@@ -68,13 +69,14 @@ void add_film(const GrainCase& resolved, std::span<const int> colours, std::span
       shown.places.push_back(motion.u);
       shown.angles.push_back(motion.theta);
     }
+    shown.walls = frame.walls;
   }
   add_player({.title = resolved.title,
               .caption = "The line in a body shows how it turns",
               .shapes = resolved.scene.grains,
               .clumps = resolved.scene.clumps,
               .groups = colours,
-              .walls = resolved.scene.walls},
+              .walls = walls},
              places);
 }
 

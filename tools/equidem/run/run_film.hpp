@@ -21,6 +21,7 @@ std::int64_t frames_of_film(std::size_t bodies);
 /// discs are enlarged where they are too small to be seen, as in write_picture.
 void add_film(const std::string& title, const Assembly& assembly, std::span<const FilmFrame> frames);
 /// \param colours of each grain
-void add_film(const GrainCase& resolved, std::span<const int> colours, std::span<const FilmFrame> frames);
+void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<const int> colours,
+              std::span<const FilmFrame> frames);
 
 }  // namespace equidem

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/servo_walls.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/grain_frames.hpp"
@@ -41,17 +43,29 @@ std::string checksum_of(const GrainCase& resolved) {
   for (const Clump& clump : resolved.scene.clumps)
     for (const Clump::Disc& disc : clump.discs)
       for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  for (const Wall& wall : resolved.scene.walls) add(sum, wall.move_x), add(sum, wall.move_y);
+  const auto add_walls = [&](const std::vector<Wall>& walls) {
+    for (const Wall& wall : walls) {
+      add(sum, wall.move_x), add(sum, wall.move_y);
+      if (wall.servo) add(sum, wall.servo->wanted);
+    }
+  };
+  add_walls(resolved.scene.walls);
+  for (const StageCase& stage : resolved.stages) add_walls(stage.scene.walls);
   return sum.text();
 }
 
 void check_events(const GrainCase& resolved, double step) {
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
+    for (const Wall& wall : resolved.stages[k].scene.walls)
+      for (const Schedule* motion : {&wall.move_x, &wall.move_y})
+        check_event(*motion, step, resolved.stages[k].duration, resolved.where(fmt::format("stage.{}", k)));
+  if (!resolved.stages.empty()) return;
   for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
     for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
       check_event(*motion, step, resolved.duration, resolved.where(fmt::format("wall.{}.schedule", k)));
 }
 
-GrainSimulation simulation_of(const GrainCase& resolved, double step) {
+StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   const GrainScene scene = build_grain_scene(resolved, step);
   const GrainOptions options = grain_options(resolved, step);
   try {
@@ -59,7 +73,25 @@ GrainSimulation simulation_of(const GrainCase& resolved, double step) {
   } catch (const Error& error) {
     throw error.at(resolved.where("collisions"));
   }
-  return {scene, options};
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
+    casefile::with_place(resolved.where(fmt::format("stage.{}", k)),
+                         [&] { check_servos(resolved.stages[k].scene, options.law); });
+  return {build_grain_stages(resolved, step), options};
+}
+
+std::int64_t count_all_steps(const GrainCase& resolved, double step) {
+  std::int64_t sum = 0;
+  for (const GrainStage& stage : build_grain_stages(resolved, step)) sum += stage.steps;
+  return sum;
+}
+
+/// The walls of all stages, one of each name.
+std::vector<Wall> all_walls(const GrainCase& resolved) {
+  std::vector<Wall> walls = resolved.scene.walls;
+  for (const StageCase& stage : resolved.stages)
+    for (const Wall& wall : stage.scene.walls)
+      if (std::ranges::find(walls, wall.name, &Wall::name) == walls.end()) walls.push_back(wall);
+  return walls;
 }
 
 /// Possible error of kinetic and potential energy by the rounding of positions.
@@ -84,7 +116,8 @@ void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimul
                        "squares of speeds, or stiffnesses, are beyond all numbers", "Use smaller ones");
   }
   constexpr double most = 4;
-  const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential);
+  const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential) +
+                       std::max(0.0, ledger.work_of_stages);
   if (ledger.kinetic <= most * given) return;
   if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.grains()))) return;
   computation_failed(
@@ -94,12 +127,25 @@ void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimul
       "Use a shorter time_step, or the law exact_flow");
 }
 
+/// \throws Error (computation_failed) where a servo wall has met no body until the end of a stage
+void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simulation) {
+  for (const ServoReport& servo : simulation.present().servos()) {
+    if (servo.touched || servo.wanted == 0) continue;
+    const auto at = std::ranges::find(resolved.scene.walls, servo.wall, &Wall::name) - resolved.scene.walls.begin();
+    throw Error(ErrorKind::computation_failed, fmt::format("the servo wall '{}' met no body until the end", servo.wall),
+                "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
+                resolved.stages.empty() ? resolved.where(fmt::format("wall.{}.servo", at))
+                                        : resolved.where(fmt::format("stage.{}", simulation.reports().size() - 1)));
+  }
+}
+
 }  // namespace
 
 GrainRun::GrainRun(GrainCase resolved)
     : case_(std::move(resolved)),
       step_(choose_grain_step(case_)),
-      steps_(count_steps(case_, step_.step)),
+      steps_(count_all_steps(case_, step_.step)),
+      walls_(all_walls(case_)),
       simulation_(simulation_of(case_, step_.step)) {
   check_events(case_, step_.step);
   if (case_.measures) measures_.emplace(case_, simulation_);
@@ -126,17 +172,25 @@ RunPlan GrainRun::plan() {
           .frame_discs = &frame_discs_,
           .frames = frames_,
           .probes = case_.probes,
+          .walls = names_of(walls_),
           .body = case_.body,
           .samples = draws_paths ? samples_of_few : energy_samples,
           .paths = draws_paths,
           .recorder = measures_ ? &*measures_ : nullptr,
-          .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },
+          .watch =
+              [this](const EnergyLedger& energy) {
+                refuse_made_energy(case_, step_.step, simulation_.present(), energy);
+                if (simulation_.milestone() >= 0) refuse_idle_servos(case_, simulation_);
+              },
           .step_place = case_.where("run.time_step")};
 }
 
 std::string GrainRun::fingerprint() const {
   TomlValue known = case_.document;
   erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
+  if (TomlValue* stages = known.find("stage"))
+    for (TomlValue& stage : stages->items)
+      if (stage.find("until") != nullptr) erase_keys(stage, {"duration"});  // a limit alone
   erase_keys(known, {"title", "output", "probe", "measures"});
   return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
                                                      toml_number(step_.step), checksum_of(case_));
@@ -155,7 +209,8 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
   const GrainCase& resolved = case_;
-  const std::vector<Grain> grains = simulation_.grains();
+  const std::vector<Grain> grains = simulation_.present().grains();
+  const std::vector<Wall> walls = simulation_.present().placed_walls();
   std::vector<std::string> groups;
   std::vector<int> colours;
   for (const Grain& grain : grains) {
@@ -167,11 +222,10 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
   }
   if (resolved.output.csv) {
     write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
-    write_grain_contact_csv(folder / "contacts.csv", simulation_.contacts(), resolved.scene.walls, resolved.body,
-                            overwrite);
+    write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
   }
   if (resolved.output.csv && !resolved.scene.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation_.bond_drifts(), overwrite);
+    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation_.present().bond_drifts(), overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
@@ -180,12 +234,12 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
                          .clumps = resolved.scene.clumps,
                          .groups = colours,
                          .bonds = resolved.scene.bonds,
-                         .walls = resolved.scene.walls,
+                         .walls = walls,
                          .paths = result.record.paths},
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
-    add_film(resolved, colours, result.record.film);
+    add_film(resolved, walls_, colours, result.record.film);
   }
   write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);

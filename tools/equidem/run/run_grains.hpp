@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "run/run_grains_measures.hpp"
 #include "run/run_job.hpp"
@@ -37,8 +37,9 @@ class GrainRun final : public RunJob {
 
   GrainCase case_;
   GrainTimeStep step_;
-  std::int64_t steps_;  ///< number of steps of the whole duration
-  GrainSimulation simulation_;
+  std::int64_t steps_;       ///< number of steps of the whole duration
+  std::vector<Wall> walls_;  ///< of all stages, one of each name
+  StagedSimulation simulation_;
   std::optional<GrainMeasures> measures_;
   FrameOptions frames_;
   Assembly frame_discs_;

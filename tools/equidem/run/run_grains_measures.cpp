@@ -64,7 +64,7 @@ BoxMeasures measures_of(const GrainCase& resolved) {
 
 }  // namespace
 
-GrainMeasures::GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation)
+GrainMeasures::GrainMeasures(const GrainCase& resolved, const StagedSimulation& simulation)
     : resolved_(resolved), simulation_(simulation), measures_(measures_of(resolved)) {}
 
 void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) {
@@ -110,7 +110,8 @@ void GrainMeasures::go_on(const Checkpoint& from) {
 }
 
 void GrainMeasures::record(std::int64_t step, double time, bool regular) {
-  const MeasuredMoment& moment = measures_.record(step, time, simulation_.grains());
+  const MeasuredMoment& moment =
+      measures_.record(step, time, simulation_.present().grains(), simulation_.present().placed_walls());
   if (!table_) return;
   table_->add(step, cells_of(moment), regular);
   std::vector<double> cells{time};

@@ -11,7 +11,7 @@
 
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/fields/box_measures.hpp"
-#include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
@@ -22,7 +22,7 @@ class GrainMeasures final : public RunRecorder {
  public:
   /// \param resolved with measures
   /// \param simulation that is measured; must stay where it is
-  GrainMeasures(const GrainCase& resolved, const GrainSimulation& simulation);
+  GrainMeasures(const GrainCase& resolved, const StagedSimulation& simulation);
 
   /// Write measures.csv, surface.csv and thrown.csv (when a body was first seen apart) into a folder.
   /// \throws Error (bad_input) as GrowingCsv
@@ -43,7 +43,7 @@ class GrainMeasures final : public RunRecorder {
   void write_thrown() const;
 
   const GrainCase& resolved_;
-  const GrainSimulation& simulation_;
+  const StagedSimulation& simulation_;
   BoxMeasures measures_;
   std::filesystem::path folder_;
   std::optional<GrowingCsv> table_, profiles_;

@@ -114,7 +114,7 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, bool overwr
     }
   }
   if (!resolved_.measures->cell) return;
-  write_fields(folder, "fields", measures_.fields(simulation_), overwrite);
+  write_fields(folder, "fields", measures_.fields(simulation_.present()), overwrite);
 }
 
 void write_probe_paths(const std::filesystem::path& folder, const GrainCase& resolved, bool overwrite) {

@@ -73,7 +73,9 @@ void add_bodies(Results& out, const GrainCase& resolved) {
   out.line("walls", joined(resolved.scene.walls, [](const Wall& wall) {
              constexpr const char* shapes[] = {"line", "segment", "arc"};
              return fmt::format("{} ({}{})", wall.name, shapes[static_cast<int>(wall.shape)],
-                                wall.moves() ? ", moves" : "");
+                                wall.servo     ? ", servo"
+                                : wall.moves() ? ", moves"
+                                               : "");
            }));
 }
 
@@ -270,16 +272,67 @@ Results GrainRun::step() const {
                  limited ? ResultValue(step_.step * step_.limit / step_.omega_step) : ResultValue(nullptr));
 }
 
+namespace {
+
+/// stages: a list with name, start, end, steps, end_reason, effects.
+void add_stages(Results& out, const std::vector<StageReport>& stages, double step) {
+  std::vector<Results> rows;
+  for (const StageReport& stage : stages) {
+    const char* reason = stage.ended ? "met its end" : stage.over ? "duration" : "not over";
+    std::vector<std::string> active;
+    for (const Effects::Entry& entry : stage.effects.entries)
+      if (entry.active) active.push_back(entry.name);
+    Results& row = rows.emplace_back();
+    row.add("name", "stage", stage.name)
+        .add("start", "from, s", static_cast<double>(stage.first) * step)
+        .add("end", "to, s", static_cast<double>(stage.last) * step)
+        .add("steps", "steps", stage.last - stage.first)
+        .add("ended_by", "ended by", reason)
+        .set("effects", active);
+    if (stage.kinetic > 0 || stage.unbalanced > 0)
+      row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
+    if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
+    if (stage.displacement > 0)
+      row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
+  }
+  out.line("stages", "what changes the energies of the scene between them is in the ledger:");
+  out.table("stages", std::move(rows));
+}
+
+/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error.
+void add_servos(Results& out, const std::vector<ServoReport>& servos, Body body) {
+  if (servos.empty()) return;
+  const char* force = body == Body::disc ? "N/m" : "N";
+  std::vector<Results> rows;
+  for (const ServoReport& servo : servos) {
+    Results& row = rows.emplace_back();
+    row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
+        .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
+        .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
+        .set("reached", servo.reached);
+    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
+    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    row.add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
+  }
+  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in this stage:");
+  out.table("servos", std::move(rows));
+}
+
+}  // namespace
+
 Results GrainRun::events() const {
-  const GrainCounters& counters = simulation_.counters();
+  const GrainCounters& counters = simulation_.present().counters();
   Results out = measures_ ? measures_->results() : Results();
+  if (!case_.stages.empty()) add_stages(out, simulation_.reports(), step_.step);
+  add_servos(out, simulation_.present().servos(), case_.body);
   out.line("collisions")
       .add("contacts", "", counters.contacts, "contact", {Shown::count})
       .note(" begun")
-      .add("touching", "", simulation_.contacts().size(), "at the end")
+      .add("touching", "", simulation_.present().contacts().size(), "at the end")
       .add("evaluations", "", counters.evaluations, "evaluation", {Shown::count})
       .note(" of the law");
-  if (const auto contacts = simulation_.contacts(); !contacts.empty()) {
+  if (const auto contacts = simulation_.present().contacts(); !contacts.empty()) {
     const auto& grains = case_.scene.grains;
     double largest = 0;
     for (const GrainContact& contact : contacts) {
@@ -292,15 +345,15 @@ Results GrainRun::events() const {
     out.set("largest_overlap", nullptr);
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
-  add_drifts(out, simulation_.bonds());
+  add_drifts(out, simulation_.present().bonds());
   return out;
 }
 
 Results GrainRun::advice(const Balance& balance) const {
   Results out;
   if (std::abs(balance.at_end) > Balance::doubtful)
-    out.line("", "that is much: " + advice_on_balance(case_, simulation_, simulation_.energy()));
-  if (const std::int64_t doubtful = simulation_.counters().doubtful; doubtful > 0) {
+    out.line("", "that is much: " + advice_on_balance(case_, simulation_.present(), simulation_.energy()));
+  if (const std::int64_t doubtful = simulation_.present().counters().doubtful; doubtful > 0) {
     out.line("", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their "
                              "vibration: the step is safe for one contact, not for any cluster; compare with one a "
                              "third as long",

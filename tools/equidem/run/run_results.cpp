@@ -7,6 +7,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/wall_loads.hpp"
 
 namespace equidem {
 namespace {
@@ -122,6 +123,7 @@ Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result) {
       .add("particle_steps_per_second", "", result.seconds > 0 ? body_steps / result.seconds : 0.0,
            fmt::format("{}-steps per second", job.body_name()), {.digits = 3});
   out.append(job.events());
+  out.append(wall_results(simulation.walls(), simulation.family(), plan.body));
   add_energies(out, job, simulation.family(), plan.body, simulation.energy(), result.record);
   return out;
 }

@@ -53,6 +53,12 @@ void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene)
 }
 
 void complete_run(const TomlValue& run, GrainTables& tables) {
+  if (tables.stages.empty() && run.find("duration") == nullptr)
+    fail_at(run, "run.duration", "missing key", "a number in s, > 0 is needed",
+            "Add duration = ... to [run], or [[stage]]");
+  if (const TomlValue* given = run.find("duration"); given != nullptr && !tables.stages.empty())
+    fail_at(*given, "run.duration", "duration and [[stage]] are both given", "stages have durations of their own",
+            "Remove one of them");
   check_step(run, tables.step.time_step, tables.duration);
   const TomlValue* integrator = run.find("integrator");
   if (integrator != nullptr && !gives_force(tables.options.law))
@@ -60,6 +66,19 @@ void complete_run(const TomlValue& run, GrainTables& tables) {
             "integrators are for the laws that give a force: " + names_of_laws(LawKind::force),
             "Remove it, or change collisions.law");
   tables.step.longest = tables.duration;
+}
+
+void check_stresses(const TomlValue& root, const GrainTables& tables) {
+  if (tables.body == Body::disc) return;
+  const auto check = [&](const std::vector<Wall>& walls) {
+    for (const Wall& wall : walls)
+      if (wall.servo && wall.servo->is_stress)
+        fail_at(*root.find("grains"), "grains.body",
+                fmt::format("wall '{}' holds a stress and meets spheres", wall.name),
+                "their forces are N, and a length in the plane is no area", "Give force in [wall.servo]");
+  };
+  check(tables.scene.walls);
+  for (const StageCase& stage : tables.stages) check(stage.scene.walls);
 }
 
 /// The error of the library with the line of the option that it names.
@@ -102,7 +121,13 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   const auto schedules = read_schedules(root, tables.schedule_tables);
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
-  complete_collisions(root, groups, tables);
+  const std::vector<Wall> all_walls = read_stages(root, schedules, tables);
+  if (tables.stages.empty()) {
+    complete_collisions(root, groups, tables);
+  } else {
+    complete_stages(root, groups, all_walls, tables);
+  }
+  check_stresses(root, tables);
   complete_run(*root.find("run"), tables);
   if (tables.shaking_table) complete_shaking(root, tables);
   if (tables.measures) at_key(*root.find("measures"), "measures", [&] { check(*tables.measures, tables.body); });
@@ -119,7 +144,12 @@ GrainCase read_grain_case(const fs::path& path, std::span<const std::string> ove
 
 GrainTimeStep choose_grain_step(const GrainCase& resolved) {
   try {
-    return choose_time_step(resolved.scene, resolved.contacts, resolved.options, resolved.step);
+    GrainTimeStep chosen = choose_time_step(resolved.scene, resolved.contacts, resolved.options, resolved.step);
+    for (const StageCase& stage : resolved.stages) {
+      const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, resolved.options, resolved.step);
+      if (other.step < chosen.step) chosen = other;
+    }
+    return chosen;
   } catch (const Error& error) {
     throw placed(error, resolved);
   }
@@ -133,6 +163,18 @@ GrainScene build_grain_scene(const GrainCase& resolved, double step) {
   GrainScene scene = resolved.scene;
   scene.pairs = pairs_at(resolved.contacts, resolved.options.law, step);
   return scene;
+}
+
+std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double step) {
+  std::vector<GrainStage> stages;
+  if (resolved.stages.empty())
+    stages.push_back({.name = "run", .scene = build_grain_scene(resolved, step), .steps = count_steps(resolved, step)});
+  for (const StageCase& stage : resolved.stages) {
+    GrainStage& made = stages.emplace_back(GrainStage{
+        .name = stage.name, .scene = stage.scene, .steps = count_steps(stage.duration, step), .end = stage.end});
+    made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);
+  }
+  return stages;
 }
 
 GrainOptions grain_options(const GrainCase& resolved, double step) {

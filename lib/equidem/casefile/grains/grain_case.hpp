@@ -16,9 +16,19 @@
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/grains/scene/shaking.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/motion/probe.hpp"
 
 namespace equidem {
+
+/// One [[stage]].
+struct StageCase {
+  std::string name;
+  double duration = 0;  ///< s; with an end its limit
+  StageEnd end;
+  GrainScene scene;  ///< as GrainStage::scene; `pairs` is not set
+  ContactTable contacts;
+};
 
 /// A checked case: complete, in range and without contradiction; conditions on all bodies together are checked at the
 /// start of the simulation.
@@ -31,7 +41,8 @@ struct GrainCase : CaseDocument {
   ContactTable contacts;
   GrainOptions options;            ///< without its time step
   GrainStepOptions step;           ///< options of its choice
-  double duration = 0;             ///< s
+  double duration = 0;             ///< s; with stages the sum of theirs
+  std::vector<StageCase> stages;   ///< empty: `scene` throughout; else `scene` and `contacts` are those of the first
   std::optional<Shaking> shaking;  ///< shaking; its motion is also set in the walls
   std::optional<MeasureOptions> measures;
   std::vector<Probe> probes;  ///< with the bodies of their groups
@@ -56,7 +67,7 @@ GrainCase read_grain_case(const std::filesystem::path& path, std::span<const std
 GrainCase parse_grain_case(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                            std::span<const std::string> overrides = {});
 
-/// The time step of a run.
+/// The time step of a run, of its stages the shortest.
 /// \throws Error (bad_input) as choose_time_step, with line and key
 GrainTimeStep choose_grain_step(const GrainCase& resolved);
 
@@ -66,6 +77,8 @@ std::int64_t count_steps(const GrainCase& resolved, double step);
 
 /// The scene and the options of a simulation with a time step, s.
 GrainScene build_grain_scene(const GrainCase& resolved, double step);
+/// The stages of a run; one that has no end where the case has none.
+std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double step);
 GrainOptions grain_options(const GrainCase& resolved, double step);
 
 }  // namespace equidem

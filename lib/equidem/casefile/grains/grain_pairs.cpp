@@ -113,6 +113,18 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
 
 }  // namespace
 
+std::vector<Key<PairOptions>> changed_contact_keys() {
+  return contact_keys(false);
+}
+
+std::vector<Key<PairOptions>> pair_keys() {
+  std::vector<Key<PairOptions>> pair{
+      unbound_key<PairOptions>("group", KeyType::text, required, "group of grains"),
+      unbound_key<PairOptions>("with", KeyType::text, required, "a group of grains, or the name of a [[wall]]")};
+  for (Key<PairOptions>& key : contact_keys(false)) pair.push_back(std::move(key));
+  return pair;
+}
+
 void bind_collisions(File<GrainTables>& file) {
   using T = GrainTables;
   using C = CollisionTable;
@@ -141,13 +153,9 @@ void bind_collisions(File<GrainTables>& file) {
   file.table("collisions", &T::collisions, &C::contact).keys(contact_keys(true));
   file.table("collisions.walls", "contacts of a grain with a wall, where they differ from that")
       .described(contact_keys(false));
-  std::vector<Key<PairOptions>> pair{
-      unbound_key<PairOptions>("group", KeyType::text, required, "group of grains"),
-      unbound_key<PairOptions>("with", KeyType::text, required, "a group of grains, or the name of a [[wall]]")};
-  for (Key<PairOptions>& key : contact_keys(false)) pair.push_back(std::move(key));
   file.table("collisions.pair", repeated_table,
              "contacts of two groups, or of a group and a wall, where they differ from that")
-      .described(std::move(pair));
+      .described(pair_keys());
   bind_springs_file(file);
   file.table("springs", &T::springs,
              "kN, kT of all contacts, those with walls too, instead of stiffness and tangential_ratio")

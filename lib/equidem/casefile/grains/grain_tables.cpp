@@ -39,7 +39,8 @@ void bind_bodies(File<GrainTables>& file) {
 void bind_run(File<GrainTables>& file) {
   using T = GrainTables;
   file.table("run", required, "how long and in which steps")
-      .keys({key_in<T>("duration", &GrainCase::duration, required, run_duration),
+      .keys({key_in<T>("duration", &GrainCase::duration, optional, run_duration,
+                       "length of the run; required without [[stage]]"),
              key_in<T>("time_step", &GrainCase::step, &GrainStepOptions::time_step, run_time_step,
                        "auto: the shortest contact over steps_per_contact"),
              key_in<T>("gravity", &GrainCase::scene, &GrainScene::gravity, run_gravity),
@@ -56,6 +57,7 @@ void bind_run(File<GrainTables>& file) {
                  "the balance of energy counts")});
   bind_motion(file, BodyFamily::colliding, &GrainCase::probes);
   bind_shaking(file);
+  bind_stages(file);
   using M = MeasureOptions;
   file.table("measures", &GrainCase::measures, "quantities measured on the bodies in a box")
       .keys({key("region", &M::region, unit("m"),

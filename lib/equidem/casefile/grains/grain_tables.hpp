@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,13 @@ struct ShakingTable {
   RecordedShaking recorded;  ///< without its points; accelerations in `unit`
 };
 
+/// [[stage]], without the tables in it.
+struct StageTable {
+  std::string name;
+  double duration = 0;          ///< s
+  std::optional<Vec2> gravity;  ///< m/s²
+};
+
 /// A GrainCase and the tables from which it is completed.
 struct GrainTables : GrainCase, MotionTables {
   CommonBodyTable common;
@@ -62,6 +70,7 @@ struct GrainTables : GrainCase, MotionTables {
   std::optional<SpringsTable> springs;
   BondsTable bonds;
   std::optional<ShakingTable> shaking_table;
+  std::vector<StageTable> stage_tables;
 };
 
 /// The case file of colliding bodies, schema "equidem/1".
@@ -70,6 +79,12 @@ const File<GrainTables>& grain_file();
 void bind_collisions(File<GrainTables>& file);
 void bind_bonds(File<GrainTables>& file);
 void bind_shaking(File<GrainTables>& file);
+void bind_stages(File<GrainTables>& file);
+
+/// The keys of a contact that may differ from [collisions].
+std::vector<Key<PairOptions>> changed_contact_keys();
+/// [[collisions.pair]].
+std::vector<Key<PairOptions>> pair_keys();
 
 /// Build the bodies of [grains] and [[grain]].
 /// \return group of each grain
@@ -86,6 +101,20 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
 /// \param tables with bodies
 /// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds
 void complete_bonds(const TomlValue& root, GrainTables& tables);
+
+/// The stages with their walls and gravity.
+/// \param tables with walls
+/// \return the walls of all stages, one of each name
+/// \throws Error (bad_input) with line and key: a motion of walls outside of the stages, a wall that is not there or
+///         needed by the servo of another, an end that names no wall
+std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
+
+/// Bodies and contacts of the stages.
+/// \param all walls of all stages
+/// \param tables with stages and bodies
+/// \throws Error (bad_input) as complete_collisions
+void complete_stages(TomlValue root, const std::vector<std::string>& groups, const std::vector<Wall>& all,
+                     GrainTables& tables);
 
 /// Apply [shaking] to the walls, except those with shaken = false.
 /// \param tables with walls and with [shaking]

@@ -297,7 +297,10 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     }
     if (candidate.j < 0) {
       const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);
-      system.lost.work_of_walls -= dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].velocity);
+      const Vec2 point =
+          system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + trial.lever_i * trial.normal;
+      push_wall(system, candidate.j, point, impulse,
+                system.walls.places[static_cast<std::size_t>(~candidate.j)].velocity, system.sums());
     }
     ++candidate.steps;
     candidate.touching = true;

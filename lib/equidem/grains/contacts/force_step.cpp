@@ -188,7 +188,10 @@ void collide_by(GrainSystem& system) {
     }
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
     if (candidate.j < 0)
-      lost.work_of_walls -= dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity);
+      push_wall(
+          system, candidate.j,
+          system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.lever_i * geometry.normal,
+          impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, system.sums());
   }
 }
 

@@ -210,8 +210,9 @@ void collide_parts(GrainSystem& system) {
     }
     push(system.bodies.impulses, contact, impulse);
     if (candidate.j < 0)
-      system.lost.work_of_walls -=
-          dot(impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity);
+      push_wall(system, candidate.j,
+                system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.arm_i, impulse,
+                system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, system.sums());
   }
 }
 

@@ -113,7 +113,8 @@ void give_touch_impulses(GrainSystem& system) {
     if (impulse.j >= 0) {
       push(impulse.j, impulse.arm_j, on_j);
     } else {
-      system.lost.work_of_walls -= dot(on_j, system.walls.places[static_cast<std::size_t>(~impulse.j)].passed_velocity);
+      push_wall(system, impulse.j, system.bodies.motions[static_cast<std::size_t>(impulse.i)].position + impulse.arm_i,
+                on_j, system.walls.places[static_cast<std::size_t>(~impulse.j)].passed_velocity, system.sums());
     }
     const Vec2 mean = 0.5 * (before + relative_velocity(system, impulse));
     system.lost.lost_dashpot -= impulse.dashpot * dot(mean, impulse.normal);

@@ -48,10 +48,24 @@ struct TouchImpulse {
   double EnergyLedger::*taken = nullptr;  ///< ledger term of the energy that `tangential` removes
 };
 
+/// The impulses of bodies on a wall; work since the start.
+struct WallLoad {
+  Vec2 impulse, step_impulse;  ///< since the start without the present step, in this one; N s
+  double step_angular = 0;     ///< about the place of the wall, N m s
+  double work = 0;             ///< done by the wall, J
+
+  void begin_step() {
+    impulse += step_impulse;
+    step_impulse = {};
+    step_angular = 0;
+  }
+};
+
 /// The sums of a step to which every contact adds.
 struct ContactSums {
   EnergyLedger& lost;                      ///< losses and work since the start
   std::vector<TouchImpulse>& corrections;  ///< corrected_verlet: of the next kick
+  std::vector<WallLoad>* on_walls;  ///< none for pairs of bodies alone
 };
 
 /// Count the energy lost by a contact in the drift in which it began or ended; corrected_verlet: add its correction.

@@ -47,6 +47,14 @@ inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidat
   return candidate.j >= 0 ? Vec2{} : system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity;
 }
 
+/// Count what the body gave to a wall in the drift before: half of each of the kicks at its ends.
+/// \param kicks sum of both, N s
+inline void push_wall_in_drift(const GrainSystem& system, const Candidate& candidate, Vec2 arm, Vec2 kicks,
+                               ContactSums sums) {
+  const Vec2 point = system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + arm;
+  push_wall(system, candidate.j, point, 0.5 * kicks, passed_velocity(system, candidate), sums);
+}
+
 /// End a contact without further loss.
 template <class Law>
 void end_contact(const GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift,
@@ -65,7 +73,7 @@ void end_contact(const GrainSystem& system, Candidate& candidate, const TouchPla
   end.tangential = candidate.tangential_impulse;
   end.stored = 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
   end.pulls = candidate.attraction;
-  sums.lost.work_of_walls -= 0.5 * dot(impulse_of(candidate), passed_velocity(system, candidate));
+  if (candidate.j < 0) push_wall_in_drift(system, candidate, place.arm_i, impulse_of(candidate), sums);
   end_within_drift(system, end, sums);
   candidate.stretch = 0;
   forget_contact(candidate, sums.lost);
@@ -149,7 +157,7 @@ template <class Law, bool friction, class Others>
   candidate.impulse = impulse;
   candidate.tangential_impulse = tangential;
   const Vec2 on_j = impulse * now.normal + tangential * perpendicular(now.normal);
-  sums.lost.work_of_walls -= 0.5 * dot(pushed_before + on_j, passed_velocity(system, candidate));
+  if (candidate.j < 0) push_wall_in_drift(system, candidate, now.arm_i, pushed_before + on_j, sums);
   return on_j;
 }
 

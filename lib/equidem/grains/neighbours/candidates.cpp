@@ -8,6 +8,7 @@
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
 namespace {
@@ -175,7 +176,7 @@ void place_walls(GrainSystem& system) {
   const double next = static_cast<double>(system.step + 1) * system.dt();
   for (std::size_t w = 0; w < system.walls.places.size(); ++w) {
     const Wall& wall = system.scene.walls[w];
-    if (!wall.moves() && system.step > 0) continue;  // where it always was
+    if (!wall.moves() && system.step > 0) continue;  // where it always was, or servo_walls.hpp
     const Vec2 here = wall.displacement(now);
     const Vec2 there = wall.displacement(next);
     const Vec2 velocity = (there - here) / system.dt();
@@ -186,6 +187,7 @@ void place_walls(GrainSystem& system) {
     system.walls.places[w].acting_velocity = (there - before) / (2 * system.dt());
     system.walls.places[w].passed_velocity = (here - before) / system.dt();
   }
+  if (!system.walls.servos.empty()) place_servo_walls(system);
 }
 
 }  // namespace equidem

@@ -48,9 +48,9 @@ std::vector<std::int32_t> inverse(const std::vector<std::size_t>& order) {
 
 }  // namespace
 
-void order_by_place(GrainSystem& system, const GrainScene& scene) {
-  system.bodies.grain_of = sorted_by_place(
-      scene.grains, [&](const Grain& a, const Grain& b) { return has_lesser_discs(a, b, scene.clumps); });
+void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vector<std::size_t>& order) {
+  const auto lesser = [&](const Grain& a, const Grain& b) { return has_lesser_discs(a, b, scene.clumps); };
+  system.bodies.grain_of = order.empty() ? sorted_by_place(scene.grains, lesser) : order;
   system.walls.wall_of = sorted_by_place(scene.walls, [](const Wall&, const Wall&) { return false; });
   system.bodies.place_of_grain = inverse(system.bodies.grain_of);
   system.walls.place_of_wall = inverse(system.walls.wall_of);
@@ -64,6 +64,7 @@ void order_by_place(GrainSystem& system, const GrainScene& scene) {
   for (std::size_t k = 0; k < scene.walls.size(); ++k) system.scene.walls[k] = scene.walls[system.walls.wall_of[k]];
   system.bodies.impulses.resize(scene.grains.size());
   system.walls.places.resize(scene.walls.size());
+  system.walls.loads.resize(scene.walls.size());
   place_parts(system);
 }
 

@@ -14,6 +14,7 @@
 #include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/grains/scene/shape_check.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
+#include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
 namespace {
@@ -244,6 +245,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   double smallest = scene.grains.front().radius;
   for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
+  check_servos(scene, options.law);
   if (const auto twice = coinciding_walls(scene.walls, joint_gap * smallest)) {
     bad_input(fmt::format("walls \"{}\" and \"{}\" lie on one another", scene.walls[twice->first].name,
                           scene.walls[twice->second].name),

@@ -131,6 +131,7 @@ void find_features_of_walls(const std::vector<Wall>& walls, FoundFeatures& found
     const std::string name = "wall '" + wall.name + "'";
     if (wall.shape != Wall::Shape::line) add(found, shaped_walls, name);
     if (wall.moves()) add(found, moving_walls, name);
+    if (wall.servo) add(found, servo_walls, name);
     for (const Schedule* move : {&wall.move_x, &wall.move_y}) find_features_of_schedule(*move, name, found);
     if (wall.normal.x != 0 && wall.normal.y != 0) add(found, oblique_walls, name);
   }

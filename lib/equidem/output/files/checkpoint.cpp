@@ -23,7 +23,7 @@ namespace equidem {
 namespace {
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 5;
+constexpr int format_version = 6;
 constexpr std::size_t header_size = 512;
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
@@ -150,14 +150,20 @@ std::vector<SavedArray> arrays_of(const RunRecord& record) {
     const std::vector<double> numbers = numbers_of(frame.motions);
     film.values.insert(film.values.end(), numbers.begin(), numbers.end());
   }
-  std::vector<SavedArray> arrays{std::move(energies), std::move(paths), std::move(film)};
+  SavedArray film_walls{
+      .name = "film_walls",
+      .columns = record.film.empty() ? 1 : std::max<std::size_t>(1, 2 * record.film.front().walls.size()),
+      .values = {}};
+  for (const FilmFrame& frame : record.film)
+    for (const Vec2 place : frame.walls) film_walls.values.insert(film_walls.values.end(), {place.x, place.y});
+  std::vector<SavedArray> arrays{std::move(energies), std::move(paths), std::move(film), std::move(film_walls)};
   arrays.insert(arrays.end(), record.recorded.begin(), record.recorded.end());
   return arrays;
 }
 
 RunRecord record_of(std::span<const SavedArray> arrays) {
-  const SavedArray &energies = arrays[0], &paths = arrays[1], &film = arrays[2];
-  RunRecord record{.energies = {}, .paths = {}, .film = {}, .recorded = {arrays.begin() + 3, arrays.end()}};
+  const SavedArray &energies = arrays[0], &paths = arrays[1], &film = arrays[2], &film_walls = arrays[3];
+  RunRecord record{.energies = {}, .paths = {}, .film = {}, .recorded = {arrays.begin() + 4, arrays.end()}};
   for (const double* next = energies.values.data(); next != energies.values.data() + energies.values.size();) {
     EnergySample& sample = record.energies.emplace_back();
     sample.step = static_cast<std::int64_t>(*next++);
@@ -171,7 +177,12 @@ RunRecord record_of(std::span<const SavedArray> arrays) {
   }
   for (std::size_t at = 0; at < film.values.size(); at += film.columns) {
     const auto row = std::span(film.values).subspan(at, film.columns);
-    record.film.push_back({static_cast<std::int64_t>(row[0]), row[1], motions_of(row.subspan(2))});
+    FilmFrame& frame =
+        record.film.emplace_back(FilmFrame{static_cast<std::int64_t>(row[0]), row[1], motions_of(row.subspan(2))});
+    if (film_walls.values.empty()) continue;
+    const auto places =
+        std::span(film_walls.values).subspan(at / film.columns * film_walls.columns, film_walls.columns);
+    for (std::size_t k = 0; k < places.size(); k += 2) frame.walls.push_back({places[k], places[k + 1]});
   }
   return record;
 }

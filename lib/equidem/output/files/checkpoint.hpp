@@ -19,6 +19,7 @@ struct FilmFrame {
   std::int64_t step = 0;
   double time = 0;                  ///< s
   std::vector<DiscMotion> motions;  ///< as AnySimulation::motions
+  std::vector<Vec2> walls = {};     ///< places of the walls, in the order of RunPlan::walls; NaN: not there
 };
 
 /// History of a run from its start.

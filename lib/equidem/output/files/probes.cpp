@@ -7,6 +7,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/wall_loads.hpp"
 
 namespace equidem {
 namespace {
@@ -39,6 +40,13 @@ std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const P
     for (const ProbeQuantity quantity : probe.quantities)
       for (const char* column : {entry_of(quantity).column, entry_of(quantity).second_column})
         if (column != nullptr) columns.push_back(probe.name + column);
+  const std::set<std::string> taken(columns.begin(), columns.end());
+  for (const std::string& name : wall_columns(options.walls, options.family, options.body)) {
+    columns.push_back(name);
+    if (!taken.contains(name)) continue;
+    bad_input(fmt::format("a probe and a wall both have the column '{}'", name), "columns are found by their names",
+              "Rename the probe");
+  }
   for (const std::string& name : energy_columns(options.family, options.body)) columns.push_back(name);
   return columns;
 }
@@ -64,11 +72,13 @@ ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, 
                          const ProbeOptions& options)
     : probes_(checked(std::move(probes), bodies)),
       family_(options.family),
+      walls_(options.walls),
       table_(std::move(path), probe_columns(probes_, options),
              {.interval = options.interval, .overwrite = options.overwrite, .continue_from = options.continue_from}) {}
 
 void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMotion> motions,
-                         std::span<const DiscMotion> velocities, const EnergyLedger& ledger, bool regular) {
+                         std::span<const DiscMotion> velocities, std::span<const WallState> walls,
+                         const EnergyLedger& ledger, bool regular) {
   std::vector<double> cells = {time};
   for (const Probe& probe : probes_) {
     const DiscMotion motion = mean_of(probe.bodies, motions), velocity = mean_of(probe.bodies, velocities);
@@ -82,6 +92,7 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
       }
     }
   }
+  for (const double cell : wall_cells(walls_, family_, walls)) cells.push_back(cell);
   for (const double cell : energy_cells(family_, ledger)) cells.push_back(cell);
   table_.add(step, cells, regular);
 }

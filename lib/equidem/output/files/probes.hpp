@@ -14,6 +14,7 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
+#include "equidem/motion/wall.hpp"
 #include "equidem/output/files/growing_csv.hpp"
 
 namespace equidem {
@@ -21,20 +22,21 @@ namespace equidem {
 struct ProbeOptions {
   BodyFamily family = BodyFamily::bonded;  ///< family whose ledger terms are written
   Body body = Body::disc;                  ///< unit of energies: J per metre of depth, of spheres J
-  double interval = 5;     ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
-  bool overwrite = false;  ///< a file of that name
+  double interval = 5;                  ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
+  std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
+  bool overwrite = false;               ///< a file of that name
   std::optional<FileMark> continue_from = {};  ///< continue the file of an earlier run behind this mark
 };
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
-/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; then the columns of the energy
-/// ledger (energies.hpp).
+/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; those of every wall
+/// (wall_loads.hpp); then the columns of the energy ledger (energies.hpp).
 class ProbeWriter {
  public:
   /// \param bodies of the scene
-  /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where the
-  ///         file exists and neither `overwrite` nor `continue_from` is set, where it cannot be written, or as
-  ///         GrowingCsv where it cannot be continued
+  /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where a
+  ///         probe and a wall have a column of one name, where the file exists and neither `overwrite` nor
+  ///         `continue_from` is set, where it cannot be written, or as GrowingCsv where it cannot be continued
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies, const ProbeOptions& options);
 
   /// Add a row.
@@ -43,7 +45,8 @@ class ProbeWriter {
   /// \param regular as in GrowingCsv::add
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
-              std::span<const DiscMotion> velocities, const EnergyLedger& ledger, bool regular = true);
+              std::span<const DiscMotion> velocities, std::span<const WallState> walls, const EnergyLedger& ledger,
+              bool regular = true);
   /// Write all rows to the operating system.
   void flush() { table_.flush(); }
   /// Sync all rows to disk, as required before a checkpoint refers to them.
@@ -56,6 +59,7 @@ class ProbeWriter {
  private:
   std::vector<Probe> probes_;
   BodyFamily family_;
+  std::vector<std::string> walls_;
   GrowingCsv table_;
 };
 

@@ -19,12 +19,25 @@ namespace {
 constexpr double page_width = 900, page_height = 1260;  // pixels
 constexpr double levels = 4096;                         // of places in the view, of angles in a turn
 
+/// The walls as they move to their places in a frame.
+std::vector<Wall> walls_of(const GrainAnimation& animation, const GrainFrame& frame) {
+  std::vector<Wall> walls(animation.walls.begin(), animation.walls.end());
+  for (std::size_t w = 0; w < frame.walls.size(); ++w) {
+    const Vec2 move = frame.walls[w] - walls[w].point;
+    walls[w].move_x = {.value = move.x};
+    walls[w].move_y = {.value = move.y};
+  }
+  return walls;
+}
+
 GrainView view_of(const GrainAnimation& animation) {
   GrainView view;
   for (const GrainFrame& frame : animation.frames) {
     for (std::size_t g = 0; g < frame.places.size(); ++g)
       view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
-    view.include_walls(animation.walls, frame.time);
+    for (const Wall& wall : walls_of(animation, frame))
+      if (std::isfinite(wall.move_x.value) && std::isfinite(wall.move_y.value))
+        view.include_walls({&wall, 1}, frame.time);
   }
   view.widen();
   return view;
@@ -63,7 +76,7 @@ Results frame_results(const GrainFrame& frame, const GrainAnimation& animation, 
       bodies.push_back(std::llround(value));
   }
   std::vector<double> moves;
-  for (const Wall& wall : animation.walls) {
+  for (const Wall& wall : walls_of(animation, frame)) {
     const Vec2 move = wall.displacement(frame.time);
     moves.insert(moves.end(), {move.x, move.y});
   }
@@ -132,6 +145,7 @@ function show(f) {
   });
   draw.lineWidth = 2 / scale;
   data.walls.forEach((points, w) => {
+    if (frame.moves[2 * w] === null) return;  // not there
     draw.beginPath();
     for (let p = 0; p < points.length; p += 2)
       draw.lineTo(points[p] - data.low[0] + frame.moves[2 * w], points[p + 1] - data.low[1] + frame.moves[2 * w + 1]);

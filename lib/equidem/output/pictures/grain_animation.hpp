@@ -15,9 +15,10 @@ namespace equidem {
 
 /// Positions of all bodies at one time.
 struct GrainFrame {
-  double time = 0;             ///< s, by which walls have moved
-  std::vector<Vec2> places;    ///< m
-  std::vector<double> angles;  ///< rad
+  double time = 0;               ///< s, by which walls have moved
+  std::vector<Vec2> places;      ///< m
+  std::vector<double> angles;    ///< rad
+  std::vector<Vec2> walls = {};  ///< places of Wall::point, m; NaN: not there; empty: by the schedules of the walls
 };
 GrainFrame frame_of(std::span<const Grain> grains, double time);
 

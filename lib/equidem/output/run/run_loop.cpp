@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -34,11 +35,12 @@ class RunLoop {
 
   RunResult go() {
     look();
+    step_to(simulation_.step());  // what can never go on says so
     Progress progress("stepping");
     Stopwatch since_checkpoint;
     const std::int64_t first = simulation_.step();
     std::int64_t chunk = 64;
-    while (simulation_.step() < plan_.steps) {
+    while (simulation_.step() < plan_.steps && !simulation_.over()) {
       const std::int64_t now = simulation_.step();
       const std::int64_t next = std::min(
           {plan_.steps, frame_times_.after(now), probe_times_.after(now), now + stride_ - now % stride_, now + chunk});
@@ -49,6 +51,7 @@ class RunLoop {
       if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
       if (taken > look_every && chunk > 1) chunk /= 2;
       look();
+      if (simulation_.milestone() >= 0 && !simulation_.over()) save();
       try {
         progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(plan_.steps));
       } catch (const Error&) {
@@ -80,6 +83,7 @@ class RunLoop {
       history_.emplace(*files.folder / "history.csv", plan_.probes, bodies,
                        ProbeOptions{.family = simulation_.family(),
                                     .body = plan_.body,
+                                    .walls = plan_.walls,
                                     .overwrite = files.overwrite,
                                     .continue_from = mark_of("history.csv")});
     }
@@ -116,7 +120,16 @@ class RunLoop {
     if (plan_.film_frames == 0) return false;
     const std::int64_t samples = plan_.steps / stride_ + 1;
     const std::int64_t samples_between = (samples + plan_.film_frames - 1) / plan_.film_frames;
-    return step == plan_.steps || step % (stride_ * samples_between) == 0;
+    return step % (stride_ * samples_between) == 0;
+  }
+
+  [[nodiscard]] std::vector<Vec2> places_of(const std::vector<WallState>& walls) const {
+    std::vector<Vec2> places;
+    for (const std::string& name : plan_.walls) {
+      const auto found = std::ranges::find(walls, name, &WallState::name);
+      places.push_back(found == walls.end() ? Vec2{NAN, NAN} : found->place);
+    }
+    return places;
   }
 
   void step_to(std::int64_t step) {
@@ -135,15 +148,16 @@ class RunLoop {
 
   void look() {
     const std::int64_t step = simulation_.step();
-    const bool last = step == plan_.steps;
+    const bool last = step == plan_.steps || simulation_.over(), stage_ends = simulation_.milestone() >= 0;
     auto& energies = result_.record.energies;
-    const bool regular_frame = frame_times_.at(step), regular_row = probe_times_.at(step);
+    const bool regular_frame = frame_times_.at(step) || (stage_ends && !last);
+    const bool regular_row = probe_times_.at(step) || (stage_ends && !last);
     const bool probing = regular_row || last;
     const bool sample = (energies.empty() || energies.back().step < step) && (last || step % stride_ == 0);
     const bool frame = frames_ && frames_->last_step() < step && (regular_frame || last);
     const bool row = history_ && history_->last_step() < step && probing;
     const bool recorded = plan_.recorder != nullptr && plan_.recorder->last_step() < step && probing;
-    if (!plan_.watch_between && !sample && !frame && !row && !recorded) return;
+    if (!plan_.watch_between && !stage_ends && !sample && !frame && !row && !recorded) return;
     const EnergyLedger ledger = simulation_.energy();
     try {
       if (plan_.watch) plan_.watch(ledger);
@@ -152,13 +166,15 @@ class RunLoop {
     }
     const double time = simulation_.time();
     auto& film = result_.record.film;
-    const bool filmed = sample && is_filmed(step) && (film.empty() || film.back().step < step);
+    const bool filmed =
+        sample && plan_.film_frames > 0 && (last || is_filmed(step)) && (film.empty() || film.back().step < step);
     if (sample) energies.push_back({step, time, ledger});
     if (recorded) plan_.recorder->record(step, time, regular_row);
     const bool path = sample && plan_.paths;
     if (!path && !frame && !row && !filmed) return;
     const std::vector<DiscMotion> motions = simulation_.motions(), velocities = simulation_.velocities();
-    if (filmed) film.push_back({step, time, motions});
+    const std::vector<WallState> walls = simulation_.walls();
+    if (filmed) film.push_back({step, time, motions, places_of(walls)});
     if (path) {
       auto& places = result_.record.paths.emplace_back();
       for (const DiscMotion& motion : motions) places.push_back(motion.u);
@@ -167,7 +183,7 @@ class RunLoop {
       const auto contacts = plan_.frames.contacts ? simulation_.body_contacts() : std::vector<BodyContact>();
       frames_->append(step, time, motions, velocities, contacts, regular_frame);
     }
-    if (row) history_->record(step, time, motions, velocities, ledger, regular_row);
+    if (row) history_->record(step, time, motions, velocities, walls, ledger, regular_row);
   }
 
   /// Everything that the checkpoint counts on is on the disk before it is.
@@ -219,7 +235,7 @@ double estimate_seconds(AnySimulation& simulation, const RunPlan& plan) {
       throw placed(error, plan);
     }
     const double seconds = watch.seconds();
-    if (seconds > enough || simulation.step() == plan.steps)
+    if (seconds > enough || simulation.step() == plan.steps || simulation.over())
       return seconds / static_cast<double>(steps) * static_cast<double>(plan.steps);
   }
 }

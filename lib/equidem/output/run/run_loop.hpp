@@ -40,10 +40,11 @@ struct RunPlan {
   const Assembly* frame_discs = nullptr;                           ///< discs of the frames at the start
   FrameOptions frames = {};                                        ///< options of frames, except files
   std::vector<Probe> probes = {};
-  Body body = Body::disc;        ///< unit of energies
-  std::int64_t samples = 200;    ///< of the energies, at least; at most twice as many
-  bool paths = false;            ///< record the positions of all bodies at each sample
-  std::int64_t film_frames = 0;  ///< of RunRecord::film, at most but for the last; 0: none
+  std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
+  Body body = Body::disc;               ///< unit of energies
+  std::int64_t samples = 200;           ///< of the energies, at least; at most twice as many
+  bool paths = false;                   ///< record the positions of all bodies at each sample
+  std::int64_t film_frames = 0;         ///< of RunRecord::film, at most but for the last; 0: none
   RunRecorder* recorder = nullptr;
   /// Checks the energies whenever they are recorded, and in between if `watch_between`. \throws Error
   std::function<void(const EnergyLedger&)> watch = {};

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// [[stage]]: a run in stages.
+#include <algorithm>
+#include <utility>
+
+#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/grains/grain_tables.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem::casefile {
+namespace {
+
+/// [stage.until].
+struct UntilTable {
+  std::optional<double> kinetic, unbalanced, strain, displacement;
+  std::optional<std::string> from, to, wall;
+};
+
+/// [[stage.wall]]: a wall of another motion, or a new one.
+struct StageWallTable {
+  WallTable wall;
+  bool removed = false;
+  std::optional<Vec2> velocity;  ///< m/s
+};
+
+std::vector<Key<UntilTable>> until_keys() {
+  using U = UntilTable;
+  const std::string way = "walls are named whose distance is measured";
+  return {key("kinetic", &U::kinetic, positive, "at rest: the kinetic energy is at most this share of the elastic one"),
+          key("unbalanced", &U::unbalanced, positive,
+              "at rest: the mean unbalanced force of a body is at most this share of the mean contact force"),
+          key("strain", &U::strain, positive, only_with({"from"}, way),
+              "change of the distance of two walls over that at the start of the stage"),
+          key("from", &U::from, only_with({"to"}, way), "one of the two walls"),
+          key("to", &U::to, only_with({"strain"}, way), "and the other"),
+          key("displacement", &U::displacement, unit("m"), positive, only_with({"wall"}, "a wall is named that moves"),
+              "way of a wall since the start of the stage"),
+          key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
+}
+
+/// The keys of a wall, none of them required: a wall that is there gets another motion.
+std::vector<Key<StageWallTable>> stage_wall_keys() {
+  std::vector<Key<StageWallTable>> keys;
+  for (const Key<WallTable>& of_wall : wall_keys(BodyFamily::colliding)) {
+    if (of_wall.spec.name == "shaken") continue;
+    Key<StageWallTable>& key = keys.emplace_back();
+    key.spec = of_wall.spec;
+    if (key.spec.name == "name") {
+      key.spec.help = "of a wall that is there: its motion in this stage, none where none is given; or of a new wall";
+    } else if (key.spec.is_required()) {
+      key.spec.fallback = KeySpec::none;
+    }
+    if (of_wall.read)
+      key.read = [read = of_wall.read](StageWallTable& table, TomlValue& value, const std::filesystem::path& folder) {
+        read(table.wall, value, folder);
+      };
+  }
+  keys.push_back(key("removed", &StageWallTable::removed, optional, "true: the wall is taken away"));
+  keys.push_back(key("velocity", &StageWallTable::velocity, unit("m/s"),
+                     not_beside({"displacement"}, "each says how the wall moves"), "constant in this stage"));
+  return keys;
+}
+
+std::vector<Wall>::iterator find_wall(std::vector<Wall>& walls, const std::string& name) {
+  return std::ranges::find(walls, name, &Wall::name);
+}
+
+/// \throws Error where a servo needs a wall that goes
+void check_removal(const TomlValue& table, const std::vector<Wall>& walls, const std::string& name) {
+  for (const Wall& wall : walls) {
+    if (!wall.servo) continue;
+    const Servo& servo = *wall.servo;
+    if (servo.mirror != name && servo.between[0] != name && servo.between[1] != name) continue;
+    fail_at(table, "stage.wall", fmt::format("wall '{}' is removed", name),
+            fmt::format("the servo of wall '{}' {}", wall.name,
+                        servo.mirror == name ? "moves it as its mirror" : "measures its length to it"),
+            fmt::format("Name '{}' in this stage too, without that servo", wall.name));
+  }
+}
+
+void move_at(Wall& wall, Vec2 velocity) {
+  constexpr double longest = 1e9;  // s; a limit of the stage may be raised
+  const auto ramp = [&](double speed) {
+    return Schedule{.kind = Schedule::Kind::table, .times = {0, longest}, .values = {0, speed * longest}};
+  };
+  if (velocity.x != 0) wall.move_x = ramp(velocity.x);
+  if (velocity.y != 0) wall.move_y = ramp(velocity.y);
+}
+
+/// Change the walls of the stage before by one [[stage.wall]].
+void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedules, std::vector<Wall>& walls) {
+  StageWallTable read;
+  read_table(stage_wall_keys(), table, read);
+  const std::string& name = read.wall.wall.name;
+  const auto at = find_wall(walls, name);
+  if (read.removed) {
+    if (at == walls.end())
+      fail_at(table, "stage.wall", fmt::format("there is no wall '{}'", name), "",
+              "Remove a wall that stands in the stage before");
+    for (const char* key : {"velocity", "displacement", "servo", "point", "centre"})
+      if (const TomlValue* given = table.find(key))
+        fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is removed and has a {}", name, key),
+                "a wall that is gone does not move", "Remove one of them");
+    walls.erase(at);
+    return;
+  }
+  Wall wall;
+  if (at != walls.end()) {
+    for (const char* key : {"point", "normal", "end", "centre", "radius"})
+      if (const TomlValue* given = table.find(key))
+        fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is there already", name),
+                "it stays where it is when a stage begins", "Leave the key out, or give the new wall another name");
+    wall = *at;
+    wall.move_x = wall.move_y = {};
+    wall.servo.reset();
+    read.wall.wall = wall;
+    set_motion(table, "stage.wall", read.wall, schedules, wall);
+  } else {
+    for (const char* key : read.wall.wall.shape == Wall::Shape::line      ? std::array{"point", "normal"}
+                           : read.wall.wall.shape == Wall::Shape::segment ? std::array{"point", "end"}
+                                                                          : std::array{"centre", "radius"})
+      if (table.find(key) == nullptr)
+        fail_at(table, fmt::format("stage.wall.{}", key), "missing key",
+                fmt::format("'{}' is a new wall, and none of that name stands in the stage before", name),
+                fmt::format("Add {} = ... to [[stage.wall]], or correct the name", key));
+    wall = wall_of(table, "stage.wall", read.wall, schedules);
+  }
+  if (read.velocity) move_at(wall, *read.velocity);
+  read_servo(table, "stage.wall", schedules, wall);
+  at == walls.end() ? walls.push_back(wall) : void(*at = wall);
+}
+
+/// The walls of a stage, from those of the stage before.
+std::vector<Wall> walls_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
+                                 std::vector<Wall> walls) {
+  for (Wall& wall : walls) wall.move_x = wall.move_y = {};
+  for (const TomlValue& table : repeated(stage, "wall")) change_wall(table, schedules, walls);
+  for (const TomlValue& table : repeated(stage, "wall"))
+    if (const TomlValue* removed = table.find("removed"); removed != nullptr && removed->boolean)
+      check_removal(table, walls, table.find("name")->text);
+  return walls;
+}
+
+StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls) {
+  StageEnd end;
+  const TomlValue* table = stage.find("until");
+  if (table == nullptr) return end;
+  UntilTable read;
+  read_table(until_keys(), *table, read);
+  const auto named = [&](const char* key, const std::optional<std::string>& name) {
+    if (!name || find_wall(walls, *name) != walls.end()) return name.value_or("");
+    fail_at(*table->find(key), fmt::format("stage.until.{}", key), fmt::format("there is no wall '{}'", *name),
+            "the stage ends by it", "Name a wall that stands in this stage");
+  };
+  end.kinetic = read.kinetic.value_or(StageEnd::infinite);
+  end.unbalanced = read.unbalanced.value_or(StageEnd::infinite);
+  end.strain = read.strain.value_or(0);
+  end.walls = {named("from", read.from), named("to", read.to)};
+  end.displacement = read.displacement.value_or(0);
+  end.wall = named("wall", read.wall);
+  if (!end.given())
+    fail_at(*table, "stage.until", "nothing is given that ends the stage", "its duration ends it without that table",
+            "Give kinetic, unbalanced, strain or displacement, or leave it out");
+  if (end.strain > 0 && end.walls[0] == end.walls[1])
+    fail_at(*table, "stage.until.to", "both walls are the same", "the distance of a wall to itself does not change",
+            "Name two walls");
+  return end;
+}
+
+/// The keys of a table in place of those that another one has.
+void replace_keys(TomlValue& table, const TomlValue& by) {
+  for (const TomlEntry& entry : by.entries) {
+    TomlValue* old = table.find(entry.name);
+    old != nullptr ? void(*old = entry.value) : void(table.entries.push_back(entry));
+  }
+}
+
+/// The document with the contacts of a stage. \return whether it differs
+bool change_contacts(const TomlValue& stage, TomlValue& root, PairOptions& contact) {
+  TomlValue& collisions = *root.find("collisions");
+  const TomlValue* bodies = stage.find("collisions");
+  if (bodies != nullptr) {
+    replace_keys(collisions, *bodies);
+    read_table(changed_contact_keys(), *bodies, contact);
+  }
+  const std::vector<TomlValue>& pairs = repeated(stage, "pair");
+  if (pairs.empty()) return bodies != nullptr;
+  if (collisions.find("pair") == nullptr) {
+    TomlValue list;
+    list.type = TomlValue::Type::array;
+    collisions.entries.push_back({"pair", std::move(list)});
+  }
+  std::vector<TomlValue>& known = collisions.find("pair")->items;
+  for (const TomlValue& pair : pairs) {
+    const auto is_it = [&](const TomlValue& other) {
+      return std::minmax(other.find("group")->text, other.find("with")->text) ==
+             std::minmax(pair.find("group")->text, pair.find("with")->text);
+    };
+    const auto at = std::ranges::find_if(known, is_it);
+    at == known.end() ? known.push_back(pair) : replace_keys(*at, pair);
+  }
+  return true;
+}
+
+/// What a case in stages says in its stages alone.
+void refuse_motion_outside(const TomlValue& root) {
+  const std::string why = "the run is in stages, and schedules count from the start of a stage";
+  for (const TomlValue& wall : repeated(root, "wall")) {
+    if (const TomlValue* given = wall.find("displacement"))
+      fail_at(*given, "wall.displacement", "a wall has a motion outside of the stages", why,
+              "Give it in [[stage.wall]] of its stage");
+    const TomlValue* servo = wall.find("servo");
+    if (servo == nullptr) continue;
+    if (const TomlValue* given = servo->find("schedule"))
+      fail_at(*given, "wall.servo.schedule", "a servo has a schedule outside of the stages", why,
+              "Give it in [[stage.wall]] of its stage");
+  }
+  if (const TomlValue* shaking = root.find("shaking"))
+    fail_at(*shaking, "shaking", "a run in stages has [shaking]", why, "Move walls in [[stage.wall]]");
+}
+
+}  // namespace
+
+void bind_stages(File<GrainTables>& file) {
+  using S = StageTable;
+  file.table(
+          "stage", &GrainTables::stage_tables,
+          "a part of the run, in place of run.duration: it begins with the state of the stage before and changes what "
+          "it names; what it does not name stays as it was, but walls that moved by a displacement or a velocity stand")
+      .keys({key("name", &S::name, required, "for reports"),
+             key("duration", &S::duration, required, unit("s"), positive,
+                 "its length, or with [stage.until] the limit at which a run stops that has not met it"),
+             key("gravity", &S::gravity, unit("m/s²"), "from now on")});
+  file.table("stage.until", "what ends the stage; all that is given must hold").described(until_keys());
+  file.table("stage.collisions", "contacts from now on, where they differ from [collisions]")
+      .described(changed_contact_keys());
+  file.table("stage.pair", repeated_table, "contacts of two groups, or of a group and a wall, from now on")
+      .described(pair_keys());
+  file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise").described(stage_wall_keys());
+  file.table("stage.wall.servo", "as [wall.servo]; its schedule begins with the stage").described(servo_keys());
+}
+
+std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables) {
+  check_names(root, "stage");
+  if (!tables.stage_tables.empty()) refuse_motion_outside(root);
+  std::vector<Wall> all = tables.scene.walls, walls = all;
+  for (std::size_t k = 0; k < tables.stage_tables.size(); ++k) {
+    const TomlValue& table = repeated(root, "stage")[k];
+    check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
+    const StageTable& read = tables.stage_tables[k];
+    walls = walls_of_stage(table, schedules, walls);
+    StageCase& stage = tables.stages.emplace_back();
+    stage.name = read.name;
+    stage.duration = read.duration;
+    stage.end = end_of_stage(table, walls);
+    stage.scene.walls = walls;
+    stage.scene.gravity = read.gravity.value_or(k == 0 ? tables.scene.gravity : tables.stages[k - 1].scene.gravity);
+    tables.duration += stage.duration;
+    for (const Wall& wall : walls)
+      if (find_wall(all, wall.name) == all.end()) all.push_back(wall);
+  }
+  return all;
+}
+
+void complete_stages(TomlValue root, const std::vector<std::string>& groups, const std::vector<Wall>& all,
+                     GrainTables& tables) {
+  GrainTables changed = tables;
+  changed.scene.walls = all;
+  for (std::size_t k = 0; k < tables.stages.size(); ++k) {
+    const TomlValue table = repeated(root, "stage")[k];
+    if (change_contacts(table, root, changed.collisions.contact) || k == 0) complete_collisions(root, groups, changed);
+    StageCase& stage = tables.stages[k];
+    std::vector<Wall> walls = std::move(stage.scene.walls);
+    for (Wall& wall : walls) wall.kind = find_wall(changed.scene.walls, wall.name)->kind;
+    const Vec2 gravity = stage.scene.gravity;
+    stage.scene = changed.scene;
+    stage.scene.walls = std::move(walls);
+    stage.scene.gravity = gravity;
+    stage.contacts = changed.contacts;
+  }
+  tables.scene = tables.stages.front().scene;
+  tables.contacts = tables.stages.front().contacts;
+}
+
+}  // namespace equidem::casefile

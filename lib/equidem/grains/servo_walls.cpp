@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/servo_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// Share of the last step in the mean speed of a servo wall: slow beside the relaxation, fast beside the motion.
+constexpr double share_of_pace = 0.02;
+
+std::size_t place_of_name(const GrainScene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.walls, name, &Wall::name);
+  return static_cast<std::size_t>(found - scene.walls.begin());
+}
+
+const Servo& servo_of(const GrainSystem& system, const ServoState& state) {
+  return *system.scene.walls[state.wall].servo;
+}
+
+Vec2 normal_of(const Wall& wall) {
+  if (wall.shape == Wall::Shape::line) return wall.normal;
+  const Vec2 along = wall.end - wall.point;
+  return perpendicular(along) / norm(along);
+}
+
+/// Distance of two walls along a servo wall, m.
+double length_between(const GrainSystem& system, const ServoState& state) {
+  const Wall& wall = system.scene.walls[state.wall];
+  const Vec2 along = perpendicular(normal_of(wall));
+  const Vec2 from = wall.point + system.walls.places[state.wall].displacement;
+  const auto place = [&](std::size_t other) {
+    const Wall& bound = system.scene.walls[other];
+    const Vec2 normal = normal_of(bound);
+    return dot(normal, bound.point + system.walls.places[other].displacement - from) / dot(normal, along);
+  };
+  return std::abs(place(state.between[1]) - place(state.between[0]));
+}
+
+double wanted_force(const GrainSystem& system, const ServoState& state) {
+  const Servo& servo = servo_of(system, state);
+  const double wanted = servo.wanted.at(system.time());
+  if (!servo.is_stress) return wanted;
+  const double length = servo.length > 0 ? servo.length : length_between(system, state);
+  if (length > 1e-6 * system.walls.longest_free_way) return wanted * length;
+  computation_failed(
+      fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
+      fmt::format("no length is left between them on which the stress of wall '{}' acts",
+                  system.scene.walls[state.wall].name),
+      "Put stops between them, or limit their motion");
+}
+
+/// Resistance of the contacts on a wall against a motion along a direction.
+struct Resistance {
+  double spring = 0;   ///< sum of k dt, N s/m
+  double dashpot = 0;  ///< sum of c, N s/m
+
+  [[nodiscard]] double sum() const { return spring + dashpot; }
+};
+
+Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direction) {
+  const LawDescription& law = system.law();
+  Resistance resistance;
+  for (const Candidate& candidate : system.contacts.candidates) {
+    if (candidate.j != ~static_cast<std::int32_t>(wall) || !candidate.touching || candidate.steps == 0) continue;
+    const double along = dot(candidate.normal, direction), across = cross(candidate.normal, direction);
+    const double overlap = std::max(candidate.overlap, 0.0), c = dashpot_of(system, candidate);
+    const double k = law.spring_power * candidate.stiffness * std::pow(overlap, law.spring_power - 1);
+    resistance.spring += system.dt() * (k * along * along + candidate.sliding.stiffness * across * across);
+    resistance.dashpot += (law.dashpot != nullptr ? law.dashpot(c, overlap) : c) * along * along +
+                          candidate.sliding.dashpot * across * across;
+  }
+  return resistance;
+}
+
+void count_error(ServoState& state) {
+  state.largest_wanted = std::max(state.largest_wanted, state.wanted);
+  if (state.touched != 0 && state.force >= 0.99 * state.wanted) state.reached = 1;
+  if (state.reached == 0 || state.largest_wanted == 0) return;
+  const double error = (state.force - state.wanted) / state.largest_wanted;
+  state.overshoot = std::max(state.overshoot, error);
+  state.errors += std::abs(error);
+  state.steps += 1;
+}
+
+void steer(GrainSystem& system, ServoState& state) {
+  const Servo& servo = servo_of(system, state);
+  const double per_step = 1 / system.dt();
+  state.way += system.dt() * state.speed;
+  state.free_way += std::abs(system.dt() * state.speed);
+  state.passed_speed = state.speed;
+  Resistance resistance = resistance_of(system, state.wall, servo.direction);
+  state.force = -per_step * dot(system.walls.loads[state.wall].step_impulse, servo.direction);
+  if (state.mirror != state.wall) {
+    const Resistance other = resistance_of(system, state.mirror, servo.direction);
+    resistance = {0.5 * (resistance.spring + other.spring), 0.5 * (resistance.dashpot + other.dashpot)};
+    state.force = 0.5 * (state.force + per_step * dot(system.walls.loads[state.mirror].step_impulse, servo.direction));
+  }
+  state.wanted = wanted_force(system, state);
+  if (resistance.sum() > 0) {
+    state.touched = 1;
+    state.free_way = 0;
+    const double missing = servo.relaxation * (state.wanted - state.force);
+    const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
+    state.speed = std::clamp((missing + going_on) / resistance.sum(), -servo.max_speed, servo.max_speed);
+    state.pace += share_of_pace * (state.speed - state.pace);
+  } else {
+    state.speed = state.wanted > 0 ? servo.max_speed : 0;
+    state.pace = 0;
+  }
+  count_error(state);
+  if (state.free_way <= system.walls.longest_free_way) return;
+  computation_failed(
+      fmt::format("step {}: the servo wall '{}' has gone {:.3g} m and met no body", system.step,
+                  system.scene.walls[state.wall].name, state.free_way),
+      fmt::format("all bodies and walls lay in {:.3g} m, and nothing pushes back", system.walls.longest_free_way),
+      "Let it push towards bodies, and hold them by walls on the other side");
+}
+
+[[noreturn]] void refuse_servo_wall(const Wall& wall, const std::string& what, const std::string& why,
+                                    const std::string& remedy) {
+  bad_input(fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
+}
+
+void check_mirror(const GrainScene& scene, const Wall& wall) {
+  const Servo& servo = *wall.servo;
+  const std::size_t mirror = place_of_name(scene, servo.mirror);
+  if (mirror == scene.walls.size())
+    refuse_servo_wall(wall, fmt::format("has the mirror '{}'", servo.mirror), "there is no wall of that name",
+                      "Name another wall of the scene");
+  if (servo.mirror == wall.name || scene.walls[mirror].servo)
+    refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror), "that wall has a servo itself",
+                      "Give one of the two walls a servo");
+  for (const Wall& other : scene.walls)
+    if (other.servo && &other != &wall && other.servo->mirror == servo.mirror)
+      refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror),
+                        fmt::format("that of wall '{}' does so too", other.name), "Let one of them move it");
+}
+
+/// The largest displacement of a wall by its schedules along a direction, either way, m.
+double displaced_along(const Wall& wall, Vec2 direction) {
+  const auto values = [](const Schedule& schedule) {
+    std::vector<double> all{schedule.value};
+    all.insert(all.end(), schedule.values.begin(), schedule.values.end());
+    return all;
+  };
+  const std::vector<double> x = values(wall.move_x), y = values(wall.move_y);
+  double most = 0;
+  for (std::size_t k = 0; k < std::max(x.size(), y.size()); ++k)
+    most = std::max(most, std::abs((k < x.size() ? x[k] * direction.x : 0) + (k < y.size() ? y[k] * direction.y : 0)));
+  return most;
+}
+
+/// \param owner wall with the servo
+void check_along(const Wall& wall, Vec2 direction, const Wall& owner) {
+  if (displaced_along(wall, direction) <= 1e-9 * displaced_along(wall, perpendicular(direction))) return;
+  refuse_servo_wall(owner, fmt::format("moves wall '{}' along ({:.3g}, {:.3g})", wall.name, direction.x, direction.y),
+                    "a displacement moves that wall along it as well",
+                    "Leave out the displacement, or give it a direction across that of the servo");
+}
+
+void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
+  const Servo& servo = *wall.servo;
+  if (!servo.is_stress || servo.length > 0) return;
+  for (const std::string& name : servo.between) {
+    const std::size_t found = place_of_name(scene, name);
+    if (found == scene.walls.size() || name == wall.name)
+      refuse_servo_wall(wall, fmt::format("is a stress between '{}' and '{}'", servo.between[0], servo.between[1]),
+                        fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length");
+    const Wall& bound = scene.walls[found];
+    if (bound.shape == Wall::Shape::arc || wall.shape == Wall::Shape::arc ||
+        std::abs(dot(normal_of(bound), normal_of(wall))) > 1 - 1e-9)
+      refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
+                        "Name walls at an angle to it, or give the length");
+  }
+}
+
+}  // namespace
+
+void check_servos(const GrainScene& scene, NormalLaw law) {
+  for (const Wall& wall : scene.walls) {
+    if (!wall.servo) continue;
+    if (is_map(law))
+      refuse_servo_wall(wall, fmt::format("meets bodies by the law {}", to_string(law)),
+                        "a map gives impulses and no force that could be held",
+                        fmt::format("Use exact_flow, {}", names_of_laws(LawKind::force)));
+    check_length_of_stress(scene, wall);
+    check_along(wall, wall.servo->direction, wall);
+    if (wall.servo->mirror.empty()) continue;
+    check_mirror(scene, wall);
+    check_along(scene.walls[place_of_name(scene, wall.servo->mirror)], wall.servo->direction, wall);
+  }
+}
+
+void find_servos(GrainSystem& system) {
+  for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
+    const Wall& wall = system.scene.walls[w];
+    if (!wall.servo) continue;
+    const auto place = [&](const std::string& name) { return name.empty() ? w : place_of_name(system.scene, name); };
+    ServoState state;
+    state.wall = w;
+    state.mirror = place(wall.servo->mirror);
+    for (std::size_t k = 0; k < 2; ++k) state.between[k] = place(wall.servo->between[k]);
+    system.walls.servos.push_back(state);
+  }
+}
+
+void limit_free_way(GrainSystem& system) {
+  Vec2 low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  const auto include = [&](Vec2 point, double radius) {
+    low = {std::min(low.x, point.x - radius), std::min(low.y, point.y - radius)};
+    high = {std::max(high.x, point.x + radius), std::max(high.y, point.y + radius)};
+  };
+  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k)
+    include(system.bodies.motions[k].position, system.bodies.constants[k].radius);
+  for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
+    const Wall& wall = system.scene.walls[w];
+    const Vec2 moved = system.walls.places[w].displacement;
+    include(wall.point + moved, wall.shape == Wall::Shape::arc ? wall.radius : 0);
+    if (wall.shape == Wall::Shape::segment) include(wall.end + moved, 0);
+  }
+  system.walls.longest_free_way = norm(high - low);
+}
+
+void steer_walls(GrainSystem& system) {
+  for (ServoState& state : system.walls.servos) steer(system, state);
+}
+
+void place_servo_walls(GrainSystem& system) {
+  const bool verlet = system.options.verlet();
+  const auto add = [&](const ServoState& state, std::size_t wall, Vec2 direction) {
+    WallPlace& place = system.walls.places[wall];
+    if (!system.scene.walls[wall].moves()) place = {};
+    const double acting = verlet && system.step > 0 ? 0.5 * (state.speed + state.passed_speed) : state.speed;
+    const double passed = verlet && system.step > 0 ? state.passed_speed : state.speed;
+    place.displacement += state.way * direction;
+    place.velocity += state.speed * direction;
+    place.acting_velocity += acting * direction;
+    place.passed_velocity += passed * direction;
+  };
+  for (const ServoState& state : system.walls.servos) {
+    const Vec2 direction = servo_of(system, state).direction;
+    add(state, state.wall, direction);
+    if (state.mirror != state.wall) add(state, state.mirror, -direction);
+  }
+}
+
+std::vector<ServoReport> reports_of(const GrainSystem& system) {
+  std::vector<std::pair<std::size_t, ServoReport>> found;
+  for (const ServoState& state : system.walls.servos) {
+    found.emplace_back(system.walls.wall_of[state.wall],
+                       ServoReport{.wall = system.scene.walls[state.wall].name,
+                                   .mirror = servo_of(system, state).mirror,
+                                   .touched = state.touched != 0,
+                                   .reached = state.reached != 0,
+                                   .wanted = state.wanted,
+                                   .force = state.force,
+                                   .overshoot = state.overshoot,
+                                   .mean_error = state.steps > 0 ? state.errors / state.steps : 0});
+  }
+  std::ranges::sort(found, {}, [](const auto& entry) { return entry.first; });
+  std::vector<ServoReport> reports;
+  for (auto& entry : found) reports.push_back(std::move(entry.second));
+  return reports;
+}
+
+}  // namespace equidem

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Servo control of walls (motion/servo.hpp) between the steps of colliding bodies.
+#pragma once
+
+#include <vector>
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+
+/// Set system.walls.servos for the servo walls of the scene, at rest.
+void find_servos(GrainSystem& system);
+
+/// Set the way on which a servo wall may meet no body: the diagonal of the box that holds all bodies and all points of
+/// walls. The walls are placed.
+void limit_free_way(GrainSystem& system);
+
+/// Choose the speeds of all servo walls for the next step from the forces of the last one.
+/// \throws Error (computation_failed) if a wall has met no body on a longer way than the scene is large, or if the
+///         walls between which its length is measured have met
+void steer_walls(GrainSystem& system);
+
+/// Add the motion of servo walls to their places.
+void place_servo_walls(GrainSystem& system);
+
+/// In the caller's order of the walls.
+std::vector<ServoReport> reports_of(const GrainSystem& system);
+
+/// Check the servos of all walls against each other.
+/// \throws Error (bad_input): a law without forces, a name of no wall, a wall that is moved by two servos, by its
+///         mirror and itself, or by a schedule along the same direction, a stress whose length is not known
+void check_servos(const GrainScene& scene, NormalLaw law);
+
+}  // namespace equidem

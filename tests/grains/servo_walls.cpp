@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Walls that follow a force or a stress.
+#include "grains/resuming.hpp"
+#include "grains/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+const std::vector<Stepping> steppings_of_servos{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                                {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
+                                                {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
+
+/// Run what throws an Error whose text has all the words.
+template <class Action>
+void check_servo_error(const Action& action, const std::vector<std::string>& words) {
+  try {
+    action();
+    FAIL("nothing was refused");
+  } catch (const Error& error) {
+    for (const std::string& word : words) {
+      CAPTURE(error.what(), word);
+      CHECK(std::string(error.what()).find(word) != std::string::npos);
+    }
+  }
+}
+
+Wall pushing(Wall wall, double force, double max_speed = 0.1) {
+  wall.servo = Servo{.direction = wall.normal, .wanted = {.value = force}, .max_speed = max_speed};
+  return wall;
+}
+
+/// Columns of discs that touch one another, stiffer than their load by 100, damped.
+GrainScene pressed_box(NormalLaw law, double force, double friction = 0) {
+  std::vector<Grain> grains;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) grains.push_back(ball({i + 0.5, j + 0.5}, 0.5));
+  PairProperties pair = one_second(law, 0.3, 0.5);
+  pair.stiffness *= 1000;
+  pair.friction = friction;
+  pair.tangential_ratio = 0.5;
+  return scene_of(grains,
+                  {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {4, 0}, {-1, 0}),
+                   pushing(line("lid", {0, 4.05}, {0, -1}), force)},
+                  pair);
+}
+
+}  // namespace
+
+TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  CAPTURE(stepping.name());
+  const GrainScene scene = pressed_box(stepping.law, 20, 0.3);
+  GrainSimulation simulation(scene, options_of(stepping, 2e-4));
+  simulation.advance(200000);
+  const auto walls = simulation.walls();
+  const ServoReport report = simulation.servos().front();
+  CAPTURE(report.force, report.overshoot, report.mean_error, walls[0].force.y);
+  CHECK(report.wall == "lid");
+  CHECK(report.reached);
+  CHECK(report.wanted == 20);
+  CHECK(std::abs(walls[3].force.y - 20) < 1e-6 * 20);
+  CHECK(std::abs(walls[0].force.y + 20) < 1e-4 * 20);
+  CHECK(report.mean_error < 0.02);
+  const EnergyLedger ledger = simulation.energy();
+  CAPTURE(ledger.error(), ledger.largest(), ledger.work_of_walls, walls[3].work);
+  CHECK(std::abs(ledger.error()) < 0.02 * ledger.largest());
+  CHECK(std::abs(walls[3].work - ledger.work_of_walls) <= 1e-12 * ledger.largest());
+  CHECK(walls[3].work > 0);
+}
+
+TEST_CASE("walls_tied_as_mirrors_move_alike_and_the_mean_of_their_forces_is_held") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  CAPTURE(stepping.name());
+  GrainScene scene = pressed_box(stepping.law, 20);
+  scene.walls[0].servo = Servo{.direction = {0, 1}, .wanted = {.value = 10}, .max_speed = 0.1, .mirror = "lid"};
+  scene.walls[3].servo.reset();
+  GrainSimulation simulation(scene, options_of(stepping, 2e-4));
+  simulation.advance(200000);
+  const auto walls = simulation.walls();
+  CAPTURE(walls[0].place.y, walls[3].place.y, walls[0].force.y, walls[3].force.y);
+  CHECK(walls[0].place.y > 0);
+  CHECK(std::abs(walls[0].place.y + (walls[3].place.y - 4.05)) < 1e-15 * 4);
+  CHECK(std::abs(0.5 * (walls[3].force.y - walls[0].force.y) - 10) < 1e-6 * 10);
+}
+
+TEST_CASE("a_stress_acts_on_the_present_length_between_neighbours") {
+  GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  Servo& servo = *scene.walls[3].servo;
+  servo.is_stress = true;
+  servo.between = {"left", "right"};
+  scene.walls[2].move_x = {Schedule::Kind::ramp, 2.0, 10, 20};
+  GrainSimulation simulation(scene, options_of(steppings_of_servos[1], 2e-4));
+  simulation.advance(10000);
+  CHECK(simulation.servos().front().wanted == 80);
+  simulation.advance(100000);
+  CHECK(std::abs(simulation.servos().front().wanted - 120) < 1e-12 * 120);
+}
+
+TEST_CASE("a_force_that_grows_by_a_schedule_is_followed") {
+  GrainScene scene = pressed_box(NormalLaw::exact_flow, 20);
+  scene.walls[3].servo->wanted = {Schedule::Kind::table, 0, 0, 0, 0, {0, 10, 30}, {5, 5, 30}};
+  GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 1e-3));
+  simulation.advance(20000);
+  const ServoReport half_way = simulation.servos().front();
+  CHECK(std::abs(half_way.force - 17.5) < 0.05);
+  simulation.advance(20000);
+  CHECK(std::abs(simulation.servos().front().force - 30) < 1e-4 * 30);
+}
+
+TEST_CASE("a_servo_wall_keeps_below_its_speed") {
+  const GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 2e-4));
+  double fastest = 0, place = 4.05;
+  for (int k = 0; k < 10000; ++k) {
+    simulation.advance(1);
+    const double now = simulation.walls()[3].place.y;
+    fastest = std::max(fastest, std::abs(now - place) / 2e-4);
+    place = now;
+  }
+  CHECK(fastest <= 0.1 * (1 + 1e-9));
+  CHECK(fastest > 0.09);
+}
+
+TEST_CASE("servo_walls_go_on_from_a_saved_state_with_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  CAPTURE(stepping.name());
+  GrainScene scene = busy_box(stepping.law, 3, 3, 11);
+  scene.walls[3] = pushing(scene.walls[3], 10, 1);
+  scene.walls[1].servo = Servo{.direction = {1, 0}, .wanted = {.value = 5}, .max_speed = 0.3, .mirror = "right"};
+  check_resuming(scene, options_of(stepping, 5e-3), 150);
+}
+
+TEST_CASE("a_servo_wall_that_meets_no_body_is_an_error_and_no_endless_way") {
+  GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
+  scene.walls[3].normal = {0, -1};
+  scene.walls[3].servo->direction = {0, 1};
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 2e-3));
+  check_servo_error([&] { simulation.advance(1000000); }, {"'lid'", "met no body"});
+  CHECK_FALSE(simulation.servos().front().touched);
+}
+
+TEST_CASE("servos_that_contradict_each_other_are_refused") {
+  const GrainScene sound = pressed_box(NormalLaw::linear_dashpot, 20);
+  const auto refused = [&](const auto& change, std::vector<std::string> words,
+                           NormalLaw law = NormalLaw::linear_dashpot) {
+    GrainScene scene = sound;
+    change(scene, *scene.walls[3].servo);
+    check_servo_error([&] { check(scene, options_of(law, 2e-4)); }, words);
+  };
+  check(sound, options_of(NormalLaw::linear_dashpot, 2e-4));
+  refused([](GrainScene&, Servo& s) { s.wanted.value = -1; }, {"'lid'", "-1", "pull"});
+  refused([](GrainScene&, Servo& s) { s.wanted = {Schedule::Kind::sine, 5, 0, 0, 1}; }, {"'lid'", "pull"});
+  refused([](GrainScene&, Servo& s) { s.max_speed = 0; }, {"'lid'", "max_speed"});
+  refused([](GrainScene&, Servo& s) { s.relaxation = 1.5; }, {"'lid'", "relaxation"});
+  refused([](GrainScene&, Servo& s) { s.direction = {0, 2}; }, {"'lid'", "unit vector"});
+  refused([](GrainScene&, Servo& s) { s.mirror = "top"; }, {"'lid'", "'top'", "no wall"});
+  refused([](GrainScene&, Servo& s) { s.mirror = "lid"; }, {"'lid'", "servo itself"});
+  refused([](GrainScene& g, Servo& s) { s.mirror = "floor", g.walls[1].servo = s; }, {"'floor'", "does so too"});
+  refused(
+      [](GrainScene& g, Servo&) {
+        g.walls[3].move_y = {Schedule::Kind::ramp, 1, 0, 1};
+      },
+      {"'lid'", "displacement"});
+  refused([](GrainScene&, Servo& s) { s.is_stress = true; }, {"'lid'", "no other wall"});
+  refused([](GrainScene&, Servo& s) { s.is_stress = true, s.between = {"left", "floor"}; }, {"'floor'", "cross"});
+  refused([](GrainScene&, Servo&) {}, {"'lid'", "map"}, NormalLaw::energy_map);
+}

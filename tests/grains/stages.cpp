@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Runs in stages.
+#include "equidem/grains/stages/staged_simulation.hpp"
+
+#include "grains/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+const std::vector<Stepping> steppings_in_stages{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+                                                {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                                {NormalLaw::hertz_dashpot, GrainIntegrator::corrected_verlet},
+                                                {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
+                                                {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
+
+/// Three stages of a busy box: as it is, with less friction and a servo, and without its lid, with another gravity.
+std::vector<GrainStage> busy_stages(NormalLaw law, std::int64_t length) {
+  GrainScene scene = busy_box(law, 4, 3, 3);
+  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  std::vector<GrainStage> stages{{.name = "as it is", .scene = scene, .steps = length}};
+  scene.pairs[0].friction = 0.1;
+  scene.walls[0].move_x = {Schedule::Kind::sine, 0.1, 0, 0, 0.5};
+  if (!is_map(law)) scene.walls[1].servo = Servo{.direction = {1, 0}, .wanted = {.value = 3}, .max_speed = 0.5};
+  stages.push_back({.name = "pressed", .scene = scene, .steps = length});
+  scene.walls.pop_back();
+  std::rotate(scene.walls.begin(), scene.walls.begin() + 1, scene.walls.end());
+  scene.gravity = {0.5, -2};
+  stages.push_back({.name = "open", .scene = scene, .steps = length});
+  return stages;
+}
+
+void advance_all(StagedSimulation& simulation, std::int64_t to) {
+  while (simulation.step() < to && !simulation.over()) simulation.advance(to - simulation.step());
+}
+
+/// A disc that falls on a floor with little restitution.
+GrainStage falling_disc(std::int64_t limit, StageEnd end) {
+  PairProperties pair = one_second(NormalLaw::linear_dashpot, 0.2);
+  pair.stiffness *= 100;
+  return {.name = "settle",
+          .scene = scene_of({ball({0, 0.6}, 0.5)}, {line("floor", {0, 0}, {0, 1})}, pair, {0, -1}),
+          .steps = limit,
+          .end = end};
+}
+
+}  // namespace
+
+TEST_CASE("a_stage_that_changes_nothing_leaves_the_motion_as_it_is_to_the_last_bit") {
+  const Stepping stepping = GENERATE(from_range(steppings_in_stages));
+  CAPTURE(stepping.name());
+  const GrainScene scene = busy_box(stepping.law, 4, 3, 3);
+  const GrainOptions options = options_of(stepping, 4e-3);
+  GrainScene still = scene;
+  for (Wall& wall : still.walls) wall.move_x = wall.move_y = {};
+  GrainSimulation whole(still, options);
+  StagedSimulation staged({{.name = "a", .scene = still, .steps = 237}, {.name = "b", .scene = still, .steps = 400}},
+                          options);
+  advance_all(staged, 600);
+  whole.advance(600);
+  REQUIRE(staged.step() == 600);
+  const auto places = staged.motions(), expected = whole.motions();
+  for (std::size_t g = 0; g < places.size(); ++g) {
+    CHECK(places[g].u == expected[g].u);
+    CHECK(places[g].theta == expected[g].theta);
+  }
+  CHECK(staged.energy().work_of_stages == 0);  // what is round-off of the energies is not counted
+  CHECK(std::abs(staged.energy().error() - whole.energy().error()) <= 1e-12 * whole.energy().largest());
+}
+
+TEST_CASE("the_ledger_closes_over_stages_that_change_walls_friction_and_gravity") {
+  // maps make energy where several contacts act on a body
+  const Stepping stepping =
+      GENERATE(filter([](const Stepping& s) { return !is_map(s.law); }, from_range(steppings_in_stages)));
+  CAPTURE(stepping.name());
+  StagedSimulation staged(busy_stages(stepping.law, 400), options_of(stepping, 1e-3));
+  double one = 0;  // error at the end of the first stage
+  while (!staged.over()) {
+    staged.advance(100);
+    const EnergyLedger ledger = staged.energy();
+    const double error = std::abs(ledger.error()) / ledger.largest();
+    CAPTURE(staged.step(), error, ledger.work_of_stages);
+    if (staged.step() <= 400) one = std::max(one, error);
+    CHECK(error <= 10 * one + 2e-3);
+  }
+  CHECK(staged.reports().size() == 3);
+  CHECK(staged.walls().size() == 3);
+  CHECK(staged.reports()[1].first == 400);
+}
+
+TEST_CASE("a_run_in_stages_goes_on_from_any_saved_state_with_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(steppings_in_stages));
+  CAPTURE(stepping.name());
+  const std::vector<GrainStage> stages = busy_stages(stepping.law, 60);
+  const GrainOptions options = options_of(stepping, 4e-3);
+  StagedSimulation whole(stages, options);
+  std::vector<SavedState> states;
+  while (!whole.over()) {
+    if (whole.step() % 7 == 0 || whole.milestone() >= 0) states.push_back(whole.save());
+    whole.advance(1);
+  }
+  const Bits end = bits_of(whole.present());
+  for (const SavedState& state : states) {
+    CAPTURE(state.step);
+    StagedSimulation resumed(stages, options);
+    resumed.restore(state);
+    REQUIRE(resumed.step() == state.step);
+    advance_all(resumed, 180);
+    CHECK(bits_of(resumed.present()) == end);
+    CHECK(resumed.energy().error() == whole.energy().error());
+    CHECK(resumed.reports().size() == 3);
+    CHECK(resumed.walls()[0].impulse == whole.walls()[0].impulse);
+  }
+}
+
+TEST_CASE("a_stage_ends_when_its_bodies_are_at_rest") {
+  StagedSimulation staged({falling_disc(100000, {.kinetic = 1e-6, .unbalanced = 1e-4})},
+                          options_of(NormalLaw::linear_dashpot, 1e-3));
+  advance_all(staged, 100000);
+  const StageReport& report = staged.reports().front();
+  CHECK(staged.over());
+  CHECK(report.ended);
+  CHECK(staged.step() < 100000);
+  CHECK(report.kinetic <= 1e-6);
+  CHECK(report.unbalanced <= 1e-4);
+  CHECK(std::abs(staged.walls().front().force.y + 1) <= 1e-3);
+}
+
+TEST_CASE("a_stage_that_does_not_come_to_rest_stops_at_its_limit_and_goes_on_with_a_longer_one") {
+  const GrainOptions options = options_of(NormalLaw::linear_dashpot, 1e-3);
+  const StageEnd rest{.kinetic = 1e-6, .unbalanced = 1e-4};
+  StagedSimulation brief({falling_disc(500, rest)}, options);
+  for (int k = 0; k < 2; ++k) {
+    try {
+      brief.advance(100000);
+      FAIL("it went past its limit");
+    } catch (const Error& error) {
+      CHECK(error.kind() == ErrorKind::computation_failed);
+      CHECK(error.where() == "stage 'settle'");
+      CHECK_THAT(error.what(), Catch::Contains("0.5 s"));
+      CHECK(brief.step() == 500);
+    }
+  }
+  StagedSimulation longer({falling_disc(100000, rest)}, options), direct({falling_disc(100000, rest)}, options);
+  longer.restore(brief.save());
+  advance_all(longer, 100000);
+  advance_all(direct, 100000);
+  CHECK(longer.over());
+  CHECK(longer.step() == direct.step());
+  CHECK(bits_of(longer.present()) == bits_of(direct.present()));
+}
+
+TEST_CASE("a_stage_ends_by_the_way_of_a_wall_and_by_the_strain_between_two") {
+  GrainStage stage = falling_disc(10000, {.displacement = 0.1, .wall = "lid"});
+  stage.scene.walls.push_back(line("lid", {0, 3}, {0, -1}));
+  stage.scene.walls[1].move_y = {Schedule::Kind::table, 0, 0, 0, 0, {0, 100}, {0, -10}};  // 0.1 m/s
+  GrainStage back = stage;
+  back.name = "back";
+  back.end = {.strain = 0.05, .walls = {"floor", "lid"}};
+  back.scene.walls[1].move_y = {Schedule::Kind::table, 0, 0, 0, 0, {0, 100}, {0, 10}};
+  StagedSimulation staged({stage, back}, options_of(NormalLaw::linear_dashpot, 1e-3));
+  staged.advance(10000);
+  CHECK(staged.milestone() == staged.step());  // a call stops at the end of a stage
+  CHECK_FALSE(staged.over());
+  advance_all(staged, 10000);
+  const auto& reports = staged.reports();
+  REQUIRE(reports.size() == 2);
+  CHECK(std::abs(reports[0].displacement - 0.1) <= 16 * 1e-4);
+  CHECK(reports[0].displacement >= 0.1 * (1 - 1e-12));
+  CHECK(std::abs(reports[1].strain - 0.05) <= 16 * 1e-4 / 2.9);
+  CHECK(std::abs(staged.walls()[1].place.y - (3 - 0.1) * 1.05) <= 0.01);
+}
+
+TEST_CASE("a_wall_that_is_taken_away_pushes_no_more") {
+  const Stepping stepping = GENERATE(from_range(steppings_in_stages));
+  CAPTURE(stepping.name());
+  PairProperties pair = one_second(stepping.law, 1);
+  pair.stiffness *= 100;
+  GrainStage pressed{.name = "pressed",
+                     .scene = scene_of({ball({0, 0.51}, 0.5, {0, -1})}, {line("floor", {0, 0}, {0, 1})}, pair),
+                     .steps = 40};
+  GrainStage free = pressed;
+  free.name = "free";
+  free.scene.walls.clear();
+  StagedSimulation staged({pressed, free}, options_of(stepping, 1e-3));
+  staged.advance(40);
+  REQUIRE(staged.milestone() == 40);
+  const Vec2 impulse = staged.walls().front().impulse;
+  const EnergyLedger before = staged.energy();
+  staged.advance(30);
+  const EnergyLedger after = staged.energy();
+  CAPTURE(impulse.y, staged.velocities()[0].u.y, before.elastic(), after.work_of_stages);
+  CHECK(norm(impulse) > 0.01);
+  CHECK(std::abs(staged.velocities()[0].u.y - (-1 - impulse.y)) <= 1e-12);
+  CHECK(std::abs(after.work_of_stages + before.elastic()) <= 1e-12);
+  CHECK(std::abs(after.error() - before.error()) <= 1e-12);
+}
+
+TEST_CASE("stages_that_name_no_wall_are_refused") {
+  const GrainOptions options = options_of(NormalLaw::linear_dashpot, 1e-3);
+  const auto refused = [&](const GrainStage& stage, const std::string& word) {
+    try {
+      StagedSimulation({stage}, options);
+      FAIL_CHECK("it was accepted: " << word);
+    } catch (const Error& error) {
+      CHECK(error.kind() == ErrorKind::bad_input);
+      CHECK_THAT(error.what(), Catch::Contains(word));
+    }
+  };
+  refused(falling_disc(10, {.displacement = 1, .wall = "lid"}), "'lid'");
+  refused(falling_disc(10, {.strain = 1, .walls = {"floor", "top"}}), "'top'");
+  GrainStage twice = falling_disc(10, {});
+  twice.scene.walls.push_back(line("floor", {0, 5}, {0, -1}));
+  refused(twice, "two walls 'floor'");
+}
