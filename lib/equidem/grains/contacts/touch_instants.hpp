@@ -65,7 +65,7 @@ struct WallLoad {
 struct ContactSums {
   EnergyLedger& lost;                      ///< losses and work since the start
   std::vector<TouchImpulse>& corrections;  ///< corrected_verlet: of the next kick
-  std::vector<WallLoad>* on_walls;  ///< none for pairs of bodies alone
+  std::vector<WallLoad>* on_walls;         ///< none for pairs of bodies alone
 };
 
 /// Count the energy lost by a contact in the drift in which it began or ended; corrected_verlet: add its correction.
