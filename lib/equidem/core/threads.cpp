@@ -13,7 +13,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/waiting.hpp"
 
 namespace equidem {
 namespace {

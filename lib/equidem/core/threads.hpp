@@ -4,6 +4,7 @@
 /// results in a fixed order: the bits of an answer do not depend on the number of threads.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 
@@ -22,5 +23,20 @@ void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t task
 /// Call body(begin, end) for pieces of [0, count) of at most `grain` indices.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Wait until `value` is another than `old`; whoever changes it notifies.
+///
+/// It spins for some ten microseconds, longer than threads that work together wait for one another, and then sleeps:
+/// where others have the processor, spinning would take it from the thread that is waited for.
+inline void wait_while_equal(const std::atomic<int>& value, int old) {
+  constexpr int spins = 2000;
+  for (int k = 0; k < spins; ++k) {
+    if (value.load(std::memory_order_acquire) != old) return;
+#if defined(__x86_64__)
+    __builtin_ia32_pause();
+#endif
+  }
+  value.wait(old, std::memory_order_acquire);
+}
 
 }  // namespace equidem

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "equidem/core/threads.hpp"
-#include "equidem/core/waiting.hpp"
 
 namespace equidem {
 namespace {
