@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
@@ -19,6 +20,8 @@
 #include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {
+
+struct BreakableBonds;
 
 struct GrainMotion {
   Vec2 position, velocity;
@@ -120,6 +123,7 @@ struct ContactList {
 struct BondList {
   std::vector<TiedPair> tied;  ///< ordered by i, then j
   PackedBonds packed;
+  std::shared_ptr<BreakableBonds> breakable;  ///< null: no bond breaks
 };
 
 struct GrainSystem {

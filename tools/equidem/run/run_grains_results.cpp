@@ -9,6 +9,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/kinds.hpp"
 
+#include "run/break_files.hpp"
 #include "run/run_grains.hpp"
 #include "run/run_results.hpp"
 
@@ -293,6 +294,7 @@ Results GrainRun::events() const {
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.bonds());
+  add_breaks(out, case_, simulation_.breaks(), step_.step);
   return out;
 }
 
