@@ -88,7 +88,8 @@ TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
   const SpringWeighting weighting = GENERATE(SpringWeighting::uniform, SpringWeighting::contact_density,
                                              SpringWeighting::local_contact_density, SpringWeighting::voronoi);
   const SpringConstants springs{.kN = 1e9 + 1e-7, .kT = kT};
-  const std::string text = springs_file(springs, weighting, {}, "a \"title\" \\ äöü", "calibrated\n\nline\ttwo\x01");
+  const std::string text =
+      springs_file(springs, weighting, {}, {}, "a \"title\" \\ äöü", "calibrated\n\nline\ttwo\x01");
   CAPTURE(text);
   write_file(folder / "springs.toml", text, true);
   const Case c = parse_case(changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
@@ -102,7 +103,7 @@ TEST_CASE("a_springs_file_reads_back_bit_by_bit") {
 
 TEST_CASE("a_springs_file_carries_the_density_of_its_discs") {
   const TemporaryFolder folder;
-  write_file(folder / "springs.toml", springs_file({1e9, 5e8}, SpringWeighting::uniform, 2738.0, "", ""), true);
+  write_file(folder / "springs.toml", springs_file({1e9, 5e8}, SpringWeighting::uniform, 2738.0, 0.75, "", ""), true);
   const std::string text = changed(changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", ""), "title ",
                                    "springs = \"springs.toml\"\ntitle ");
   const auto density = [&](const std::vector<std::string>& overrides) {

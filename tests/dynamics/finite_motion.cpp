@@ -25,6 +25,7 @@ using Resistance = LoopKind::Resistance;
 namespace {
 
 constexpr SpringConstants uniform_springs{2e3, 1.5e3}, dashpot_constants{3, 2};
+constexpr double bending_dashpot = 0.004;
 
 /// A hub with more contacts than the loop works on at a time.
 Assembly star(int rays) {
@@ -78,6 +79,13 @@ std::vector<LoopScene> loop_scenes() {
                                 std::to_string(static_cast<int>(effects)) + ", resistance " +
                                 std::to_string(static_cast<int>(resistance)),
                             assembly, ContactSprings(springs), kind});
+          if (equal || effects != Springs::rotation) continue;
+          std::vector<double> bending(springs.size());
+          for (double& kM : bending) kM = random.uniform(0, 0.01);
+          scenes.push_back(scenes.back());
+          scenes.back().name += ", bending";
+          scenes.back().kind.bending = true;
+          scenes.back().springs = ContactSprings(springs).with_bending(std::move(bending));
         }
       }
     }
@@ -119,7 +127,12 @@ std::vector<DiscMotion> plain_forces(const LoopScene& scene, const std::vector<D
       stress.normal += drag.normal;
       stress.tangential += drag.tangential;
     }
-    const BondForces<double> f = bond_forces(bond, motion, stress);
+    BondForces<double> f = bond_forces(bond, motion, stress);
+    double bending = bending_moment(scene.springs.bending(k), motion.theta_i, motion.theta_j);
+    if (scene.kind.bending && scene.kind.resistance == Resistance::dashpot)
+      bending += bending_moment(bending_dashpot, velocities[contact.i].theta, velocities[contact.j].theta);
+    f.moment_i += bending;
+    f.moment_j -= bending;
     sums[contact.i].u += {f.x, f.y};
     sums[contact.j].u -= {f.x, f.y};
     sums[contact.i].theta += f.moment_i;
@@ -140,7 +153,7 @@ TEST_CASE("the_loop_for_finite_motions_sums_the_forces_of_the_plain_law") {
   Random random(17);
   for (const LoopScene& scene : loop_scenes()) {
     const bool rotation = scene.kind.springs == Springs::rotation;
-    LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants);
+    LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants, bending_dashpot);
     // Sizes on either side of the bound between the short polynomials and the general formulas.
     for (const double size : {1e-7, 5e-3, 2e-2, 0.4}) {
       for (const double angle : {0.0, 0.2, -2.5, 44.0}) {

@@ -20,8 +20,9 @@ namespace equidem::test {
 class LoopByHand {
  public:
   /// \param dashpots c_N and c_T of every contact, Pa s
+  /// \param bending_dashpot c_M of every contact, N m s
   LoopByHand(const Assembly& assembly, const ContactSprings& springs, const Inertia& inertia, const LoopKind& kind,
-             SpringConstants dashpots = {})
+             SpringConstants dashpots = {}, double bending_dashpot = 0)
       : kind_(kind), layout_(lay_out(assembly)), slots_(list_slots(assembly, layout_)), step_(step_function(kind)) {
     const int doubles = lanes::slot_doubles(kind);
     geometry_.assign(slots_.contact.size() * static_cast<std::size_t>(doubles), 0.0);
@@ -35,10 +36,12 @@ class LoopByHand {
       const auto lane = static_cast<int>(k % 4);
       fill_geometry(kind, as_i ? assembly.branch(contact) : -assembly.branch(contact),
                     as_i ? contact.lever_i : contact.lever_j, as_i ? contact.lever_j : contact.lever_i, springs[c],
-                    slot, lane);
+                    springs.bending(c), slot, lane);
       if (kind.resistance == LoopKind::Resistance::dashpot && !kind.equal_contacts) {
-        slot[4 * (doubles - 2) + lane] = dashpots.kN;
-        slot[4 * (doubles - 1) + lane] = dashpots.kT;
+        double* const constants = slot + 4 * (doubles - (kind.bending ? 3 : 2)) + lane;
+        constants[0] = dashpots.kN;
+        constants[4] = dashpots.kT;
+        if (kind.bending) constants[8] = bending_dashpot;
       }
     }
     const std::size_t places = layout_.disc_at.size(), width = static_cast<std::size_t>(kind.width());

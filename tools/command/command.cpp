@@ -85,6 +85,7 @@ Case read_case(const CommonOptions& options) {
   Case resolved = read_case(options.case_file, overrides_of(options));
   check_viscoelastic(resolved, options.verb);
   check_prestress(resolved, options.verb);
+  check_bending(resolved, options.verb);
   return resolved;
 }
 
@@ -95,6 +96,16 @@ void check_prestress(const Case& resolved, std::string_view verb) {
                fmt::format("{} takes no prestress, and the case asks for it", verb),
                "its answer would be that of the springs alone",
                "Remove effects.prestress; solve, homogenize and stability take it");
+}
+
+void check_bending(const Case& resolved, std::string_view verb) {
+  constexpr std::string_view takers[] = {"solve", "homogenize", "calibrate", "stability", "run", "export", "sweep"};
+  if (!resolved.bending.given() || std::ranges::find(takers, verb) != std::end(takers)) return;
+  const char* table = resolved.material ? "material" : "springs";
+  bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
+               fmt::format("{} takes no bending springs, and the case gives some", verb),
+               "its answer would be that of contacts without moments",
+               "Remove it; solve, homogenize, calibrate, stability and run take it");
 }
 
 void OutputPlan::expect(const std::string& name) const {

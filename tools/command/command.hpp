@@ -59,6 +59,9 @@ std::vector<std::string> overrides_of(const CommonOptions& options);
 Case read_case(const CommonOptions& options);
 /// \throws Error (bad_input), with the line of the case file, where prestress is asked for and a verb takes none
 void check_prestress(const Case& resolved, std::string_view verb);
+/// The verb takes bonds that resist bending, or the case has none.
+/// \throws Error (bad_input) where it takes none
+void check_bending(const Case& resolved, std::string_view verb);
 
 /// Checks before the computation that the files of a verb can be written.
 class OutputPlan {

@@ -23,6 +23,10 @@ std::vector<ResultArray> state_arrays(const std::string& prefix,
   std::vector<ResultArray> arrays = motion_arrays(prefix, {equilibrium, &motions});
   arrays.push_back(array_of(prefix + "contact_forces", "N/m",
                             std::shared_ptr<const std::vector<ContactForce>>(equilibrium, &contact_forces), 2));
+  if (const auto& bending = equilibrium->bending_moments; !bending.empty()) {
+    arrays.push_back(array_of(prefix + "bending_moments", "N",
+                              std::shared_ptr<const std::vector<double>>(equilibrium, &bending), 1));
+  }
   std::vector<std::int32_t> discs;
   std::vector<Vec2> forces;
   std::vector<double> moments;

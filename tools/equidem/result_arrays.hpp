@@ -40,8 +40,9 @@ ResultArray array_of(std::string name, std::string unit, std::vector<Row> number
 /// PREFIXdisplacements (n, 2) in m and PREFIXrotations (n) in rad.
 std::vector<ResultArray> motion_arrays(const std::string& prefix,
                                        const std::shared_ptr<const std::vector<DiscMotion>>& motions);
-/// The motions of all discs, PREFIXcontact_forces (contacts, 2), normal and tangential, in N/m, and of the discs that
-/// supports hold PREFIXsupported_discs, PREFIXreactions (2 columns) in N/m and PREFIXreaction_moments in N.
+/// The motions of all discs, PREFIXcontact_forces (contacts, 2), normal and tangential, in N/m, where contacts bend
+/// PREFIXbending_moments (contacts) on the first disc in N, and of the discs that supports hold PREFIXsupported_discs,
+/// PREFIXreactions (2 columns) in N/m and PREFIXreaction_moments in N.
 std::vector<ResultArray> state_arrays(const std::string& prefix, const std::shared_ptr<const Equilibrium>& equilibrium);
 /// Along the path through the Brillouin zone: dispersion/along in rad/m, dispersion/wave_vectors in 1/m and
 /// dispersion/squared_frequencies, ascending, in 1/s².

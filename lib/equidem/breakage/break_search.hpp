@@ -15,15 +15,16 @@
 
 namespace equidem {
 
-/// A bond breaks in tension or in shear; contacts without a bond open, close, slip and stick.
-enum class BreakMode { tension, shear, open, close, slip, stick };
+/// A bond breaks in tension, in shear or in bending; contacts without a bond open, close, slip and stick.
+enum class BreakMode { tension, shear, open, close, slip, stick, bending };
 
 template <>
 struct EnumNames<BreakMode> {
   using enum BreakMode;
   static constexpr const char* what = "mode of breaking";
   static constexpr NamedValue<BreakMode> list[] = {{tension, "tension"}, {shear, "shear"}, {open, "open"},
-                                                   {close, "close"},     {slip, "slip"},   {stick, "stick"}};
+                                                   {close, "close"},     {slip, "slip"},   {stick, "stick"},
+                                                   {bending, "bending"}};
 };
 
 struct NextBreak {

@@ -71,6 +71,11 @@ void check_size(const std::string& what, double size) {
 /// With kT < 0 every equilibrium is a saddle of the energy (one negative eigenvalue for each rotation): statics solves
 /// for it, but no motion of the discs leads from one to the next, which is what a break asks for.
 void check_springs(const ContactSprings& springs) {
+  if (springs.bends()) {
+    bad_input("bending springs in a network that breaks at rest",
+              "the search for the next break knows forces, and no moments of contacts",
+              "Take kM and bond_width out; bonds of colliding bodies carry moments and break in run");
+  }
   if (!springs.any_negative()) return;
   bad_input("kT < 0 in a network that breaks",
             "behind a break the discs move to another equilibrium, and with kT < 0 no motion of discs is stable",

@@ -17,7 +17,8 @@ struct SpringsFile : CaseDocument {
 const File<SpringsFile>& springs_file_format() {
   static const File<SpringsFile> file = [] {
     File<SpringsFile> made("equidem-springs/1", "springs file");
-    made.table("springs", &SpringsFile::springs, required, "the two springs of a contact").keys(springs_keys());
+    made.table("springs", &SpringsFile::springs, required, "the springs of a contact").keys(springs_keys());
+    made.table("springs", &SpringsFile::springs).keys(bond_keys());
     return made;
   }();
   return file;
@@ -36,6 +37,18 @@ std::vector<Key<SpringsTable>> springs_keys() {
               "centre distance"),
           key("density", &S::density, unit("kg/m³"), positive,
               "density of the discs that these springs are for; calibrate writes it into a springs file")};
+}
+
+std::vector<Key<SpringsTable>> bond_keys() {
+  using S = SpringsTable;
+  using B = BendingOptions;
+  const std::string both = "each says how stiff contacts are in bending";
+  return {key("kM", &S::bending, &B::kM, unit("N"), not_negative, not_beside({"bond_width"}, both),
+              "bending spring of every contact, N m/rad per metre of depth: the moment by the rotation of one disc "
+              "against the other; left out: contacts carry no moments"),
+          key("bond_width", &S::bending, &B::bond_width, not_negative,
+              "width w of a bond over the diameter of its smaller disc: contacts have kM = kN w²/12, the bending "
+              "stiffness of a parallel bond")};
 }
 
 void resolve_springs_file(TomlValue& root, const std::filesystem::path& folder) {
@@ -64,11 +77,12 @@ std::optional<double> one_density(const TomlValue& root, std::initializer_list<S
 namespace equidem {
 
 std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
-                         const std::string& title, const std::string& comment) {
+                         std::optional<double> bond_width, const std::string& title, const std::string& comment) {
   std::string out = casefile::comment_lines(comment);
   out += fmt::format("schema = \"{}\"\ntitle = {}\n\n[springs]\nkN = {}\nkT = {}\nweighting = {}\n",
                      casefile::springs_file_format().spec().schema, toml_text(title), toml_number(springs.kN),
                      toml_number(springs.kT), toml_text(to_string(weighting)));
+  if (bond_width) out += fmt::format("bond_width = {}\n", toml_number(*bond_width));
   if (density) out += fmt::format("density = {}\n", toml_number(*density));
   return out;
 }

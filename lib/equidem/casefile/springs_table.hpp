@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
+#include "equidem/contact/bending.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/material/spring_constants.hpp"
 
@@ -19,9 +20,12 @@ struct SpringsTable {
   SpringConstants constants;  ///< Pa, before weighting
   SpringWeighting weighting = SpringWeighting::uniform;
   std::optional<double> density;  ///< kg/m³, of the discs that these springs are for
+  BendingOptions bending;
 };
 
 std::vector<Key<SpringsTable>> springs_keys();
+/// Keys of bonds, which colliding bodies have not.
+std::vector<Key<SpringsTable>> bond_keys();
 
 /// Binds `springs = "FILE"` at the top of a case file.
 template <class F>
@@ -51,7 +55,8 @@ namespace equidem {
 /// A springs file, which `springs = "FILE"` of a case file names; it reads back to the same bits.
 /// \param comment lines for people at the top of the file, may be empty
 /// \param density kg/m³, of the discs; none: not written
+/// \param bond_width as BendingOptions; none: not written
 std::string springs_file(const SpringConstants& springs, SpringWeighting weighting, std::optional<double> density,
-                         const std::string& title, const std::string& comment);
+                         std::optional<double> bond_width, const std::string& title, const std::string& comment);
 
 }  // namespace equidem

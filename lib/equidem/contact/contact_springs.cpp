@@ -166,18 +166,24 @@ std::vector<double> local_contact_density(const Assembly& assembly) {
 }
 
 ContactSprings equal_springs(const ContactSprings& springs) {
+  std::vector<double> bending = springs.bending_springs();
+  for (std::size_t c = 0; c < bending.size(); ++c) bending[c] /= springs[c].kN;
   return springs
       .changed([](SpringConstants k) {
         return SpringConstants{k.kN != 0 ? 1.0 : 0.0, k.kT != 0 ? 1.0 : 0.0};
       })
-      .with_prestress({});
+      .with_prestress({})
+      .with_bending(std::move(bending));
 }
 
 ContactSprings scaled_springs(const ContactSprings& springs, double factor) {
+  std::vector<double> bending = springs.bending_springs();
+  for (double& kM : bending) kM *= factor;
   return springs.changed([factor](SpringConstants k) {
                   return SpringConstants{factor * k.kN, factor * k.kT};
                 })
-      .with_prestress(springs.scaled_prestress(factor));
+      .with_prestress(springs.scaled_prestress(factor))
+      .with_bending(std::move(bending));
 }
 
 double spring_unit(const ContactSprings& springs) {
@@ -187,13 +193,16 @@ double spring_unit(const ContactSprings& springs) {
 }
 
 double spring_spread(const Assembly& assembly, const ContactSprings& springs) {
-  double smallest = springs.largest();
+  double smallest = springs.largest(), stiffest = smallest;
+  const double radius = assembly.mean_radius();
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const SpringConstants k = springs[c];
     smallest = std::min(smallest, k.kN);
     if (k.kT != 0) smallest = std::min(smallest, std::abs(k.kT));
+    const double kM = springs.bending(c) / (radius * radius);
+    if (kM > 0) smallest = std::min(smallest, kM), stiffest = std::max(stiffest, kM);
   }
-  return springs.largest() / smallest;
+  return stiffest / smallest;
 }
 
 void refuse_spread(double spread) {

@@ -35,7 +35,8 @@ struct EnumNames<SpringWeighting> {
 };
 
 /// One pair of springs for all contacts, or one for each; the first stores two numbers. Where the forces that contacts
-/// carry at rest count, each contact has its geometric stiffness beside its springs.
+/// carry at rest count, each contact has its geometric stiffness beside its springs; where contacts resist the relative
+/// rotation of their bodies, a bending spring.
 class ContactSprings {
  public:
   explicit ContactSprings(SpringConstants uniform) : uniform_(uniform) {}
@@ -45,7 +46,7 @@ class ContactSprings {
     return per_contact_.empty() ? uniform_ : per_contact_[contact];
   }
   [[nodiscard]] bool uniform() const { return per_contact_.empty(); }
-  /// The springs change(k) in place of every k.
+  /// The springs change(k) in place of every k; bending springs stay.
   template <typename Change>
   [[nodiscard]] ContactSprings changed(const Change& change) const {
     ContactSprings result = *this;
@@ -71,6 +72,21 @@ class ContactSprings {
   }
   /// The geometric stiffness of all contacts under forces at rest `factor` times as large.
   [[nodiscard]] std::vector<ContactPrestress> scaled_prestress(double factor) const;
+  /// A copy of the springs with the bending springs kM >= 0 of the contacts, N m/rad per metre of depth: one for all of
+  /// them, or one for each; empty: without.
+  [[nodiscard]] ContactSprings with_bending(std::vector<double> kM) const {
+    ContactSprings result = *this;
+    result.bending_ = std::move(kM);
+    return result;
+  }
+  [[nodiscard]] bool bends() const { return !bending_.empty(); }
+  /// kM of one contact, N m/rad per metre of depth; 0: it carries no moment.
+  [[nodiscard]] double bending(std::size_t contact) const {
+    if (bending_.empty()) return 0;
+    return bending_[bending_.size() == 1 ? 0 : contact];
+  }
+  /// As with_bending takes them.
+  [[nodiscard]] const std::vector<double>& bending_springs() const { return bending_; }
   /// True with prestress or with some kT < 0: K may be indefinite.
   [[nodiscard]] bool may_be_indefinite() const { return prestressed() || any_negative(); }
   /// Whether some contact has a tangential spring.
@@ -93,6 +109,7 @@ class ContactSprings {
   SpringConstants uniform_;
   std::vector<SpringConstants> per_contact_;
   std::vector<ContactPrestress> prestress_;
+  std::vector<double> bending_;  ///< N m/rad per metre of depth
 };
 
 /// The springs of every contact: the assembly's own where it gives some, else `springs` weighted as asked.
@@ -121,13 +138,14 @@ std::vector<double> local_contact_density(const Assembly& assembly);
 /// energies of the other modes.
 ContactSprings equal_springs(const ContactSprings& springs);
 
-/// All springs, and forces at rest, times a factor.
+/// All springs, bending springs too, and forces at rest, times a factor.
 ContactSprings scaled_springs(const ContactSprings& springs, double factor);
 
 /// The power of two at or below the largest spring, Pa, or 1: dividing by it rounds nothing.
 double spring_unit(const ContactSprings& springs);
 
-/// The stiffest spring over the softest that there is, by magnitude.
+/// The stiffest spring over the softest that there is, by magnitude; bending springs over the square of the mean
+/// radius.
 double spring_spread(const Assembly& assembly, const ContactSprings& springs);
 
 /// Refuse springs so far apart that the softest leaves too few digits of a double beside the stiffest.

@@ -41,6 +41,12 @@ Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool of
   effects.entries.push_back({"tangential springs", effects.tangential_springs,
                              effects.tangential_springs ? "kT is not 0 at some contact" : "kT = 0 everywhere"});
   effects.entries.push_back(turning);
+  effects.bending = springs.bends() && effects.rotation;
+  if (springs.bends()) {
+    effects.entries.push_back({"bending springs", effects.bending,
+                               effects.bending ? "kM is not 0: contacts carry moments"
+                                               : "rotations are no unknowns: contacts bend by relative rotation"});
+  }
   return effects;
 }
 

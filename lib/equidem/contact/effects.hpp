@@ -36,6 +36,7 @@ struct Effects {
   bool tangential_springs = false;
   bool rotation = false;    ///< rotations are unknowns
   bool prestress = false;   ///< forces at rest count
+  bool bending = false;     ///< contacts resist the relative rotation of their bodies
   bool restrained = false;  ///< rotations are fixed although contacts would resist them
 
   [[nodiscard]] int unknowns_per_disc() const { return rotation ? 3 : 2; }
@@ -46,7 +47,8 @@ struct Effects {
 /// Normal springs always; tangential springs where some kT != 0; rotation where moreover it is not restrained. Free
 /// rotation with kT = 0 would leave rotations without stiffness: they are not unknowns, unless contacts lie off the
 /// lines of centres, where normal springs resist them, or forces at rest turn bodies that are no discs. The entries
-/// name prestress where the assembly carries forces at rest.
+/// name prestress where the assembly carries forces at rest, and bending springs where there are some: without
+/// rotations as unknowns they do nothing.
 Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, Rotation rotation);
 /// \param off_lines whether some contact lies off the lines of centres
 Effects derive_effects(const ContactSprings& springs, Rotation rotation, bool off_lines = false);

@@ -12,6 +12,9 @@
 ///   force on i, -dW/du_i:         kN dn n + kT ds (r_i + r_j)/|l| s;  on j its negative
 ///   moment on i, -dW/dtheta_i:    kT ds r_i;                          on j: kT ds r_j
 ///
+/// A bond that resists bending stores kM (theta_j - theta_i)²/2 beside W, whole turns included, and adds the moment kM
+/// (theta_j - theta_i) on i and its negative on j.
+///
 /// W is a function of the motion alone: without dashpots energy is conserved. A rigid motion stores no energy, and
 /// forces and moments balance for any levers. psi is defined modulo 2 pi: psi - theta is taken in [-pi, pi], which is
 /// correct for turns of an assembly, rolling discs (theta_i = -theta_j) and any number of whole turns; only a bond that
@@ -34,10 +37,12 @@ struct FiniteBond {
   double lever_i = 0;  ///< m
   double lever_j = 0;  ///< m
   SpringConstants springs;
+  double kM = 0;  ///< N m/rad (per metre of depth)
 };
 
-inline FiniteBond bond_of(const Assembly& assembly, const Contact& contact, const SpringConstants& springs) {
-  return {assembly.branch(contact), contact.lever_i, contact.lever_j, springs};
+inline FiniteBond bond_of(const Assembly& assembly, const Contact& contact, const SpringConstants& springs,
+                          double kM = 0) {
+  return {assembly.branch(contact), contact.lever_i, contact.lever_j, springs, kM};
 }
 
 /// Relative motion (or velocity) of the two discs of a bond: u_j - u_i (m) and the rotations (rad), including whole
@@ -103,14 +108,22 @@ BondForces<Number> bond_forces(const FiniteBond& bond, const BondMotion<Number>&
 /// Forces and moments of the springs.
 template <typename Number>
 BondForces<Number> bond_forces(const FiniteBond& bond, const BondMotion<Number>& motion) {
-  return bond_forces(bond, motion, linear_spring_force(bond.springs, bond_deformation(bond, motion)));
+  BondForces<Number> forces =
+      bond_forces(bond, motion, linear_spring_force(bond.springs, bond_deformation(bond, motion)));
+  const Number bending = bending_moment(bond.kM, motion.theta_i, motion.theta_j);
+  forces.moment_i += bending;
+  forces.moment_j -= bending;
+  return forces;
 }
 
 /// Elastic energy, N (J/m).
 template <typename Number>
 Number bond_energy(const FiniteBond& bond, const BondMotion<Number>& motion) {
   const DeformationOf<Number> d = bond_deformation(bond, motion);
-  return (bond.springs.kN * d.normal * d.normal + bond.springs.kT * d.tangential * d.tangential) / 2;
+  const Number twist = motion.theta_j - motion.theta_i;
+  return (bond.springs.kN * d.normal * d.normal + bond.springs.kT * d.tangential * d.tangential +
+          bond.kM * twist * twist) /
+         2;
 }
 
 inline double bond_energy(const FiniteBond& bond, const DiscMotion& i, const DiscMotion& j) {

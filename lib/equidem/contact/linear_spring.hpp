@@ -7,7 +7,8 @@
 ///   tangent  K = d²W/dq² with q = (u_i, a theta_i, u_j, a theta_j)
 ///
 /// (Abe 1996, eqs. 1-5.) kN > 0; kT may be negative in statics, where the assembly stays regular down to its critical
-/// ratio kT/kN.
+/// ratio kT/kN. A bond that resists the relative rotation of its bodies, as a cemented one of some width does (Potyondy
+/// & Cundall 2004), stores kM (theta_j - theta_i)²/2 beside W and turns i by kM (theta_j - theta_i), j by its negative.
 #pragma once
 
 #include <array>
@@ -21,6 +22,17 @@ namespace equidem {
 template <typename Number>
 ForceOf<Number> linear_spring_force(const SpringConstants& k, const DeformationOf<Number>& d) {
   return {k.kN * d.normal, k.kT * d.tangential};
+}
+
+/// The moment of the bending spring kM on i, N; its negative acts on j.
+template <typename Number>
+Number bending_moment(double kM, Number theta_i, Number theta_j) {
+  return kM * (theta_j - theta_i);
+}
+
+/// Elastic energy of the bending spring, N.
+inline double bending_energy(double kM, double theta_i, double theta_j) {
+  return 0.5 * kM * (theta_j - theta_i) * (theta_j - theta_i);
 }
 
 /// Elastic energy, N (J/m).
@@ -62,6 +74,13 @@ void add_linear_spring_tangent(const SpringConstants& k, const std::array<double
       block[r * B + c] += k.kN * normal_p[r] * normal_q[c] + k.kT * tangential_p[r] * tangential_q[c];
     }
   }
+}
+
+/// block += the tangent of the bending spring kM on the rotations of one body, or with `between` that of one body by
+/// the other; nothing where B = 2.
+template <int B>
+void add_bending_tangent(double kM, double rotation_scale, bool between, double* block) {
+  if constexpr (B == 3) block[8] += (between ? -kM : kM) / (rotation_scale * rotation_scale);
 }
 
 /// block += the prestress of a contact between its ends p and q, as add_linear_spring_tangent.

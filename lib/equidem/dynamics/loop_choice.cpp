@@ -78,6 +78,11 @@ void check(const Scene& scene, const SimulationOptions& options) {
   check_contacts(scene.assembly);
   check_inertia(scene);
   check_damping(options);
+  if (scene.springs.bends() && (options.damping.normal_time > 0 || options.damping.tangential_time > 0)) {
+    bad_input("viscoelastic springs are asked for beside bending springs",
+              "the relaxation of the normal and the tangential spring does not tell that of bending",
+              "Remove [viscoelastic], or the bending springs");
+  }
   check(scene, options.rotation);
 }
 
@@ -115,9 +120,10 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
   kind.springs = effects.rotation             ? LoopKind::Springs::rotation
                  : effects.tangential_springs ? LoopKind::Springs::tangential
                                               : LoopKind::Springs::normal;
-  kind.equal_contacts =
-      scene.springs.uniform() && std::all_of(scene.assembly.contacts.begin(), scene.assembly.contacts.end(),
-                                             [&](const Contact& c) { return in_the_middle(scene.assembly, c); });
+  kind.bending = effects.bending;
+  kind.equal_contacts = !kind.bending && scene.springs.uniform() &&
+                        std::all_of(scene.assembly.contacts.begin(), scene.assembly.contacts.end(),
+                                    [&](const Contact& c) { return in_the_middle(scene.assembly, c); });
   const Damping& damping = options.damping;
   kind.resistance = damping.dashpots()                   ? LoopKind::Resistance::dashpot
                     : damping.local > 0                  ? LoopKind::Resistance::local
@@ -126,8 +132,8 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
   const auto same = [&](const Inertia& a) {
     return a.mass == scene.inertia[0].mass && a.moment == scene.inertia[0].moment;
   };
-  kind.equal_discs =
-      kind.resistance == LoopKind::Resistance::none && std::all_of(scene.inertia.begin(), scene.inertia.end(), same);
+  kind.equal_discs = !kind.bending && kind.resistance == LoopKind::Resistance::none &&
+                     std::all_of(scene.inertia.begin(), scene.inertia.end(), same);
   // Dashpots of a given damping ratio follow the masses at each contact.
   if (damping.contact > 0 && !std::all_of(scene.inertia.begin(), scene.inertia.end(), same))
     kind.equal_contacts = false;
@@ -140,6 +146,11 @@ SpringConstants dashpots_of(const Damping& damping, const SpringConstants& k, do
   }
   const double reduced = mass_i * mass_j / (mass_i + mass_j);
   return {2 * damping.contact * std::sqrt(reduced * k.kN), 2 * damping.contact * std::sqrt(reduced * std::abs(k.kT))};
+}
+
+double bending_dashpot_of(const Damping& damping, double kM, double moment_i, double moment_j) {
+  if (damping.contact == 0) return damping.stiffness * kM;
+  return 2 * damping.contact * std::sqrt(moment_i * moment_j / (moment_i + moment_j) * kM);
 }
 
 }  // namespace equidem

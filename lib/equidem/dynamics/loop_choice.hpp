@@ -24,5 +24,7 @@ LoopKind loop_for(const Scene& scene, const SimulationOptions& options, const Ef
 
 /// Dashpots of a contact, N s/m per m: beta k, tau k, or 2 zeta sqrt(m k) with the reduced mass m.
 SpringConstants dashpots_of(const Damping& damping, const SpringConstants& k, double mass_i, double mass_j);
+/// The dashpot c_M beside a bending spring kM, N m s, likewise, of moments of inertia in place of masses.
+double bending_dashpot_of(const Damping& damping, double kM, double moment_i, double moment_j);
 
 }  // namespace equidem

@@ -302,6 +302,8 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
             : deformation(frame_of(scene.assembly, c), i, j);
     const ContactForce f = linear_spring_force(scene.springs[c], d);
     carried += f.normal * f.normal + f.tangential * f.tangential;
+    const double bending = bending_moment(scene.springs.bending(c), i.theta, j.theta) / a;
+    carried += bending * bending;
   }
   for (const Vec2 force : wall_pushes(scene, motions, time).forces) carried += dot(force, force);
   return left == 0 ? 0 : std::sqrt(left / (left + carried));

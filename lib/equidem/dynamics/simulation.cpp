@@ -53,12 +53,17 @@ void Simulation::Implementation::list_contacts() {
     const Vec2 branch = as_i ? scene.assembly.branch(contact) : -scene.assembly.branch(contact);
     const SpringConstants k_contact = scene.springs[c];
     fill_geometry(kind, branch, as_i ? contact.lever_i : contact.lever_j, as_i ? contact.lever_j : contact.lever_i,
-                  k_contact, slot, lane);
+                  k_contact, scene.springs.bending(c), slot, lane);
     if (!dashpots || kind.equal_contacts) continue;
-    const SpringConstants c_contact =
-        dashpots_of(options.damping, k_contact, scene.inertia[contact.i].mass, scene.inertia[contact.j].mass);
-    slot[lane_count * (doubles - 2) + lane] = c_contact.kN;
-    slot[lane_count * (doubles - 1) + lane] = c_contact.kT;
+    const Inertia &of_i = scene.inertia[contact.i], &of_j = scene.inertia[contact.j];
+    const SpringConstants c_contact = dashpots_of(options.damping, k_contact, of_i.mass, of_j.mass);
+    double* const constants = slot + lane_count * (doubles - (kind.bending ? 3 : 2)) + lane;
+    constants[0] = c_contact.kN;
+    constants[lane_count] = c_contact.kT;
+    if (kind.bending) {
+      constants[2 * lane_count] =
+          bending_dashpot_of(options.damping, scene.springs.bending(c), of_i.moment, of_j.moment);
+    }
   }
   data.first = first.data();
   data.neighbour = neighbour.data();

@@ -88,10 +88,11 @@ double Simulation::Implementation::elastic_energy(const std::vector<DiscMotion>&
     const Contact& contact = scene.assembly.contacts[c];
     const DiscMotion &i = now[contact.i], &j = now[contact.j];
     if (kind.motion == LoopKind::Motion::finite) {
-      energy += bond_energy(bond_of(scene.assembly, contact, scene.springs[c]), i, j);
+      energy += bond_energy(bond_of(scene.assembly, contact, scene.springs[c], scene.springs.bending(c)), i, j);
     } else {
       const ContactDeformation d = deformation(frame_of(scene.assembly, c), i, j);
       energy += 0.5 * (scene.springs[c].kN * d.normal * d.normal + scene.springs[c].kT * d.tangential * d.tangential);
+      if (kind.bending) energy += bending_energy(scene.springs.bending(c), i.theta, j.theta);
     }
   }
   return energy + wall_pushes(scene, now, time_at(steps)).energy;
@@ -197,6 +198,7 @@ std::vector<BodyContact> bonded_contacts(const Scene& scene, LoopKind::Motion mo
       result.push_back(bonded_contact(assembly, c, force));
       result.back().force = {on_i.x, on_i.y};
     }
+    result.back().bending_moment = bending_moment(scene.springs.bending(c), i.theta, j.theta);
   }
   for (const auto& [w, disc, gap] : wall_contacts(scene, motions, time)) {
     const Wall& wall = scene.walls[w];

@@ -54,6 +54,11 @@ struct Vibration {
     const Contact& contact = scene.assembly.contacts[c];
     return dashpots_of(options.damping, scene.springs[c], scene.inertia[contact.i].mass, scene.inertia[contact.j].mass);
   }
+  [[nodiscard]] double bending_dashpot(std::size_t c) const {
+    const Contact& contact = scene.assembly.contacts[c];
+    return bending_dashpot_of(options.damping, scene.springs.bending(c), scene.inertia[contact.i].moment,
+                              scene.inertia[contact.j].moment);
+  }
   /// The springs k + weight c.
   [[nodiscard]] ContactSprings with_dashpots(double springs, double weight) const {
     std::vector<SpringConstants> sum(scene.assembly.contacts.size());
@@ -61,7 +66,11 @@ struct Vibration {
       const SpringConstants k = scene.springs[c], d = dashpots(c);
       sum[c] = {springs * k.kN + weight * d.kN, springs * k.kT + weight * d.kT};
     }
-    return ContactSprings(std::move(sum));
+    if (!effects.bending) return ContactSprings(std::move(sum));
+    std::vector<double> bending(sum.size());
+    for (std::size_t c = 0; c < bending.size(); ++c)
+      bending[c] = springs * scene.springs.bending(c) + weight * bending_dashpot(c);
+    return ContactSprings(std::move(sum)).with_bending(std::move(bending));
   }
 
   [[nodiscard]] double exact(const ContactSprings& springs) const {
@@ -104,6 +113,8 @@ double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& sq
       const SpringConstants k = vibration.scene.springs[c], d = vibration.dashpots(c);
       slowest = std::min(slowest, d.kN / k.kN);
       if (k.kT > 0 && vibration.effects.tangential_springs) slowest = std::min(slowest, d.kT / k.kT);
+      const double kM = vibration.scene.springs.bending(c);
+      if (kM > 0 && vibration.effects.bending) slowest = std::min(slowest, vibration.bending_dashpot(c) / kM);
     }
     fastest = squared(vibration.with_dashpots(0, 1));
   } else {

@@ -41,8 +41,11 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
   effects.tangential_springs = springs;
   const auto any_bond = [&](const auto& test) { return std::any_of(scene.bonds.begin(), scene.bonds.end(), test); };
   const bool sprung = any_bond([](const GrainBond& b) { return b.normal_spring > 0 || b.tangential_spring > 0; });
-  const bool turning = any_bond(
-      [](const GrainBond& b) { return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0; });
+  const bool bending = any_bond([](const GrainBond& b) { return b.bending_spring > 0; });
+  const bool turning = any_bond([](const GrainBond& b) {
+                         return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0;
+                       }) ||
+                       bending;
   effects.rotation = friction || turning || ellipses || clumps;
   effects.entries = {
       entry(fmt::format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
@@ -58,6 +61,8 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
             "no friction: nothing can turn a grain"),
       entry("bonds", !scene.bonds.empty(),
             sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
+      entry("bending springs", bending, "bonds resist the relative rotation of their discs", "no bond has one"),
+      entry("breaking", scene.strengths.has_value(), "bonds have strengths", "no bond has a strength"),
       entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
       entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
       entry("motion of walls", moving, "a wall has a schedule", "no wall moves by a schedule"),

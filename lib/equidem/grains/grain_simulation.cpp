@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <tuple>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
@@ -60,7 +62,9 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.bodies.ways.resize(system.bodies.blocks.count());
   system.bodies.inwards.resize(system.bodies.blocks.count());
   order_by_place(system, scene, order);
-  tie_bonds(system, scene);
+  std::vector<std::size_t> numbers = tie_bonds(system, scene);
+  if (scene.strengths)
+    system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
   self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
@@ -150,6 +154,7 @@ void GrainSimulation::Implementation::step_by_verlet() {
 }
 
 void GrainSimulation::Implementation::find_impulses() {
+  if (system.bonds.breakable) break_bonds(system);
   collide(system);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
 }

@@ -56,6 +56,8 @@ struct BondReport {
   double step_limit = 0;       ///< largest time step that the bonds allow, s; infinite: no limit
 };
 
+struct BondBreak;
+
 class GrainSimulation final : public AnySimulation {
  public:
   /// Determines the effects and chooses the loop. Bodies and walls are sorted by position internally, so results do not
@@ -94,7 +96,7 @@ class GrainSimulation final : public AnySimulation {
   /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop stores them;
   /// impulses (n, 3) and bonds (b, 3) of the last step, if the next step needs them; losses: the terms of the ledger;
   /// counters; walls (w, 6): impulse before the last step and in it, its moment, work; servos: ServoState; start:
-  /// potential, energy.
+  /// potential, energy; where bonds break, breaks (k, 6): BondBreak.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
@@ -106,6 +108,8 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] BondReport bonds() const;
   /// One entry per bond, ordered by (i, j), i < j.
   [[nodiscard]] std::vector<BondDrift> bond_drifts() const;
+  /// Bonds that broke so far, in the order of time, and of the bonds at one time.
+  [[nodiscard]] std::vector<BondBreak> breaks() const;
   /// Set all velocities to 0. The kinetic energy removed is counted in EnergyLedger::lost_dashpot.
   void stop_all();
 

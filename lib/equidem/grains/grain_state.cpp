@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
 
@@ -128,17 +129,25 @@ SavedState GrainSimulation::save() const {
                                load.step_angular, load.work});
   for (const ServoState& servo : system.walls.servos)
     for (const auto number : servo_saved) servos.push_back(servo.*number);
-  return {.step = system.step,
-          .arrays = {{"motions", 3, numbers_of(motions())},
-                     {"velocities", 3, numbers_of(velocities())},
-                     {"contacts", numbers_per_contact_of(system), std::move(contacts)},
-                     {"impulses", numbers_per_impulse, std::move(impulses)},
-                     {"bonds", numbers_per_bond, std::move(bonds)},
-                     {"losses", 1, std::move(losses)},
-                     {"counters", 1, std::move(counts)},
-                     {"walls", numbers_per_wall, std::move(walls)},
-                     {"servos", std::size(servo_saved), std::move(servos)},
-                     {"start", 1, {implementation_->potential_at_start, implementation_->energy_at_start}}}};
+  SavedState state{.step = system.step,
+                   .arrays = {{"motions", 3, numbers_of(motions())},
+                              {"velocities", 3, numbers_of(velocities())},
+                              {"contacts", numbers_per_contact_of(system), std::move(contacts)},
+                              {"impulses", numbers_per_impulse, std::move(impulses)},
+                              {"bonds", numbers_per_bond, std::move(bonds)},
+                              {"losses", 1, std::move(losses)},
+                              {"counters", 1, std::move(counts)},
+                              {"walls", numbers_per_wall, std::move(walls)},
+                              {"servos", std::size(servo_saved), std::move(servos)},
+                              {"start", 1, {implementation_->potential_at_start, implementation_->energy_at_start}}}};
+  if (const auto& breakable = system.bonds.breakable)
+    state.arrays.push_back({"breaks", numbers_per_break, numbers_of(breakable->breaks)});
+  return state;
+}
+
+std::vector<BondBreak> GrainSimulation::breaks() const {
+  const auto& breakable = implementation_->system.bonds.breakable;
+  return breakable ? breakable->breaks : std::vector<BondBreak>{};
 }
 
 void GrainSimulation::stop_all() {
@@ -162,6 +171,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const bool shapes = !system.shapes.parts.empty();
   const std::size_t impulses =
       implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
+  if (system.bonds.breakable) restore_breaks(system, breaks_of(state["breaks"]));
   const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.tied.size() : 0;
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
@@ -20,6 +21,8 @@
 #include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {
+
+struct BreakableBonds;
 
 struct GrainMotion {
   Vec2 position, velocity;
@@ -145,6 +148,7 @@ struct ContactList {
 struct BondList {
   std::vector<TiedPair> tied;  ///< ordered by i, then j
   PackedBonds packed;
+  std::shared_ptr<BreakableBonds> breakable;  ///< null: no bond breaks
 };
 
 struct GrainSystem {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/contact/chosen_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -99,7 +100,7 @@ Assembly wrapped_compactly(const Assembly& assembly) {
 }
 
 TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs) {
-  std::vector<SpringConstants> left;
+  std::vector<std::int32_t> kept;
   TractionSample sample{wrapped_compactly(assembly), ContactSprings(SpringConstants{}), {}, {}};
   Assembly& opened = sample.assembly;
   opened.period.reset();
@@ -114,7 +115,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
     if (!crosses(contact)) {
       opened.contacts.push_back(contact);
       if (!arms.empty()) opened.contact_arms.push_back(arms[c]);
-      left.push_back(springs[c]);
+      kept.push_back(static_cast<std::int32_t>(c));
       continue;
     }
     if (springs[c].kT == 0) {
@@ -131,9 +132,7 @@ TractionSample cut_open(const Assembly& assembly, const ContactSprings& springs)
   satisfy_mean_strain(a, steps, assembly.area());
   for (std::size_t k = 0; k < a.size(); ++k) sample.cuts[k].a = a[k];
   // Where every contact is cut, none has springs of its own.
-  sample.springs = left.empty()        ? ContactSprings(springs[0])
-                   : springs.uniform() ? springs
-                                       : ContactSprings(std::move(left));
+  sample.springs = kept.empty() ? ContactSprings(springs[0]) : chosen_springs(springs, kept);
   return sample;
 }
 

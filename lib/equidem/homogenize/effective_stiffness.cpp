@@ -161,6 +161,7 @@ void EffectiveStiffness::scale(double factor) {
   stiffness = factor * stiffness;
   tangential_part = factor * tangential_part;
   normal_part = factor * normal_part;
+  bending_part = factor * bending_part;
   prestress_part = factor * prestress_part;
   gradient_stiffness = factor * gradient_stiffness;
   error_bound *= factor;

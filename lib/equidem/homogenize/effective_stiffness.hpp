@@ -37,10 +37,12 @@ struct EffectiveStiffness {
   /// Pa, symmetric part of the stress by strain (Voigt, engineering shear), from the energies of the load cases:
   /// its error is the square of that of the motions.
   Matrix3 stiffness{};
-  /// Pa, dC/dkT times kT and dC/dkN times kN (they add up to C): the strain energies in tangential and in normal
-  /// springs. Exact derivatives for springs scaled by a common factor, since the motion is stationary.
+  /// Pa, dC/dkT times kT, dC/dkN times kN and dC/dkM times kM (they add up to C): the strain energies in tangential,
+  /// normal and bending springs. Exact derivatives for springs scaled by a common factor, since the motion is
+  /// stationary.
   Matrix3 tangential_part{};
   Matrix3 normal_part{};
+  Matrix3 bending_part{};
   /// Pa, what the forces at rest add: their part of the energies and the change of the stress by the change of shape
   /// (`stiffness` is the symmetric part of `cauchy`); 0 without prestress.
   Matrix3 prestress_part{};

@@ -9,7 +9,9 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -130,7 +132,7 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   result.gear_modes = static_cast<std::int64_t>(held_motions_.gears.size());
   result.local_mechanisms = report.zero_pivots;
   result.self_stresses =
-      count_self_stresses(assembly(), springs(), free_unknowns,
+      count_self_stresses(assembly(), springs(), result.effects, free_unknowns,
                           static_cast<std::int64_t>(held_motions_.components.size()) + result.local_mechanisms);
   result.unknowns = solver_->unknowns().unknowns;
   result.negative_pivots = report.negative_pivots;
@@ -229,6 +231,22 @@ void add_pair_energies(const SpringConstants& k, const ContactDeformation* defor
       sums[pair_sums / 2 + entry] += k.kT * deformations[a].tangential * deformations[b].tangential;
     }
   }
+}
+
+Matrix3 bending_energies(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
+                         const std::vector<Solution>& solutions) {
+  constexpr std::size_t entries = 6;
+  const auto sums = contact_sums<entries>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
+    double turns[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const ContactMotion motion = solver.solver().contact_motion(cases[k], solutions[k].motion, c);
+      turns[k] = motion.theta_j - motion.theta_i;
+    }
+    std::size_t entry = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = a; b < 3; ++b, ++entry) total[entry] += solver.springs().bending(c) * turns[a] * turns[b];
+  });
+  return {{{sums[0], sums[1], sums[2]}, {sums[1], sums[3], sums[4]}, {sums[2], sums[4], sums[5]}}};
 }
 
 PairEnergies pair_energies(const double* sums) {

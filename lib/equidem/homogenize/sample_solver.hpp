@@ -71,6 +71,10 @@ inline constexpr std::size_t pair_sums = 12;
 /// \param deformations by three load cases, m
 void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums);
 PairEnergies pair_energies(const double* sums);
+/// Twice the energies of pairs of the first three load cases in bending springs, sum kM (theta_j - theta_i)_a (theta_j
+/// - theta_i)_b, N.
+Matrix3 bending_energies(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
+                         const std::vector<Solution>& solutions);
 
 /// Displacement gradients of unit strains xx, yy, xy (engineering) and of the unit rotation.
 inline constexpr std::size_t strain_cases = 4;

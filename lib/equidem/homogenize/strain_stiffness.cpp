@@ -138,6 +138,10 @@ void solve_strains(const Assembly& assembly, const ContactSprings& springs, cons
   result.tangential_part = (1 / result.area) * sums.energies.tangential;
   result.prestress_part = (1 / result.area) * sums.of_prestress;
   result.stiffness = result.normal_part + result.tangential_part;
+  if (result.effects.bending) {
+    result.bending_part = (1 / result.area) * bending_energies(solver, cases, solutions);
+    result.stiffness = result.stiffness + result.bending_part;
+  }
   if (springs.prestressed()) result.stiffness = result.stiffness + result.prestress_part;
   result.error_bound = (solver.energy_error() + sums.rounding) / result.area;
   result.hill_mandel = power_difference(sums.stresses, result.stiffness);

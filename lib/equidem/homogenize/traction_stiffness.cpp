@@ -47,7 +47,7 @@ std::vector<double> tractions(const Assembly& assembly, const TractionSample& sa
   return force;
 }
 
-/// Energy stored by the cut contacts under the forces that they carry.
+/// Energy stored by the cut contacts under the forces that they carry, without moments.
 PairEnergies energies_of_cuts(const Assembly& assembly, const ContactSprings& springs, const TractionSample& sample) {
   PairEnergies energies;
   for (const auto& cut : sample.cuts) {
@@ -85,7 +85,11 @@ void solve_tractions(const Assembly& assembly, const ContactSprings& springs, co
         add_pair_energies(solver.springs()[c], deformations.data(), sums.data());
       }).data());
   const PairEnergies cut = energies_of_cuts(assembly, springs, sample);
-  const Matrix3 stored = inside.normal + inside.tangential;
+  Matrix3 stored = inside.normal + inside.tangential, bent{};
+  if (result.effects.bending) {
+    bent = bending_energies(solver, cases, solutions);
+    stored = stored + bent;
+  }
   Matrix3 compliance = cut.normal + cut.tangential;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
@@ -101,6 +105,7 @@ void solve_tractions(const Assembly& assembly, const ContactSprings& springs, co
   // C = D^-1 and kT dD/dkT = -(tangential energies): kT dC/dkT = C (tangential energies) C; likewise kN.
   result.normal_part = result.stiffness * ((1 / area) * (inside.normal + cut.normal)) * result.stiffness;
   result.tangential_part = result.stiffness * ((1 / area) * (inside.tangential + cut.tangential)) * result.stiffness;
+  result.bending_part = result.stiffness * ((1 / area) * bent) * result.stiffness;
   const double size = largest_entry(result.stiffness);
   result.error_bound = 9 * size * size * solver.energy_error() / area;
   result.times.add("stiffness", watch.lap());

@@ -26,6 +26,11 @@ void check_harmonic(const ContactSprings& springs, const Viscoelasticity& viscoe
               "an assembly with kT < 0 rests in a balance that no dashpot keeps: every rotation grows",
               "Use kT >= 0, or elastic springs");
   }
+  if (springs.bends()) {
+    bad_input("bonds resist bending, and the springs are viscoelastic",
+              "the relaxation of the normal and the tangential spring does not tell that of bending",
+              "Take kM and bond_width out, or [viscoelastic]");
+  }
   if (springs.prestressed()) {
     bad_input("forces at rest count, and the springs are viscoelastic",
               "their geometric stiffness is that of elastic springs alone", "Use effects.prestress = \"off\"");

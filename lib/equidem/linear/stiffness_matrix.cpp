@@ -48,6 +48,11 @@ std::array<double, B * B> visit_row(const SpringNetwork& network, double held_st
         add_prestress_tangent<B>(*prestress, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, turns_i, turns_j,
                                  coupling.data());
     }
+    if (springs.bends() && contact.i != contact.j) {
+      const double kM = springs.bending(static_cast<std::size_t>(edge.contact));
+      add_bending_tangent<B>(kM, unknowns.rotation_scale, false, diagonal.data());
+      add_bending_tangent<B>(kM, unknowns.rotation_scale, true, coupling.data());
+    }
     for (int r = 0; r < B; ++r) {
       for (int c = 0; c < B; ++c) {
         if (held(contact.i, r) || held(contact.j, c)) coupling[r * B + c] = 0;

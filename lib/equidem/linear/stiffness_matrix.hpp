@@ -65,7 +65,8 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
 CompressedColumns with_upper_triangle(const CompressedColumns& lower);
 
 /// Tangent of the linear contact law, summed over contacts: K = sum kN g g^T + kT h h^T with the derivatives g, h of
-/// stretch and slip. Rows and columns of held components are those of a unit matrix times the largest spring.
+/// stretch and slip, and kM of bending springs between the rotations. Rows and columns of held components are those of
+/// a unit matrix times the largest spring.
 StiffnessMatrix assemble_stiffness(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                                    const DegreesOfFreedom& unknowns);
 

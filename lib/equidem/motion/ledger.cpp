@@ -34,6 +34,7 @@ constexpr ListedTerm all_terms[] = {
     {{"lost_tangential_dashpot", "tangential dashpots", lost, &EnergyLedger::lost_tangential_dashpot}, colliding},
     {{"lost_release", "released when contacts opened", lost, &EnergyLedger::lost_release}, colliding},
     {{"lost_bond", "bonds", lost, &EnergyLedger::lost_bond}, colliding},
+    {{"lost_breaking", "bonds that broke", lost, &EnergyLedger::lost_breaking}, colliding},
     {{"work_of_loads", "loads", work, &EnergyLedger::work_of_loads}, bonded},
     {{"work_of_supports", "supports", work, &EnergyLedger::work_of_supports}, bonded},
     {{"work_of_walls", "walls", work, &EnergyLedger::work_of_walls}, bonded | colliding},

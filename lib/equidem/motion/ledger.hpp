@@ -34,6 +34,8 @@ struct EnergyLedger {
   /// force.
   double lost_release = 0;
   double lost_bond = 0;  ///< dashpots of bonds
+  /// Released by bonds that broke: their springs, less what the contacts behind them store at once.
+  double lost_breaking = 0;
   double work_of_loads = 0, work_of_supports = 0, work_of_walls = 0;
   /// Kinetic and elastic energy that changes of the scene have added where a stage began.
   double work_of_stages = 0;

@@ -193,6 +193,11 @@ CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings
               "there normal springs resist rotations too, so that the stiffness without them is not linear in kT/kN",
               "Ask for it of discs only; for other bodies examine the mechanisms");
   }
+  if (springs.bends()) {
+    bad_input("the critical kT/kN is asked of contacts with bending springs",
+              "they resist rotations too, so that the stiffness without them is not linear in kT/kN",
+              "Ask for it without bending springs; with them and kT >= 0 nothing loses stability");
+  }
   RatioPencil pencil(assembly, springs, supports, options);
   CriticalRatio result;
   std::vector<double> x;

@@ -147,7 +147,8 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
   result.motions = disc_motions(unknowns, motion.high);
   const SpringNetwork network{assembly, solver.graph(), springs, unknowns};
   std::vector<double> internal(f.size());
-  if (springs.prestressed()) {
+  if (effects.bending) result.bending_moments = bending_moments_of(network, motion);
+  if (springs.prestressed() || effects.bending) {
     internal_force(network, motion, {}, internal);
   } else {
     internal_force(assembly, solver.graph(), unknowns, result.contact_forces, internal);
@@ -176,6 +177,8 @@ void EquilibriumSolver::Implementation::describe_state(std::span<const double> f
   }
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     result.energy += linear_spring_energy_of(springs[c], result.contact_forces[c]);
+    if (effects.bending && springs.bending(c) > 0)
+      result.energy += 0.5 * result.bending_moments[c] * result.bending_moments[c] / springs.bending(c);
   }
 }
 

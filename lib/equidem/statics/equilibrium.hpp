@@ -30,7 +30,9 @@ struct Reaction {
 struct Equilibrium {
   std::vector<DiscMotion> motions;           ///< per disc
   std::vector<ContactForce> contact_forces;  ///< per contact; beside those at rest, along n and s of before the motion
-  std::vector<Reaction> reactions;           ///< discs with a held component
+  /// N, per contact where bending springs count, else empty: on the first disc; its negative acts on the second.
+  std::vector<double> bending_moments;
+  std::vector<Reaction> reactions;       ///< discs with a held component
   std::vector<double> rotation_moments;  ///< N, per disc: moment that holds it where rotation is restrained; else empty
   /// |f - K u| over |f| (prescribed motions included in f), 2-norms over the unknowns, for the motion u that refinement
   /// keeps to twice the digits of a double: the residual of the contact forces.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/internal_force.hpp"
 
-#include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/contact_response.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 
@@ -47,10 +47,7 @@ Evaluated evaluate(const Contact& contact, const ContactFrame& frame, const Degr
 }
 
 ContactResponse<Extended> response_of(const ContactSprings& springs, std::size_t contact, const Evaluated& by) {
-  ContactResponse<Extended> response{.force = linear_spring_force(springs[contact], by.deformation)};
-  if (const ContactPrestress* const prestress = springs.prestress(contact))
-    add_prestress(*prestress, by.deformation, by.theta_i, by.theta_j, response);
-  return response;
+  return contact_response(springs, contact, by.deformation, by.theta_i, by.theta_j);
 }
 
 ContactDeformation affine_part(const Assembly& assembly, const Contact& contact, const ContactFrame& frame,
@@ -91,6 +88,17 @@ void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, 
   });
 }
 
+std::vector<double> bending_moments_of(const SpringNetwork& network, const PreciseMotion& motion) {
+  std::vector<double> moments(network.assembly.contacts.size());
+  parallel_ranges(moments.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto by = evaluate(network.assembly.contacts[c], frame_of(network.assembly, c), network.unknowns, motion);
+      moments[c] = static_cast<double>(bending_moment(network.springs.bending(c), by.theta_i, by.theta_j));
+    }
+  });
+  return moments;
+}
+
 ContactMotion motion_of(const SpringNetwork& network, const PreciseMotion& motion,
                         const std::optional<Tensor2>& gradient, std::size_t number) {
   const Contact& contact = network.assembly.contacts[number];
@@ -108,10 +116,7 @@ ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMot
 }
 
 ContactForce force_of(const ContactSprings& springs, std::size_t contact, const ContactMotion& motion) {
-  ContactResponse<double> response{.force = linear_spring_force(springs[contact], motion.deformation)};
-  if (const ContactPrestress* const prestress = springs.prestress(contact))
-    add_prestress(*prestress, motion.deformation, motion.theta_i, motion.theta_j, response);
-  return response.force;
+  return contact_response(springs, contact, motion.deformation, motion.theta_i, motion.theta_j).force;
 }
 
 namespace {

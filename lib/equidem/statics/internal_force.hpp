@@ -49,11 +49,15 @@ ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMot
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
                        const PreciseMotion& motion, std::span<ContactForce> forces);
 
-/// Internal force f_int = K u per component (N/m; moments over a): the negative of what contacts exert on the discs.
+/// Moment of the bending spring of every contact on its first disc, N; its negative acts on the second.
+std::vector<double> bending_moments_of(const SpringNetwork& network, const PreciseMotion& motion);
+
+/// Internal force f_int = K u per component (N/m; moments over a), of contacts that carry no moments: the negative of
+/// what contacts exert on the discs.
 void internal_force(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
                     std::span<const ContactForce> forces, std::span<double> result);
 
-/// The internal force of a motion, N/m per component, with the moments that prestress adds.
+/// The internal force of a motion, N/m per component, with the moments that bending springs and prestress add.
 void internal_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,
                     std::span<double> result);
 

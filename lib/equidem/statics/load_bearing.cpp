@@ -95,6 +95,7 @@ class Pruning {
       if (!left(edge.other)) continue;
       if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column (0, 0)
       const Contact& c = assembly_.contacts[edge.contact];
+      if (carries_moment(edge.contact) && contacts_left_[disc] == 2) return false;
       const double lever = edge.other == c.j ? c.lever_i : c.lever_j;
       normals[count++] = frame_of(assembly_, static_cast<std::size_t>(edge.contact)).normal;
       if (springs_[edge.contact].kT != 0) tangential += rotation_ && lever > 0 ? 1 : 2;
@@ -102,9 +103,13 @@ class Pruning {
     return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
   }
 
+  [[nodiscard]] bool carries_moment(std::int32_t contact) const {
+    return rotation_ && springs_.bending(static_cast<std::size_t>(contact)) > 0;
+  }
+
   /// Whether a contact as the only one between two parts lets them turn or slide.
   [[nodiscard]] bool is_loose(std::int32_t contact) const {
-    return rotation_ || springs_[static_cast<std::size_t>(contact)].kT == 0;
+    return (rotation_ && !carries_moment(contact)) || springs_[static_cast<std::size_t>(contact)].kT == 0;
   }
 
   /// A disc with one contact left, or none, is joined loosely unless that contact holds it in place.
@@ -127,6 +132,7 @@ class Pruning {
     for (const auto& edge : graph_.of(disc)) {
       if (!left(edge.other)) continue;
       if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column of zeros
+      if (carries_moment(edge.contact) && contacts_left_[disc] == 2) return false;
       const auto k = static_cast<std::size_t>(edge.contact);
       const ContactFrame frame = frame_of(assembly_, k);
       const bool is_i = static_cast<std::size_t>(assembly_.contacts[k].i) == disc;
@@ -179,7 +185,7 @@ class Pruning {
       if (!in_chain(disc)) continue;
       for (const auto& edge : graph_.of(disc)) {
         const auto other = static_cast<std::size_t>(edge.other);
-        if (other == disc || !in_chain(other)) continue;
+        if (other == disc || !in_chain(other) || carries_moment(edge.contact)) continue;
         const std::size_t mine = other_contact(disc, edge.contact), theirs = other_contact(other, edge.contact);
         if (!points_in_line(assembly_, {mine, static_cast<std::size_t>(edge.contact), theirs})) chained.push_back(disc);
       }
@@ -385,15 +391,6 @@ class Pruning {
 LoadBearingNetwork load_bearing_network(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                                         const std::vector<std::uint8_t>& held, LeaveOut which) {
   return Pruning(assembly, springs, effects, held, which).prune();
-}
-
-std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, std::int64_t unknowns,
-                                 std::int64_t free_motions) {
-  std::int64_t constraints = 0;
-  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
-    constraints += (springs[k].kN > 0 ? 1 : 0) + (springs[k].kT != 0 ? 1 : 0);
-  }
-  return constraints - unknowns + free_motions;
 }
 
 }  // namespace equidem

@@ -7,7 +7,8 @@
 /// force under any motion of the rest (a disc is loaded where it is held; elsewhere loads come through contacts):
 /// - a disc without contacts, or with a single one: its force has nothing to balance it;
 /// - a disc with two contacts that are not in line, where slip is resisted at neither of them, or at one only and the
-///   disc turns freely: the balance of moments leaves no tangential force, that of forces then no normal ones;
+///   disc turns freely: the balance of moments leaves no tangential force, that of forces then no normal ones. Where
+///   one of them carries moments it stays;
 /// - what a single contact joins to the rest (dangling): no force can pass it;
 /// - what a single disc joins to the rest (dangling): it can follow that disc rigidly, without energy where rotation is
 ///   restrained, kT = 0 or levers add up to their branch; elsewhere it stays;
@@ -68,10 +69,5 @@ enum class LeaveOut {
 LoadBearingNetwork load_bearing_network(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                                         const std::vector<std::uint8_t>& held = {},
                                         LeaveOut which = LeaveOut::unloaded);
-
-/// Maxwell & Calladine: independent states of self-stress = constraints - unknowns + motions without energy, a
-/// constraint being a stretch or, where kT != 0, a slip.
-std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, std::int64_t unknowns,
-                                 std::int64_t free_motions);
 
 }  // namespace equidem

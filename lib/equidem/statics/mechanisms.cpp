@@ -109,4 +109,14 @@ InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& sprin
   return report;
 }
 
+std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                                 std::int64_t unknowns, std::int64_t free_motions) {
+  std::int64_t constraints = 0;
+  for (std::size_t k = 0; k < assembly.contacts.size(); ++k) {
+    constraints += (springs[k].kN > 0 ? 1 : 0) + (springs[k].kT != 0 ? 1 : 0);
+    constraints += effects.bending && springs.bending(k) > 0 ? 1 : 0;
+  }
+  return constraints - unknowns + free_motions;
+}
+
 }  // namespace equidem

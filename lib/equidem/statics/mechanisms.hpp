@@ -44,4 +44,9 @@ struct InertiaReport {
 InertiaReport find_inertia(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                            std::span<const Support> supports);
 
+/// Maxwell & Calladine: independent states of self-stress = constraints - unknowns + motions without energy, a
+/// constraint being a stretch, where kT != 0 a slip, and where bending springs count a relative rotation.
+std::int64_t count_self_stresses(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
+                                 std::int64_t unknowns, std::int64_t free_motions);
+
 }  // namespace equidem

@@ -322,6 +322,7 @@ double elastic_energy(const Assembly& assembly, const ContactSprings& springs, s
     const Contact& c = assembly.contacts[k];
     const ContactDeformation d = deformation(frame_of(assembly, k), motions[c.i], motions[c.j]);
     energy += linear_spring_energy(springs[k], d);
+    if (springs.bends()) energy += bending_energy(springs.bending(k), motions[c.i].theta, motions[c.j].theta);
     if (const ContactPrestress* const prestress = springs.prestress(k)) {
       const double theta_i = motions[c.i].theta, theta_j = motions[c.j].theta;
       energy += 0.5 * prestress_form(*prestress, d, theta_i, theta_j, d, theta_i, theta_j);
@@ -340,7 +341,8 @@ double reference_energy(const Assembly& assembly, const ContactSprings& springs,
     energy +=
         0.5 * springs[k].kN *
             (dot(i.u, i.u) + dot(j.u, j.u) + squared(frame.offset_i * i.theta) + squared(frame.offset_j * j.theta)) +
-        0.5 * std::abs(springs[k].kT) * (squared(frame.lever_i * i.theta) + squared(frame.lever_j * j.theta));
+        0.5 * std::abs(springs[k].kT) * (squared(frame.lever_i * i.theta) + squared(frame.lever_j * j.theta)) +
+        0.5 * springs.bending(k) * (squared(i.theta) + squared(j.theta));
   }
   return energy;
 }

@@ -27,11 +27,13 @@ std::string describe_direction(Vec2 direction);
 /// "disc 17 at (0.02, 0.01)".
 std::string describe_disc(const Assembly& assembly, std::size_t disc);
 
-/// Elastic energy of a motion, N (J/m per m): sum over contacts of kN dn²/2 + kT ds²/2.
+/// Elastic energy of a motion, N (J/m per m): sum over contacts of kN dn²/2 + kT ds²/2, and
+/// kM (theta_j - theta_i)²/2.
 double elastic_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
 /// The scale of that energy, N: the same sum with the motions of the two discs of a contact in place of the stretch
-/// and slip that they share, kN (|u_i|² + |u_j|²)/2 + |kT| ((r_i theta_i)² + (r_j theta_j)²)/2.
+/// and slip that they share, kN (|u_i|² + |u_j|²)/2 + |kT| ((r_i theta_i)² + (r_j theta_j)²)/2 + kM (theta_i² +
+/// theta_j²)/2.
 double reference_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
 
 /// elastic_energy / reference_energy of a motion; 0 where nothing moves, negative for an unstable mode (kT < 0). A

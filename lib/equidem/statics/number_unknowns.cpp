@@ -39,8 +39,8 @@ void apply(const Assembly& assembly, const Effects& effects, const Support& supp
   hold_group(discs, support, effects, unknowns);
 }
 
-/// Rotations that no contact resists: every contact of the disc lies on the line of centres and has kT = 0 or a lever
-/// arm of zero, and its force at rest does not change as the disc turns.
+/// Rotations that no contact resists: every contact of the disc lies on the line of centres, has kT = 0 or a lever arm
+/// of zero, and no bending spring, and its force at rest does not change as the disc turns.
 void hold_inert_rotations(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom& unknowns) {
   std::vector<std::uint8_t> resisted(assembly.size(), 0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
@@ -48,6 +48,7 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
     const ContactFrame frame = frame_of(assembly, c);
     if (turns_against(frame.lever_i, frame.offset_i, springs[c].kT)) resisted[contact.i] = 1;
     if (turns_against(frame.lever_j, frame.offset_j, springs[c].kT)) resisted[contact.j] = 1;
+    if (springs.bending(c) > 0 && contact.i != contact.j) resisted[contact.i] = resisted[contact.j] = 1;
     const ContactPrestress* const prestress = springs.prestress(c);
     if (prestress == nullptr) continue;
     if (turns_i(*prestress, frame)) resisted[contact.i] = 1;

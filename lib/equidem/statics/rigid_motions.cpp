@@ -83,7 +83,8 @@ struct Piece {
   TriangularFactor<3> equations;
 };
 
-/// Discs that contacts with kT != 0 make roll on one another, and the equations for (gamma, omega).
+/// Discs that contacts with kT != 0 make roll on one another, or bending springs turn together, and the equations for
+/// (gamma, omega).
 struct RollingComponent {
   std::int32_t first_disc = 0;
   std::int64_t discs = 0;
@@ -109,6 +110,7 @@ class Equations {
     if (unknowns.per_disc == 3) {
       follow_rolling();
       close_rings();
+      if (springs.bends()) turn_together();
       hold_rotations();
     } else {
       for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
@@ -170,22 +172,26 @@ class Equations {
     }
   }
 
-  /// Slip of a contact and, off the line of centres, its stretch, from rotations of i and j.
+  /// Slip of a contact, off the line of centres its stretch, and where it bends the relative rotation, from rotations
+  /// of i and j.
   struct Row {
     double i = 0, j = 0;
+    bool bends = false;
     [[nodiscard]] bool joins() const { return i != 0 && j != 0; }
   };
   struct Rows {
-    std::array<Row, 2> row;
+    std::array<Row, 3> row;
     int count = 0;
   };
   [[nodiscard]] Rows rows_of(std::size_t contact) const {
     Rows rows;
     const Contact& c = assembly_.contacts[contact];
     if (springs_[contact].kT != 0) rows.row[rows.count++] = {c.lever_i, c.lever_j};
-    if (!off_line_) return rows;
-    const ContactArms& arms = assembly_.contact_arms[contact];
-    if (arms.offset_i != 0 || arms.offset_j != 0) rows.row[rows.count++] = {arms.offset_i, arms.offset_j};
+    if (off_line_) {
+      const ContactArms& arms = assembly_.contact_arms[contact];
+      if (arms.offset_i != 0 || arms.offset_j != 0) rows.row[rows.count++] = {arms.offset_i, arms.offset_j};
+    }
+    if (springs_.bending(contact) > 0) rows.row[rows.count++] = {1, -1, true};
     return rows;
   }
 
@@ -213,7 +219,7 @@ class Equations {
           const double here = c.i == i ? row->i : row->j;
           const double there = c.i == i ? row->j : row->i;
           component_[j] = number;
-          alpha_[j] = off_line_ ? 1 : (norm(assembly_.branch(c)) - here * alpha_[i]) / there;
+          alpha_[j] = off_line_ ? 1 : row->bends ? alpha_[i] : (norm(assembly_.branch(c)) - here * alpha_[i]) / there;
           beta_[j] = -here * beta_[i] / there;
           reached.push_back(j);
         }
@@ -257,6 +263,21 @@ class Equations {
       const double gamma = sum(c.lever_i * beta_[c.i], c.lever_j * beta_[c.j], 0);
       // A lever arm of zero leaves its disc out: only the other one has gamma in this equation.
       components_[component_[c.lever_i > 0 ? c.i : c.j]].equations.add({gamma / scale, omega / scale});
+    }
+  }
+
+  /// No relative rotation where contacts bend.
+  void turn_together() {
+    const double closed = closing_tolerance();
+    for (std::size_t k = 0; k < assembly_.contacts.size(); ++k) {
+      const Contact& c = assembly_.contacts[k];
+      if (springs_.bending(k) == 0 || c.i == c.j) continue;
+      const auto difference = [closed](double of_i, double of_j) {
+        const double terms = std::abs(of_i) + std::abs(of_j);
+        return std::abs(of_j - of_i) <= closed * terms ? 0.0 : (of_j - of_i) / terms;
+      };
+      components_[component_[c.i]].equations.add(
+          {difference(beta_[c.i], beta_[c.j]), difference(alpha_[c.i], alpha_[c.j])});
     }
   }
 

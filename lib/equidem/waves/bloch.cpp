@@ -23,6 +23,8 @@ Blocks blocks_of(const CellContact& contact, const SpringConstants& k, double ro
   add_linear_spring_tangent<3>(k, g.normal_i, g.normal_i, g.tangential_i, g.tangential_i, b.ii.data());
   add_linear_spring_tangent<3>(k, g.normal_j, g.normal_j, g.tangential_j, g.tangential_j, b.jj.data());
   add_linear_spring_tangent<3>(k, g.normal_i, g.normal_j, g.tangential_i, g.tangential_j, b.ij.data());
+  for (auto* own : {&b.ii, &b.jj}) add_bending_tangent<3>(contact.kM, rotation_scale, false, own->data());
+  add_bending_tangent<3>(contact.kM, rotation_scale, true, b.ij.data());
   return b;
 }
 
@@ -40,6 +42,7 @@ BlochWaves::BlochWaves(PrimitiveCell cell, const std::vector<Inertia>& inertia, 
     const double kT = any_tangential_ ? contact.springs.kT : 1;  // the critical ratio gives all of them one
     if (turns_against(contact.frame.lever_i, contact.frame.offset_i, kT)) turned[contact.i] = 1;
     if (turns_against(contact.frame.lever_j, contact.frame.offset_j, kT)) turned[contact.j] = 1;
+    if (contact.kM > 0) turned[contact.i] = turned[contact.j] = 1;
   }
   for (std::size_t d = 0; d < cell_.size(); ++d) {
     const Inertia& body = inertia[cell_.discs[d]];

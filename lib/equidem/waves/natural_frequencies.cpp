@@ -67,11 +67,12 @@ class VibrationOperator {
       const ContactFrame frame = frame_of(assembly, contact);
       for (std::size_t c = columns.first; c < columns.first + columns.count; ++c) {
         const auto u = x.column(c);
-        double turn = 0, opening = 0;
+        double turn = 0, opening = 0, bending = 0;
         if (b_ == 3) {
           const double of_i = motion(u, i + 2) * over_scale, of_j = motion(u, j + 2) * over_scale;
           turn = frame.lever_i * of_i + frame.lever_j * of_j;
           opening = frame.offset_i * of_i + frame.offset_j * of_j;
+          if (springs.bends()) bending = bending_moment(springs.bending(contact), of_i, of_j);
         }
         const auto stretch =
             deformation(frame, motion(u, j) - motion(u, i), motion(u, j + 1) - motion(u, i + 1), turn, opening);
@@ -83,8 +84,8 @@ class VibrationOperator {
           row[1] -= sign * on_i.y * over_root_mass_[d * b_ + 1];
           if (b_ == 3) row[2] -= moment * over_scale * over_root_mass_[d * b_ + 2];
         };
-        if (i == d * b_) add(1, moment_on_i(frame, force));
-        if (j == d * b_) add(-1, moment_on_j(frame, force));
+        if (i == d * b_) add(1, moment_on_i(frame, force) + bending);
+        if (j == d * b_) add(-1, moment_on_j(frame, force) - bending);
       }
     }
   }

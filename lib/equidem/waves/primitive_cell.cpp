@@ -44,6 +44,7 @@ struct Bond {
   Vec2 branch;  ///< from this disc
   ContactFrame frame;
   SpringConstants springs;
+  double kM;
 };
 
 ContactFrame seen_from_j(const ContactFrame& frame) {
@@ -115,8 +116,8 @@ class TranslationGroup {
       const Contact& contact = assembly.contacts[c];
       const Vec2 l = assembly.branch(contact);
       const ContactFrame frame = frame_of(assembly, c);
-      bonds_[contact.i].push_back({contact.j, l, frame, springs[c]});
-      bonds_[contact.j].push_back({contact.i, -l, seen_from_j(frame), springs[c]});
+      bonds_[contact.i].push_back({contact.j, l, frame, springs[c], springs.bending(c)});
+      bonds_[contact.j].push_back({contact.i, -l, seen_from_j(frame), springs[c], springs.bending(c)});
     }
     std::iota(orbit_.begin(), orbit_.end(), 0);
     find();
@@ -140,7 +141,7 @@ class TranslationGroup {
     for (const std::int32_t d : cell.discs) {
       for (const Bond& bond : bonds_[d]) {
         if (!points_up(bond.branch)) continue;  // else it is seen from its other end
-        cell.contacts.push_back({index[d], index[root(bond.other)], bond.branch, bond.frame, bond.springs});
+        cell.contacts.push_back({index[d], index[root(bond.other)], bond.branch, bond.frame, bond.springs, bond.kM});
       }
     }
     const auto lattice = lattice_of(copies);
@@ -168,7 +169,8 @@ class TranslationGroup {
   }
   [[nodiscard]] bool alike(const Bond& a, const Bond& b) const {
     return norm(a.branch - b.branch) <= 2 * distance_ && alike(a.frame, b.frame) &&
-           alike(a.springs.kN, b.springs.kN, stiffness_) && alike(a.springs.kT, b.springs.kT, stiffness_);
+           alike(a.springs.kN, b.springs.kN, stiffness_) && alike(a.springs.kT, b.springs.kT, stiffness_) &&
+           alike(a.kM, b.kM, std::max(a.kM, b.kM));
   }
   /// Whether two bodies have equal radius, area and polar moment.
   [[nodiscard]] bool alike_bodies(std::int32_t d, std::int32_t e) const {
@@ -282,7 +284,8 @@ PrimitiveCell given_cell(const Assembly& assembly, const ContactSprings& springs
   cell.rotation_scale = assembly.mean_radius();
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
-    cell.contacts.push_back({contact.i, contact.j, assembly.branch(contact), frame_of(assembly, c), springs[c]});
+    cell.contacts.push_back(
+        {contact.i, contact.j, assembly.branch(contact), frame_of(assembly, c), springs[c], springs.bending(c)});
   }
   return cell;
 }

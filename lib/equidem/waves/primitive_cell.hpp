@@ -22,6 +22,7 @@ struct CellContact {
   Vec2 branch;         ///< m, from i to the image of j that it touches: all that a phase exp(i q.l) needs
   ContactFrame frame;  ///< normal, levers and offsets
   SpringConstants springs;
+  double kM = 0;  ///< bending spring, N m/rad per metre of depth
 };
 
 /// A cell of a periodic network. It may be oblique, unlike the period of an assembly.
@@ -37,6 +38,10 @@ struct PrimitiveCell {
   [[nodiscard]] bool on_lines_of_centres() const {
     return std::all_of(contacts.begin(), contacts.end(),
                        [](const CellContact& c) { return c.frame.offset_i == 0 && c.frame.offset_j == 0; });
+  }
+  /// Whether contacts resist the relative rotation of their bodies.
+  [[nodiscard]] bool bends() const {
+    return std::any_of(contacts.begin(), contacts.end(), [](const CellContact& c) { return c.kM > 0; });
   }
   [[nodiscard]] double area() const { return cross(period[0], period[1]); }
 };

@@ -78,6 +78,11 @@ CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprin
             .searched =
                 "contacts lie off the lines of centres, where normal springs resist rotations too, so that no "
                 "single kT/kN tells what gives way"};
+  if (springs.bends())
+    return {.sought = false,
+            .searched =
+                "bending springs resist rotations too, so that no single kT/kN tells what gives way; with kT of 0 "
+                "or more and kM of 0 or more nothing does"};
   if (survey) return critical_of_survey(*survey);
   if (!options.critical_ratio) return {.sought = false, .searched = "it was not asked for"};
   if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);

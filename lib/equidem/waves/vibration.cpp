@@ -8,6 +8,7 @@
 #include <string>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/contact/viscous_bond.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
@@ -90,6 +91,7 @@ double element_bound(const Assembly& assembly, const ContactSprings& springs, co
               z[contact.j] * contact.lever_j * contact.lever_j / j.moment;
     }
     const ContactFrame frame = frame_of(assembly, c);
+    const double kM = rotation ? springs.bending(c) : 0;
     if (rotation && (frame.offset_i != 0 || frame.offset_j != 0)) {
       const double of_i = z[contact.i] / i.moment, of_j = z[contact.j] / j.moment;
       const double stretch =
@@ -97,8 +99,15 @@ double element_bound(const Assembly& assembly, const ContactSprings& springs, co
       const double both = of_i * frame.offset_i * frame.lever_i + of_j * frame.offset_j * frame.lever_j;
       const double kN = springs[c].kN, kT = std::max(springs[c].kT, 0.0);
       const double middle = 0.5 * (kN * stretch + kT * slip);
-      bound = std::max(bound,
-                       middle + std::sqrt(std::max(0.0, middle * middle - kN * kT * (stretch * slip - both * both))));
+      bound = std::max(bound, middle +
+                                  std::sqrt(std::max(0.0, middle * middle - kN * kT * (stretch * slip - both * both))) +
+                                  kM * (of_i + of_j));
+      continue;
+    }
+    if (kM > 0) {
+      bound = std::max(bound, largest_bond_rate({springs[c].kN, springs[c].kT, kM}, frame,
+                                                {z[contact.i] / i.mass, z[contact.i] / i.moment},
+                                                {z[contact.j] / j.mass, z[contact.j] / j.moment}));
       continue;
     }
     bound = std::max({bound, springs[c].kN * translation, springs[c].kT * slip});
@@ -121,6 +130,7 @@ TimeStepRules time_step_rules(const Assembly& assembly, const ContactSprings& sp
       diagonal[3 * contact.j + r] +=
           k.kN * g.normal_j[r] * g.normal_j[r] + k.kT * g.tangential_j[r] * g.tangential_j[r];
     }
+    for (const std::int32_t d : {contact.i, contact.j}) diagonal[3 * d + 2] += springs.bending(c) / (scale * scale);
     mass_over_stiffness =
         std::min(mass_over_stiffness, std::min(inertia[contact.i].mass, inertia[contact.j].mass) / k.kN);
   }

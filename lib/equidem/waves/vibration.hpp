@@ -30,8 +30,8 @@ ExtremeEigenvalue extreme_squared_frequency(const Assembly& assembly, const Cont
 ///   omega² <= max over contacts of kN (z_i/m_i + z_j/m_j) and kT (z_i/m_i + z_j/m_j + z_i r_i²/I_i + z_j r_j²/I_j),
 ///
 /// z the number of contacts of a disc; off the lines of centres the larger eigenvalue of stretch and slip together,
-/// which the rotations then couple. Negative kT can only lower omega² and counts as 0.
-/// \param rotation whether discs turn
+/// which the rotations then couple; with a bending spring that of slip and relative rotation. Negative kT can only
+/// lower omega² and counts as 0. \param rotation whether discs turn
 double element_bound(const Assembly& assembly, const ContactSprings& springs, const std::vector<Inertia>& inertia,
                      bool rotation);
 

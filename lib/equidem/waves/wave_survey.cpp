@@ -72,7 +72,10 @@ void add_long_waves(const BlochWaves& waves, const BrillouinZone& zone, ZoneMaxi
 
 /// The cell with equal springs: its zero-energy modes follow from geometry alone.
 PrimitiveCell with_unit_springs(PrimitiveCell cell) {
-  for (CellContact& contact : cell.contacts) contact.springs = {1, contact.springs.kT != 0 ? 1.0 : 0.0};
+  for (CellContact& contact : cell.contacts) {
+    contact.springs = {1, contact.springs.kT != 0 ? 1.0 : 0.0};
+    if (contact.kM > 0) contact.kM = cell.rotation_scale * cell.rotation_scale;
+  }
   return cell;
 }
 
@@ -113,8 +116,9 @@ WaveSurvey survey_waves(const PrimitiveCell& cell, const std::vector<Inertia>& i
   const bool any_negative =
       std::any_of(cell.contacts.begin(), cell.contacts.end(), [](const CellContact& c) { return c.springs.kT < 0; });
   WaveSurvey survey;
-  survey.ratio_sought = cell.on_lines_of_centres();
-  const bool turned = turns && (any_tangential || !survey.ratio_sought);
+  const bool on_lines = cell.on_lines_of_centres();
+  survey.ratio_sought = on_lines && !cell.bends();
+  const bool turned = turns && (any_tangential || !on_lines);
   const BlochWaves in_motion(cell, inertia, turned), at_rest(cell, inertia, turns);
   survey.cell = cell;
   survey.zone = brillouin_zone(cell.period);

@@ -36,7 +36,7 @@ struct WaveSurvey {
   PrimitiveCell cell;
   BrillouinZone zone;
   double mass_per_area = 0;  ///< kg/m²
-  bool ratio_sought = true;  ///< false: contacts lie off the lines of centres, and no critical ratio was sought
+  bool ratio_sought = true;  ///< false: contacts lie off the lines of centres or bend, and no critical ratio was sought
   int grid = 0;              ///< wave vectors along each reciprocal vector
   ZoneMaximum critical;      ///< of r_c: the wave that loses its stiffness first as kT/kN falls from 0
   ZoneMaximum highest;       ///< of omega²

@@ -13,6 +13,7 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/springs_table.hpp"
+#include "equidem/contact/bending.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -66,6 +67,7 @@ CalibrateOptions calibrate_options(const Case& resolved) {
                          .rotation = resolved.rotation,
                          .solver = resolved.solver},
           .weighting = resolved.weighting,
+          .bond_width = resolved.bending.bond_width,
           .lattice = resolved.assembly.arrangement,
           .static_only = resolved.material->static_only};
 }
@@ -89,8 +91,8 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
                    ? "."
                    : fmt::format(" between boundaries of kind {}.", to_string(found.achieved.boundary));
   }
-  return springs_file(found.springs, resolved.weighting, disc_density(resolved, assembly), resolved.title,
-                      comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
+  return springs_file(found.springs, resolved.weighting, disc_density(resolved, assembly), resolved.bending.bond_width,
+                      resolved.title, comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
 }
 
 /// Factorizations that calibrations took: of lattices one, of triangulations five, of packings, in which nu does not
@@ -158,9 +160,12 @@ int calibrate(const CalibrateVerb& options) {
   const Calibration found = calibrate(problem.assembly, wanted, how);
   StageTimes times = problem.times;
   times.add(found.times);
-  problem.springs = {contact_springs(problem.assembly, found.springs, resolved.weighting), found.springs,
-                     fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN,
-                                 found.springs.kT, found.springs.ratio(), to_string(resolved.weighting))};
+  problem.springs = {
+      bending_springs(problem.assembly, contact_springs(problem.assembly, found.springs, resolved.weighting),
+                      resolved.bending),
+      found.springs,
+      fmt::format("kN = {:.9g} Pa, kT = {:.9g} Pa (kT/kN = {:.9g}), weighting {}", found.springs.kN, found.springs.kT,
+                  found.springs.ratio(), to_string(resolved.weighting))};
   Stopwatch watch;
   const std::optional<MeanFieldGuess> guess = mean_field_guess(problem.assembly, wanted, how);
   times.add("mean field", watch.lap());

@@ -108,6 +108,7 @@ void add_stiffness(Results& out, const EffectiveStiffness& r) {
   out.note("; ").add("hill_mandel", "macroscopic and microscopic power differ by", r.hill_mandel, "",
                      {Shown::power, 0});
   out.set("tangential_part", r.tangential_part).set("normal_part", r.normal_part);
+  if (r.effects.bending) out.set("bending_part", r.bending_part);
 }
 
 /// The stress that the forces at rest make, and the derivative of the Cauchy stress where it is not symmetric.

@@ -15,6 +15,7 @@
 #include "equidem/output/files/grain_frames.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
+#include "run/break_files.hpp"
 #include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
 #include "run/run_results.hpp"
@@ -205,7 +206,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
        [](const EnergyLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
       {"lost by friction", PlotColour::purple,
        [](const EnergyLedger& l) { return l.lost_slip + l.lost_tangential_dashpot; }},
-      {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond; }},
+      {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond + l.lost_breaking; }},
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
   const GrainCase& resolved = case_;
@@ -224,8 +225,11 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
     write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
     write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
   }
+  const std::vector<BondBreak> breaks = simulation_.present().breaks();
+  const std::vector<GrainBond> bonds = bonds_left(resolved.scene.bonds, breaks);
   if (resolved.output.csv && !resolved.scene.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", resolved.scene.bonds, simulation_.present().bond_drifts(), overwrite);
+    write_bond_csv(folder / "bonds.csv", bonds, simulation_.present().bond_drifts(), overwrite);
+  write_breaks(folder, resolved, breaks, step_.step, overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
@@ -233,7 +237,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
                          .grains = grains,
                          .clumps = resolved.scene.clumps,
                          .groups = colours,
-                         .bonds = resolved.scene.bonds,
+                         .bonds = bonds,
                          .walls = walls,
                          .paths = result.record.paths},
                         overwrite);

@@ -9,6 +9,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/kinds.hpp"
 
+#include "run/break_files.hpp"
 #include "run/run_grains.hpp"
 #include "run/run_results.hpp"
 
@@ -346,6 +347,7 @@ Results GrainRun::events() const {
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.present().bonds());
+  add_breaks(out, case_, simulation_.present().breaks(), step_.step);
   return out;
 }
 

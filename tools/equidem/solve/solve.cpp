@@ -42,7 +42,8 @@ void write_state_of(const CommonOptions& options, const OutputCase& wanted, cons
   const AssemblyState state{.assembly = problem.assembly,
                             .motions = result.equilibrium.motions,
                             .contact_forces = result.equilibrium.contact_forces,
-                            .stresses = stresses};
+                            .stresses = stresses,
+                            .bending_moments = result.equilibrium.bending_moments};
   write_state(options, wanted, suffix_of(result.name), state);
   PictureOptions picture{.title = problem.resolved.title};
   picture.loads = drawn_loads(problem.assembly, loads);

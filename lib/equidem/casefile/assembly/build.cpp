@@ -10,6 +10,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/motion_case.hpp"
+#include "equidem/contact/bending.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
@@ -165,7 +166,14 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
     return {contact_springs(assembly, constants, resolved.weighting), constants,
             described(material, constants, resolved.weighting, spring_relation(resolved, assembly).relation)};
   };
-  return with_place(resolved.where(resolved.material ? "material" : "springs"), built);
+  return with_place(resolved.where(resolved.material ? "material" : "springs"), [&] {
+    BuiltSprings result = built();
+    result.springs = bending_springs(assembly, result.springs, resolved.bending);
+    if (resolved.bending.kM) result.report += fmt::format(", kM = {:.6g} N", *resolved.bending.kM);
+    if (resolved.bending.bond_width)
+      result.report += fmt::format(", bonds {:.6g} times as wide as the smaller disc", *resolved.bending.bond_width);
+    return result;
+  });
 }
 
 Scene build_scene(const Case& resolved, const Assembly& assembly, const ContactSprings& springs) {

@@ -193,6 +193,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   if (springs) {
     tables.springs = springs->constants;
     tables.weighting = springs->weighting;
+    tables.bending = springs->bending;
   }
   if (tables.viscoelastic) complete_viscoelastic(root, *tables.viscoelastic);
   tables.assembly.density = one_density(root, {{"assembly", tables.assembly.density},

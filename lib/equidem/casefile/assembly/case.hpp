@@ -21,6 +21,7 @@
 #include "equidem/casefile/assembly/viscoelastic_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
+#include "equidem/contact/bending.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/prestress/prestress_choice.hpp"
@@ -137,6 +138,7 @@ struct Case : CaseDocument {
   std::optional<MaterialCase> material;
   std::optional<ViscoelasticCase> viscoelastic;
   SpringWeighting weighting = SpringWeighting::uniform;
+  BendingOptions bending;
   Rotation rotation = Rotation::from_scene;
   PrestressChoice prestress = PrestressChoice::automatic;
   std::optional<TensionTest> test;     ///< or

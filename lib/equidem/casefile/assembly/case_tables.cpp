@@ -125,7 +125,10 @@ void bind_material(File<CaseTables>& file) {
                "two-dimensional moduli are the same in both"),
            key("static_only", &T::static_only,
                "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
-  file.table("material").keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]")});
+  file.table("material")
+      .keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]"),
+             key_in<CaseTables>("bond_width", &Case::bending, &BendingOptions::bond_width, not_negative,
+                                "as in [springs]")});
   file.table("effects", completed, "effects that may be switched off")
       .keys({key_in<CaseTables>("rotation", &Case::rotation, optional, choices({"free", "restrained"}),
                                 "rotation of the discs; left out: free where a tangential spring turns them"),
@@ -293,7 +296,8 @@ const File<CaseTables>& case_file() {
     File<CaseTables> made(case_schema, "case file");
     bind_springs_file(made);
     bind_assembly(made);
-    made.table("springs", &CaseTables::springs_table, "the two springs of a contact").keys(springs_keys());
+    made.table("springs", &CaseTables::springs_table, "the springs of a contact").keys(springs_keys());
+    made.table("springs", &CaseTables::springs_table).keys(bond_keys());
     made.table("viscoelastic", &CaseTables::viscoelastic,
                "dashpots at the springs: complex moduli over frequency (homogenize), motion (run)")
         .keys(viscoelastic_keys());

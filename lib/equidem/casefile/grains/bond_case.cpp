@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// [bonds] and [[bond]].
+#include "equidem/casefile/assembly/strength_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/scene/bond_file.hpp"
 
 namespace equidem::casefile {
@@ -14,6 +16,20 @@ std::vector<Key<GrainBond>> bond_keys(bool base) {
   for (const BondProperty& property : bond_properties())
     keys.push_back(key(property.name, property.value, optional, unit(property.unit), not_negative,
                        base ? property.help : "instead of that of [bonds]"));
+  return keys;
+}
+
+/// Of those of contacts that break at rest: without a bond discs always rub, and have no facets.
+std::vector<Key<StrengthOptions>> strength_keys_of_bonds() {
+  std::vector<Key<StrengthOptions>> keys = strength_keys();
+  std::erase_if(keys, [](const Key<StrengthOptions>& key) {
+    return key.spec.name == "after_breaking" || key.spec.name == "residual_friction";
+  });
+  for (Key<StrengthOptions>& key : keys) {
+    if (key.spec.name == "bond_length") key.spec.choices = {"none", "smaller_diameter"};
+    if (key.spec.name == "tension")
+      key.spec.help = "a bond breaks where its normal force, and what its moment adds at the outer fibre, reach it";
+  }
   return keys;
 }
 
@@ -34,6 +50,8 @@ void bind_bonds(File<GrainTables>& file) {
                              "[i, j]: two discs, counted from 0, those of the file first; they do not collide")};
   for (Key<GrainBond>& key : bond_keys(false)) keys.push_back(std::move(key));
   file.table("bond", repeated_table, "two discs tied by dashpots").described(std::move(keys));
+  file.table("strength", &GrainTables::strength, "strengths of the bonds; left out: they never break")
+      .keys(strength_keys_of_bonds());
 }
 
 void complete_bonds(const TomlValue& root, GrainTables& tables) {
@@ -59,6 +77,12 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
     read.places.push_back(fmt::format("{}: bond", table.where()));
   }
   tables.scene.bonds = std::move(read.bonds);
+  if (tables.strength) {
+    const TomlValue& table = *root.find("strength");
+    if (tables.scene.bonds.empty())
+      fail_at(table, "strength", "no grains are tied", "there is nothing that could break", "Add [bonds], or [[bond]]");
+    tables.scene.strengths = at_key(table, "strength", [&] { return bond_strengths(tables.scene, *tables.strength); });
+  }
   check_bonds(tables.scene, [&](std::size_t bond) { return read.places[bond]; });
 }
 

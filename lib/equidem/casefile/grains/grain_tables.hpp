@@ -69,6 +69,7 @@ struct GrainTables : GrainCase, MotionTables {
   CollisionTable collisions;
   std::optional<SpringsTable> springs;
   BondsTable bonds;
+  std::optional<StrengthOptions> strength;
   std::optional<ShakingTable> shaking_table;
   std::vector<StageTable> stage_tables;
 };
@@ -97,9 +98,10 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainTables& tab
 ///         [springs] beside a stiffness of [collisions], or that no grain has the density of
 void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
 
-/// The bonds of the file, then those of the case.
+/// The bonds of the file, then those of the case, and their strengths.
 /// \param tables with bodies
-/// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds
+/// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds;
+///         as bond_strengths
 void complete_bonds(const TomlValue& root, GrainTables& tables);
 
 /// The stages with their walls and gravity.

@@ -47,6 +47,7 @@ struct BondNow {
   Lanes stretch;  ///< dn/|l|
   Lanes ratio;    ///< |l0|/|l|
   Lanes slip;     ///< ds/L = psi - theta
+  Lanes twist;    ///< theta_j - theta_i, with bending springs
 };
 
 /// The law, for any motion d = u_j - u_i: with e = l² - l0² = d.(l0 + l), dn/|l| = e/(|l| (|l| + |l0|)), and psi the
@@ -68,6 +69,7 @@ EQUIDEM_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lan
   if constexpr (kind.springs == LoopKind::Springs::rotation) {
     bond.slip = without_whole_turns(bond.slip - (theta_i + twist - share_of<kind>(geometry) * twist));
   }
+  if constexpr (kind.bending) bond.twist = twist;
   return bond;
 }
 
@@ -126,11 +128,13 @@ EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& see
       bond.slip -= seen.twist - share_of<kind>(geometry) * seen.twist;
     }
   }
+  if constexpr (kind.bending) bond.twist = seen.twist;
   far |= reinterpret_cast<Choice>(room) | reinterpret_cast<Choice>(seen.ratio);
   return bond;
 }
 
-/// Sums of discs over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T. With
+/// Sums of discs over their contacts: forces f_N n + f_T L/|l| s and moments f_T r_i of stresses f_N and f_T, and those
+/// of bending. With
 /// equal springs, constants are factored out of the sums (L = |l0|).
 struct BondSums {
   Lanes normal_x{}, normal_y{};  ///< f_N n, or dn n
@@ -139,18 +143,24 @@ struct BondSums {
 };
 
 /// Add one slot of springs, or with rates in place of stretch and slip one of dashpots, whose constants lie behind
-/// those of the springs. \param stretch dn/|l| \param slip ds/L
+/// those of the springs. \param stretch dn/|l| \param slip ds/L \param twist theta_j - theta_i, with bending springs
 template <LoopKind kind, bool dashpots>
-EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip, BondSums& sum) {
+EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip,
+                               [[maybe_unused]] const Lanes& twist, BondSums& sum) {
   constexpr bool tangential = kind.springs != LoopKind::Springs::normal;
   if constexpr (!kind.equal_contacts) {
-    const double* springs = geometry + (dashpots ? 28 : 20);
+    const double* springs = geometry + (!dashpots ? 20 : kind.bending ? 32 : 28);
     Lanes kn, kt, levers;
     load(springs, kn);
     load(springs + 4, kt);
     load(geometry + 12, levers);
     stretch *= kn;
     if constexpr (tangential) slip *= kt * (levers * levers);
+    if constexpr (kind.bending) {
+      Lanes km;
+      load(springs + 8, km);
+      sum.moment += km * twist;
+    }
   }
   sum.normal_x += stretch * bond.x;
   sum.normal_y += stretch * bond.y;
@@ -221,7 +231,7 @@ struct GroupBonds {
   }
 
   EQUIDEM_INLINE void add(std::int32_t slot, const BondNow& bond) {
-    add_stress<kind, false>(geometry(slot), bond, bond.stretch, bond.slip, springs);
+    add_stress<kind, false>(geometry(slot), bond, bond.stretch, bond.slip, bond.twist, springs);
     if constexpr (dashpot) {
       Lanes dx, dy, spin, slip{};
       gather<kind.width()>(data.velocity_at[parity], places(slot), dx, dy, spin);
@@ -230,7 +240,8 @@ struct GroupBonds {
       const Lanes over_square = 1 / (bond.x * bond.x + bond.y * bond.y + smallest);
       if constexpr (kind.springs != LoopKind::Springs::normal) slip = (bond.x * dy - bond.y * dx) * over_square;
       if constexpr (rotation) slip -= spin + share_of<kind>(geometry(slot)) * (omega - spin);
-      add_stress<kind, true>(geometry(slot), bond, (bond.x * dx + bond.y * dy) * over_square, slip, dashpots);
+      const Lanes rate = (bond.x * dx + bond.y * dy) * over_square;
+      add_stress<kind, true>(geometry(slot), bond, rate, slip, kind.bending ? spin - omega : Lanes{}, dashpots);
     }
   }
 

@@ -49,8 +49,8 @@ EQUIDEM_INLINE void add_equal(const double* geometry, const Lanes& dx, const Lan
   }
 }
 
-/// Add one slot whose contacts have springs of their own, lanes of kN and kT at `springs`: F on i = kN dn n + kT ds s,
-/// moment kT r_i ds.
+/// Add one slot whose contacts have springs of their own, lanes of kN, kT and kM at `springs`: F on i = kN dn n + kT
+/// ds s, moment kT r_i ds + kM (theta_j - theta_i).
 template <LoopKind kind>
 EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const Lanes& dx, const Lanes& dy,
                             const Lanes& theta_i, const Lanes& theta_j, ContactSums& sum) {
@@ -73,6 +73,11 @@ EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const
     sum.y += shear * nx;
     if constexpr (kind.springs == LoopKind::Springs::rotation) sum.moment += lever_i * shear;
   }
+  if constexpr (kind.bending) {
+    Lanes km;
+    load(springs + 8, km);
+    sum.moment += km * (theta_j - theta_i);
+  }
 }
 
 /// One slot of springs, or with velocities in place of motions one of dashpots, whose constants lie behind those of the
@@ -83,7 +88,7 @@ EQUIDEM_INLINE void add_contact(const double* geometry, const Lanes& dx, const L
   if constexpr (kind.equal_contacts) {
     add_equal<kind>(geometry, dx, dy, theta_i, theta_j, sum);
   } else {
-    add_own<kind>(geometry, geometry + (dashpots ? 24 : 16), dx, dy, theta_i, theta_j, sum);
+    add_own<kind>(geometry, geometry + (!dashpots ? 16 : kind.bending ? 28 : 24), dx, dy, theta_i, theta_j, sum);
   }
 }
 

@@ -11,16 +11,25 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t kinds = 2 * 3 * 2 * 5;
+constexpr std::size_t without_bending = 3 * 2 * 5, kinds = 2 * (without_bending + 4);
 
-/// The kinds in one row: motion, springs, equal contacts, and resistance; equal discs without a resistance.
-constexpr LoopKind kind_of(std::size_t index) {
+/// The kinds in one row: motion, then springs, equal contacts, and resistance, equal discs without a resistance; behind
+/// them those of bending springs.
+constexpr LoopKind kind_of(std::size_t number) {
   LoopKind kind;
+  kind.motion = static_cast<LoopKind::Motion>(number / (kinds / 2));
+  const std::size_t index = number % (kinds / 2);
+  if (index >= without_bending) {
+    kind.springs = LoopKind::Springs::rotation;
+    kind.bending = true;
+    kind.equal_contacts = kind.equal_discs = false;
+    kind.resistance = static_cast<LoopKind::Resistance>(index - without_bending);
+    return kind;
+  }
   kind.equal_discs = index % 5 == 4;
   kind.resistance = kind.equal_discs ? LoopKind::Resistance::none : static_cast<LoopKind::Resistance>(index % 5);
   kind.equal_contacts = index / 5 % 2 == 1;
-  kind.springs = static_cast<LoopKind::Springs>(index / 10 % 3);
-  kind.motion = static_cast<LoopKind::Motion>(index / 30);
+  kind.springs = static_cast<LoopKind::Springs>(index / 10);
   return kind;
 }
 

@@ -18,6 +18,7 @@ struct LoopKind {
     tangential,  ///< kT, rotation restrained; two unknowns
     rotation,    ///< kT, rotation; three unknowns
   } springs = Springs::normal;
+  bool bending = false;        ///< kM, only with rotation; contacts then are not equal, nor discs
   bool equal_contacts = true;  ///< one pair of springs for all, contact points in the middle: geometry in three numbers
   bool equal_discs = true;     ///< one mass and one moment of inertia for all; only without a resistance
   enum class Resistance : std::uint8_t {
@@ -39,8 +40,8 @@ struct LoopData {
   const std::int32_t* neighbour = nullptr;  ///< per slot and lane: place
   /// Per slot, lanes together, with l the branch at rest, r the lever of the disc and r' that of its neighbour. Small
   /// motions: l_x, l_y, 1/l² where contacts are equal, else n_x, n_y, r, r', kN, kT. Finite motions: l_x, l_y, l², and
-  /// where contacts are not equal (r + r')/|l|, r/(r + r'), kN, kT. Dashpots append c_N, c_T where contacts are not
-  /// equal.
+  /// where contacts are not equal (r + r')/|l|, r/(r + r'), kN, kT. Bending springs append kM. Dashpots append c_N,
+  /// c_T, and with bending springs c_M, where contacts are not equal.
   const double* geometry = nullptr;
   const double* inverse_inertia = nullptr;  ///< per group: 1/m, 1/I, lanes together; absent where discs are equal
   double* motion[2] = {nullptr, nullptr};   ///< places x width; a step reads one and writes the other

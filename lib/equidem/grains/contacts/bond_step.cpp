@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -37,20 +38,12 @@ bool is_wide(const GrainSystem& system, const TiedPair& bond) {
   return norm(system.bodies.motions[j].position - system.bodies.motions[i].position) > nearest_centres_of_bonds * radii;
 }
 
-/// From the start to now.
-BondMotion<double> motion_of(const GrainSystem& system, const TiedPair& bond) {
-  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
-  const Vec2 way = mj.position - mi.position - bond.springs.branch;
-  return {way.x, way.y, mi.angle - system.scene.grains[i].angle, mj.angle - system.scene.grains[j].angle};
-}
-
 /// Springs by where the discs are at the start of the step.
 void push_springs(GrainSystem& system) {
   const double dt = system.dt();
   for (const std::size_t b : system.bonds.packed.sprung) {
     const TiedPair& bond = system.bonds.tied[b];
-    const BondForces<double> force = bond_forces(bond.springs, motion_of(system, bond));
+    const BondForces<double> force = bond_forces(bond.springs, motion_of_bond(system, bond));
     BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
     BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
     const Vec2 impulse = dt * Vec2{force.x, force.y};
@@ -134,7 +127,7 @@ double loss_of_bonds(const GrainSystem& system, double share) {
 
 BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const BondMotion<double> motion = motion_of(system, bond);
+  const BondMotion<double> motion = motion_of_bond(system, bond);
   const ContactDeformation drift = bond_deformation(bond.springs, motion);
   const double radii = system.bodies.constants[i].radius + system.bodies.constants[j].radius;
   const double roll = motion.theta_j - motion.theta_i;
@@ -154,12 +147,20 @@ Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::Bon
   const auto largest = [&](const BondModes& c) { return largest_bond_rate(c, frame, inverse_of(i), inverse_of(j)); };
   const bool limits = bond_step == GrainOptions::BondStep::explicit_euler;
   return {limits ? largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}) : 0.0,
-          largest({bond.normal_spring, bond.tangential_spring, 0})};
+          largest({bond.normal_spring, bond.tangential_spring, bond.bending_spring})};
 }
 
 }  // namespace
 
-void tie_bonds(GrainSystem& system, const GrainScene& scene) {
+BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
+  const Vec2 way = mj.position - mi.position - bond.springs.branch;
+  return {way.x, way.y, mi.angle - system.scene.grains[i].angle, mj.angle - system.scene.grains[j].angle};
+}
+
+std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene) {
+  std::vector<TiedPair> pairs;
   for (const GrainBond& bond : scene.bonds) {
     TiedPair pair;
     std::tie(pair.i, pair.j) = std::minmax(system.bodies.place_of_grain[bond.i], system.bodies.place_of_grain[bond.j]);
@@ -169,11 +170,18 @@ void tie_bonds(GrainSystem& system, const GrainScene& scene) {
     pair.share = share_of(i, j);
     const Vec2 branch = j.position - i.position;
     const ContactFrame frame = frame_of(branch, pair.share);
-    pair.springs = {branch, frame.lever_i, frame.lever_j, {.kN = bond.normal_spring, .kT = bond.tangential_spring}};
-    system.bonds.tied.push_back(pair);
+    pair.springs = {branch,
+                    frame.lever_i,
+                    frame.lever_j,
+                    {.kN = bond.normal_spring, .kT = bond.tangential_spring},
+                    bond.bending_spring};
+    pairs.push_back(pair);
   }
-  std::sort(system.bonds.tied.begin(), system.bonds.tied.end(),
-            [](const TiedPair& a, const TiedPair& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t bond) { return std::pair(pairs[bond].i, pairs[bond].j); });
+  for (const std::size_t bond : order) system.bonds.tied.push_back(pairs[bond]);
+  return order;
 }
 
 void refuse_crept_bonds(const GrainSystem& system) {
@@ -229,7 +237,7 @@ void count_opening_kick(GrainSystem& system) {
 double elastic_of_bonds(const GrainSystem& system) {
   double sum = 0;
   for (const TiedPair& bond : system.bonds.tied) {
-    if (bond.has_springs()) sum += bond_energy(bond.springs, motion_of(system, bond));
+    if (bond.has_springs()) sum += bond_energy(bond.springs, motion_of_bond(system, bond));
   }
   return sum;
 }
@@ -243,7 +251,7 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
     const BondModes impulse = last_impulse(system, bond);
     Vec2 on_i = -1 / system.dt() * (impulse.normal * frame.normal + impulse.tangential * frame.tangent());
     if (bond.has_springs()) {
-      const BondForces<double> springs = bond_forces(bond.springs, motion_of(system, bond));
+      const BondForces<double> springs = bond_forces(bond.springs, motion_of_bond(system, bond));
       on_i += {springs.x, springs.y};
     }
     const bool same = system.bodies.grain_of[i] < system.bodies.grain_of[j];
@@ -281,6 +289,11 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
               "it solves all contacts together and knows no bonds", "Use the law linear_dashpot");
   }
   check_bonds(scene);
+  if (scene.strengths && !gives_force(options.law)) {
+    bad_input(fmt::format("bonds that break are asked for with the law \"{}\"", to_string(options.law)),
+              "the discs of a bond that broke may overlap, and the law takes them for an impact",
+              "Use the law linear_dashpot");
+  }
   const double limit = bond_step_limit(scene, options.bond_step);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",

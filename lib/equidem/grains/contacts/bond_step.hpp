@@ -30,11 +30,15 @@ struct TiedPair {
   ContactFrame frame;
   BondModes rate, gained;
 
-  [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0; }
+  [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
 
 /// Set the bonds of a sorted scene, sorted in turn, so that results do not depend on the caller's order.
-void tie_bonds(GrainSystem& system, const GrainScene& scene);
+/// \return their numbers in the scene
+std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene);
+
+/// Motion of a bond from the start to now.
+BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bond);
 
 /// Smallest distance of the centres over the sum of the radii at which the direction of a bond is defined.
 constexpr double nearest_centres_of_bonds = 1e-3;

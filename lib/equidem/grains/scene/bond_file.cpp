@@ -23,6 +23,8 @@ constexpr BondProperty properties_of_bonds[] = {
     {"normal_spring", &GrainBond::normal_spring, "N/m (discs: per m of depth)",
      "back to the distance at the start; 0 in the thesis: bonds creep"},
     {"tangential_spring", &GrainBond::tangential_spring, "N/m (discs: per m of depth)", "the same across"},
+    {"bending_spring", &GrainBond::bending_spring, "N m (discs: per m of depth)",
+     "kM, moment by the rotation of one disc against the other; a parallel bond of width w has normal_spring w²/12"},
 };
 
 std::size_t grain_number(std::string_view cell, const TableFile& file) {

@@ -16,7 +16,7 @@ namespace equidem {
 namespace {
 
 /// Columns of a file of grains. The last two are text.
-enum Column { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
+enum GrainColumn { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
 constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                            "spin", "angle", "density", "discs",           "group"};
 /// Columns that a run also writes, ignored by this reader.
@@ -118,14 +118,14 @@ class GrainFile {
       if (at != width_) file_.fail(fmt::format("the column '{}' is there twice", column_names[column]), "", "Keep one");
       at = c;
     }
-    for (const Column needed : {x, y, radius}) {
+    for (const GrainColumn needed : {x, y, radius}) {
       if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
       file_.fail(fmt::format("the column '{}' is missing", column_names[needed]), "every grain has a place and a size",
                  "Add it");
     }
   }
 
-  [[nodiscard]] double number(Column column, double otherwise) const {
+  [[nodiscard]] double number(GrainColumn column, double otherwise) const {
     if (at_[column] == width_) return otherwise;
     std::string_view text = cell(column);
     if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
@@ -136,7 +136,7 @@ class GrainFile {
   }
 
   /// The text of a cell; empty where the column is not there.
-  [[nodiscard]] std::string_view cell(Column column) const {
+  [[nodiscard]] std::string_view cell(GrainColumn column) const {
     return at_[column] == width_ ? std::string_view() : file_.cells()[at_[column]];
   }
 

@@ -177,11 +177,15 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
   }
   double largest = 0;
   for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
-                              bond.tangential_spring}) {
+                              bond.tangential_spring, bond.bending_spring}) {
     largest = std::max(largest, number);
     if (number >= 0 && std::isfinite(number)) continue;
     bad_input(fmt::format("the bond of grains {} and {} has a dashpot or a spring of {}", bond.i, bond.j, number),
               "negative ones would feed the motion", "Give 0 or more");
+  }
+  if (scene.strengths && !(bond.normal_spring > 0)) {
+    bad_input(fmt::format("the bond of grains {} and {} has no normal spring", bond.i, bond.j),
+              "it carries the force that breaks a bond", "Give a normal_spring > 0");
   }
   if (largest == 0) {
     bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j),
@@ -257,6 +261,10 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
 }
 
 void check_bonds(const GrainScene& scene, const PlaceOfBond& where) {
+  if (scene.strengths && scene.strengths->tension.size() != scene.bonds.size()) {
+    bad_input(fmt::format("there are strengths of {}", counted(std::ssize(scene.strengths->tension), "bond")),
+              fmt::format("the scene has {}", scene.bonds.size()), "Give each bond one");
+  }
   const auto place = [&](std::size_t bond) { return where ? where(bond) : std::string(); };
   std::vector<std::size_t> order(scene.bonds.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
@@ -60,6 +62,7 @@ struct GrainBond {
   double rolling_dashpot = 0;                         ///< against the relative spin, N m s
   /// Springs, unstretched at the start, N/m. 0 in the thesis: a bond under tension then creeps.
   double normal_spring = 0, tangential_spring = 0;
+  double bending_spring = 0;  ///< kM, against the relative rotation, unstretched at the start, N m/rad
 };
 
 /// Contact properties of two kinds of bodies.
@@ -84,6 +87,7 @@ struct GrainScene : AnyScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;  ///< shapes, each used by any number of grains
   std::vector<GrainBond> bonds;
+  std::optional<ContactStrengths> strengths;  ///< of the bonds, in their order; none: they never break
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row
 

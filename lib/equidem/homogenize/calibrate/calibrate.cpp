@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/contact/bending.hpp"
 #include "equidem/contact/material_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -31,7 +32,16 @@ HomogenizeOptions homogenize_options(const Assembly& assembly, const CalibrateOp
   return result;
 }
 
+ContactSprings springs_of(const Assembly& assembly, const SpringConstants& springs, const CalibrateOptions& options) {
+  return bending_springs(assembly, contact_springs(assembly, springs, options.weighting),
+                         {.bond_width = options.bond_width});
+}
+
 void check(const Assembly& assembly, const CalibrateOptions& options) {
+  if (options.bond_width && options.static_only) {
+    bad_input("kT < 0 is allowed, and bonds resist bending", "bending springs go with kT >= 0",
+              "Remove static_only, or bond_width");
+  }
   if (!(options.tolerance >= 1e-14 && options.tolerance <= 1e-2)) {
     bad_input(fmt::format("the tolerance of the calibration is {:.6g}", options.tolerance),
               "it is a relative error from 1e-14 to 1e-2", "Leave it at 1e-11");
@@ -46,7 +56,7 @@ void check(const Assembly& assembly, const CalibrateOptions& options) {
 class Homogenizer {
  public:
   Homogenizer(const Assembly& assembly, const CalibrateOptions& options)
-      : assembly_(assembly), weighting_(options.weighting), options_(homogenize_options(assembly, options)) {}
+      : assembly_(assembly), how_(options), options_(homogenize_options(assembly, options)) {}
 
   /// Not stable where the network cannot be homogenized at this ratio: a mechanism, or too near a loss of stability.
   RatioSample sample(double ratio) {
@@ -54,8 +64,7 @@ class Homogenizer {
     ++factorizations_;
     ratio_ = ratio;
     try {
-      last_ =
-          effective_stiffness(assembly_, contact_springs(assembly_, SpringConstants{1, ratio}, weighting_), options_);
+      last_ = effective_stiffness(assembly_, springs_of(assembly_, {1, ratio}, how_), options_);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::interrupted) throw;
       failure_ = error;
@@ -91,7 +100,7 @@ class Homogenizer {
 
  private:
   const Assembly& assembly_;
-  SpringWeighting weighting_;
+  const CalibrateOptions& how_;
   HomogenizeOptions options_;
   double ratio_ = 0;
   EffectiveStiffness last_;
@@ -270,8 +279,8 @@ std::optional<MeanFieldGuess> mean_field_guess(const Assembly& assembly, const E
     const ChosenRelation chosen = spring_relation(assembly, options.weighting, options.lattice);
     if (!chosen.relation.needs_measures) return {};
     guess.springs = springs_for(target, chosen.relation, chosen.measures, negative);
-    const EffectiveStiffness c = effective_stiffness(
-        assembly, contact_springs(assembly, guess.springs, options.weighting), homogenize_options(assembly, options));
+    const EffectiveStiffness c = effective_stiffness(assembly, springs_of(assembly, guess.springs, options),
+                                                     homogenize_options(assembly, options));
     if (c.unstable_modes == 0) {
       guess.moduli = effective_moduli(c.stiffness);
     } else {

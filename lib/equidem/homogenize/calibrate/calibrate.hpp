@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "equidem/assembly/assembly.hpp"
@@ -22,6 +23,7 @@ struct CalibrateOptions {
   /// Boundary::periodic is taken as displacement where the assembly is not periodic.
   HomogenizeOptions homogenize = {};
   SpringWeighting weighting = SpringWeighting::uniform;
+  std::optional<double> bond_width = {};  ///< as BendingOptions: kM then follows kN; none: contacts carry no moments
   /// The assembly is a block of this lattice, of touching equal discs: equal springs are those of the infinite lattice
   /// in closed form. Null, or other weightings: springs are searched for.
   const Lattice* lattice = nullptr;

@@ -36,8 +36,9 @@ void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bo
   }
 }
 
+/// \param kM over the square of a, Pa
 void add_contact(const Grid& grid, std::int32_t cell, const Assembly& assembly, std::size_t c, SpringConstants k,
-                 const DegreesOfFreedom& unknowns, double* matrix) {
+                 double kM, const DegreesOfFreedom& unknowns, double* matrix) {
   const Contact& contact = assembly.contacts[c];
   const double a = unknowns.rotation_scale;
   const Place middle = grid.place_in(cell, midpoint(assembly, contact, a));
@@ -57,6 +58,14 @@ void add_contact(const Grid& grid, std::int32_t cell, const Assembly& assembly, 
   add_derivative(of_j, g.normal_j, b == 3, normal);
   add_derivative(of_j, g.tangential_j, b == 3, tangential);
   grid_functions().add_squares(k.kN, normal.data(), k.kT, tangential.data(), matrix);
+  if (kM == 0 || b < 3) return;
+  const auto turn = [&](std::int32_t disc, double sign) {
+    return std::array<double, 3>{0, 0, unknowns.held[disc * b + 2] != 0 ? 0 : sign};
+  };
+  CellVector bending{};
+  add_derivative(of_i, turn(contact.i, -1), true, bending);
+  add_derivative(of_j, turn(contact.j, 1), true, bending);
+  grid_functions().add_squares(kM, bending.data(), 0, bending.data(), matrix);
 }
 
 /// The motion of a node by the unknowns of a coarser cell, 3 x 12.
@@ -109,14 +118,15 @@ CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, 
     }
   });
   const Buckets contacts = sort_into_buckets(cell, grid.cells());
+  const double bending_unit = unit * unknowns.rotation_scale * unknowns.rotation_scale;
   CellStiffness result(grid.cells() * cell_unknowns * cell_unknowns);
   parallel_ranges(grid.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       double sum[cell_unknowns * cell_unknowns] = {};
       for (const std::int32_t c : contacts.of(k)) {
         const SpringConstants spring = springs[c];
-        add_contact(grid, static_cast<std::int32_t>(k), assembly, c, {spring.kN / unit, spring.kT / unit}, unknowns,
-                    sum);
+        add_contact(grid, static_cast<std::int32_t>(k), assembly, c, {spring.kN / unit, spring.kT / unit},
+                    springs.bending(static_cast<std::size_t>(c)) / bending_unit, unknowns, sum);
       }
       std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
     }

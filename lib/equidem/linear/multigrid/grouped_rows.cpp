@@ -47,7 +47,8 @@ GroupedRows::GroupedRows(const SpringNetwork& network, std::span<const std::int3
                          std::span<const std::int32_t> first_row, double unit)
     : kind_{.rotation = network.unknowns.per_disc == 3,
             .offsets = network.unknowns.per_disc == 3 && any_offset(network.assembly),
-            .own_springs = !network.springs.uniform()},
+            .own_springs = !network.springs.uniform(),
+            .bending = network.unknowns.per_disc == 3 && network.springs.bends()},
       functions_(&row_functions(kind_)) {
   if (!kind_.own_springs) {
     const SpringConstants k = network.springs[0];
@@ -157,12 +158,14 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
       const auto contact = static_cast<std::size_t>(edge.contact);
       const Contact& c = network.assembly.contacts[contact];
       const SpringConstants given = network.springs[contact], k{given.kN / unit, given.kT / unit};
+      const double scale = network.unknowns.rotation_scale;
+      const double kM = c.i == c.j ? 0 : network.springs.bending(contact) / (unit * scale * scale);
       const ContactFrame frame = frame_of(network.assembly, contact);
-      const DeformationGradient g = deformation_gradient(frame, network.unknowns.rotation_scale);
+      const DeformationGradient g = deformation_gradient(frame, scale);
       std::array<double, 3> normal{}, tangential{};
       for (const bool from_i : {true, false}) {
         if (static_cast<std::size_t>(from_i ? c.i : c.j) != disc) continue;
-        fill_slot(frame, k, network.unknowns.rotation_scale, from_i, slot, lane);
+        fill_slot(frame, k, kM, scale, from_i, slot, lane);
         other_[slot * lanes + lane] = row_of[edge.other];
         ++slot;
         for (std::size_t e = 0; e < 3; ++e) {
@@ -172,6 +175,7 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
       }
       add_square(k.kN, normal, sum);
       add_square(k.kT, tangential, sum);
+      sum[5] += kM;
     }
     Block diagonal{sum[0], sum[1], sum[3], sum[1], sum[2], sum[4], sum[3], sum[4], sum[5]};
     for (std::size_t e = 0; e < 3; ++e) {
@@ -185,7 +189,7 @@ void GroupedRows::fill(const SpringNetwork& network, std::span<const std::int32_
   }
 }
 
-void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k, double scale, bool from_i,
+void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k, double kM, double scale, bool from_i,
                             std::size_t slot, std::size_t lane) {
   float* place = &geometry_[slot * lanes * static_cast<std::size_t>(kind_.fields()) + lane];
   const auto put = [&](double value) {
@@ -206,6 +210,7 @@ void GroupedRows::fill_slot(const ContactFrame& frame, const SpringConstants& k,
     put(k.kN);
     put(k.kT);
   }
+  if (kind_.bending) put(kM);
 }
 
 GroupedRows::Groups GroupedRows::groups_of(RowRange rows) const {

@@ -28,11 +28,12 @@ struct RowKind {
   bool rotation = false;     ///< discs turn
   bool offsets = false;      ///< contacts lie off the lines of centres
   bool own_springs = false;  ///< springs differ from contact to contact
+  bool bending = false;      ///< contacts resist the relative rotation of their discs
 
-  /// Numbers of a slot and lane: the block by rows; or the normal, levers, offsets, springs.
+  /// Numbers of a slot and lane: the block by rows; or the normal, levers, offsets, springs, the bending spring.
   [[nodiscard]] constexpr int fields() const {
     if (blocks) return 9;
-    return 2 + (rotation ? 2 : 0) + (offsets ? 2 : 0) + (own_springs ? 2 : 0);
+    return 2 + (rotation ? 2 : 0) + (offsets ? 2 : 0) + (own_springs ? 2 : 0) + (bending ? 1 : 0);
   }
   bool operator==(const RowKind&) const = default;
 };
@@ -78,9 +79,10 @@ class GroupedRows {
     std::size_t slots;
     const std::int32_t* other;  ///< slots x lanes: the row at the other end
     const float* geometry;      ///< slots x fields x lanes: n_x, n_y[, lever, lever of the other][, offset, offset
-                                ///< of the other][, kN, kT], or a block by rows; lengths over the scale of rotations
-    const float* inverse;       ///< 6 x lanes: lower triangle of the inverse of the diagonal block
-    const float* free;          ///< 3 x lanes: 1 where the component is not held, else 0; null: all are free
+                            ///< of the other][, kN, kT][, kM], or a block by rows; lengths over the scale of rotations,
+                            ///< kM over its square
+    const float* inverse;  ///< 6 x lanes: lower triangle of the inverse of the diagonal block
+    const float* free;     ///< 3 x lanes: 1 where the component is not held, else 0; null: all are free
   };
   [[nodiscard]] Group group(std::size_t number) const {
     const auto row = static_cast<std::size_t>(first_row_[number]), slot = static_cast<std::size_t>(first_slot_[number]);
@@ -107,8 +109,8 @@ class GroupedRows {
   void set_inverse(std::size_t group, std::size_t lane, const Entry& entry);
   void fill(const SpringNetwork& network, std::span<const std::int32_t> order, const std::vector<std::int32_t>& row_of,
             std::size_t group, double unit);
-  void fill_slot(const ContactFrame& frame, const SpringConstants& k, double scale, bool from_i, std::size_t slot,
-                 std::size_t lane);
+  void fill_slot(const ContactFrame& frame, const SpringConstants& k, double kM, double scale, bool from_i,
+                 std::size_t slot, std::size_t lane);
 
   RowKind kind_;
   float kN_ = 0, kT_ = 0;                 // over the unit, where all contacts have the same

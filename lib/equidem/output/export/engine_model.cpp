@@ -75,6 +75,7 @@ void find_features_of_contacts(const Scene& scene, FoundFeatures& found) {
     if (std::abs(c.lever_i + c.lever_j - distance) > lever_tolerance * distance) add(found, levers_with_gaps, name);
     if (std::abs(c.lever_i - 0.5 * distance) > lever_tolerance * distance) add(found, levers_by_radii, name);
     if (scene.springs[k].kT < 0) add(found, negative_tangential, name);
+    if (scene.springs.bending(k) > 0) add(found, bending_bonds, name);
     if (scene.springs[k].kN != scene.springs[0].kN || scene.springs[k].kT != scene.springs[0].kT)
       add(found, unequal_springs, name);
   }

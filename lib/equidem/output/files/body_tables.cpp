@@ -63,6 +63,7 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
     table.add("tangential_force_N_per_m", forces, &ContactForce::tangential);
     table.add("force_x_N_per_m", on_i, &Vec2::x).add("force_y_N_per_m", on_i, &Vec2::y);
   }
+  if (!state.bending_moments.empty()) table.add("bending_moment_N", state.bending_moments, std::identity());
   write_csv(path, table, overwrite);
 }
 
@@ -127,6 +128,7 @@ void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond
   table.add("rolling_dashpot", bonds, &GrainBond::rolling_dashpot);
   table.add("normal_spring", bonds, &GrainBond::normal_spring);
   table.add("tangential_spring", bonds, &GrainBond::tangential_spring);
+  table.add("bending_spring", bonds, &GrainBond::bending_spring);
   if (!drifts.empty()) {
     table.add("distance_drift", drifts, &BondDrift::distance).add("slip_drift", drifts, &BondDrift::slip);
     table.add("roll_rad", drifts, &BondDrift::roll);

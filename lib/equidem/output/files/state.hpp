@@ -18,12 +18,14 @@ struct AssemblyState {
   std::span<const DiscMotion> motions = {};           ///< per disc
   std::span<const ContactForce> contact_forces = {};  ///< per contact
   std::span<const Tensor2> stresses = {};             ///< per disc, Pa
+  std::span<const double> bending_moments = {};       ///< per contact, N, on its first disc
 };
 
 /// Precondition: sizes agree.
 inline void assert_consistent([[maybe_unused]] const AssemblyState& state) {
   assert(state.motions.empty() || state.motions.size() == state.assembly.size());
   assert(state.contact_forces.empty() || state.contact_forces.size() == state.assembly.contacts.size());
+  assert(state.bending_moments.empty() || state.bending_moments.size() == state.assembly.contacts.size());
   assert(state.stresses.empty() || state.stresses.size() == state.assembly.size());
 }
 

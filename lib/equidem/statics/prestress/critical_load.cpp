@@ -36,8 +36,9 @@ class LoadPencil {
         springs_(springs),
         unstressed_(springs.with_prestress({})),
         weightless_(springs.changed([](SpringConstants) {
-          return SpringConstants{0, 0};
-        })),
+                             return SpringConstants{0, 0};
+                           })
+                        .with_bending({})),
         graph_(assembly),
         unknowns_(number_unknowns(assembly, springs, derive_effects(assembly, springs, options.rotation), supports)) {
     hold_free_motions(assembly, graph_, springs, unknowns_);

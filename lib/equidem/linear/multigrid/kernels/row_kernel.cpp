@@ -98,8 +98,9 @@ EQUIDEM_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::G
     load(geometry, nx);
     load(geometry + lanes, ny);
     if constexpr (kind.own_springs) {
-      load(geometry + (kind.fields() - 2) * lanes, kN);
-      load(geometry + (kind.fields() - 1) * lanes, kT);
+      constexpr int springs = kind.fields() - (kind.bending ? 3 : 2);
+      load(geometry + springs * lanes, kN);
+      load(geometry + (springs + 1) * lanes, kT);
     }
     const Lanes dx = there.x - own.x, dy = there.y - own.y;
     Lanes stretch = nx * dx + ny * dy;
@@ -122,6 +123,11 @@ EQUIDEM_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::G
     fy -= ny * normal + nx * tangential;
     if constexpr (kind.rotation) moment -= lever * tangential;
     if constexpr (kind.offsets) moment += offset * normal;
+    if constexpr (kind.bending) {
+      Lanes kM;
+      load(geometry + (kind.fields() - 1) * lanes, kM);
+      moment -= kM * (there.turn - own.turn);
+    }
   }
   force = {fx, fy, moment};
 }
@@ -262,7 +268,11 @@ constexpr RowKind kinds[] = {{.blocks = true},
                              {.rotation = true},
                              {.rotation = true, .own_springs = true},
                              {.rotation = true, .offsets = true},
-                             {.rotation = true, .offsets = true, .own_springs = true}};
+                             {.rotation = true, .offsets = true, .own_springs = true},
+                             {.rotation = true, .bending = true},
+                             {.rotation = true, .own_springs = true, .bending = true},
+                             {.rotation = true, .offsets = true, .bending = true},
+                             {.rotation = true, .offsets = true, .own_springs = true, .bending = true}};
 
 /// The loops compiled for vectors of one width.
 #define EQUIDEM_LOOPS(name, attributes)                                                                              \

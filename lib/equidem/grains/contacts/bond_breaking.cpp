@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/contacts/bond_breaking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+namespace {
+
+/// Load over strength; a bond without strength breaks under no load.
+double share_of_strength(double load, double strength) {
+  if (strength > 0) return load / strength;
+  return load >= strength ? std::numeric_limits<double>::infinity() : 0;
+}
+
+/// The place of the bond as far as the levers say, between both centres.
+Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
+  const Vec2 i = system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
+  const Vec2 j = system.bodies.motions[static_cast<std::size_t>(bond.j)].position;
+  return i + bond.share * (j - i);
+}
+
+/// What the bodies of a bond store as soon as they collide.
+double energy_of_overlap(const GrainSystem& system, const TiedPair& bond) {
+  Candidate candidate;
+  candidate.i = bond.i;
+  candidate.j = bond.j;
+  set_constants(system, candidate);
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const double overlap = system.bodies.constants[i].radius + system.bodies.constants[j].radius -
+                         norm(system.bodies.motions[j].position - system.bodies.motions[i].position);
+  return overlap > 0 ? system.law().energy(candidate.stiffness, overlap) : 0;
+}
+
+/// The bonds that are left become those of the steps; they keep their last impulses.
+void tie_those_left(GrainSystem& system) {
+  BreakableBonds& breakable = *system.bonds.breakable;
+  for (const TiedPair& bond : system.bonds.tied) {
+    const auto same = std::ranges::lower_bound(breakable.all, std::pair(bond.i, bond.j), {},
+                                               [](const TiedPair& b) { return std::pair(b.i, b.j); });
+    same->impulse = last_impulse(system, bond);
+  }
+  system.bonds.tied.clear();
+  for (std::size_t b = 0; b < breakable.all.size(); ++b)
+    if (breakable.broken[b] == 0) system.bonds.tied.push_back(breakable.all[b]);
+  system.bonds.packed = {};
+  pack_bonds(system);
+  for (TiedPair& bond : system.bonds.tied) take_last_impulse(system, bond, BondModes(bond.impulse));
+}
+
+}  // namespace
+
+ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options) {
+  Assembly network;
+  for (const Grain& grain : scene.grains) network.radii.push_back(grain.radius);
+  for (const GrainBond& bond : scene.bonds)
+    network.contacts.push_back({.i = static_cast<std::int32_t>(bond.i), .j = static_cast<std::int32_t>(bond.j)});
+  return contact_strengths(network, options);
+}
+
+std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
+                                  double tension, double shear, double friction) {
+  const double width = std::sqrt(12 * kM / k.kN), by_moment = kM > 0 ? 6 * std::abs(moment) / width : 0;
+  const double pulled = share_of_strength(force.normal + by_moment, tension);
+  const double sheared = share_of_strength(std::abs(force.tangential), shear - friction * force.normal);
+  if (std::max(pulled, sheared) < 1) return {};
+  if (sheared > pulled) return BreakMode::shear;
+  return by_moment > force.normal ? BreakMode::bending : BreakMode::tension;
+}
+
+BreakableBonds::BreakableBonds(const GrainSystem& system, const ContactStrengths& strengths,
+                               std::vector<std::size_t> numbers)
+    : all(system.bonds.tied), number(std::move(numbers)), friction(strengths.friction), broken(all.size(), 0) {
+  for (const std::size_t bond : number) {
+    tension.push_back(strengths.tension[bond]);
+    shear.push_back(strengths.shear[bond]);
+  }
+}
+
+void break_bonds(GrainSystem& system) {
+  BreakableBonds& breakable = *system.bonds.breakable;
+  bool any = false;
+  for (std::size_t b = 0; b < breakable.all.size(); ++b) {
+    if (breakable.broken[b] != 0) continue;
+    const TiedPair& bond = breakable.all[b];
+    const BondMotion<double> motion = motion_of_bond(system, bond);
+    const ContactForce force = linear_spring_force(bond.springs.springs, bond_deformation(bond.springs, motion));
+    const double moment = bending_moment(bond.springs.kM, motion.theta_i, motion.theta_j);
+    const std::optional<BreakMode> mode = break_of(bond.springs.springs, bond.springs.kM, force, moment,
+                                                   breakable.tension[b], breakable.shear[b], breakable.friction);
+    if (!mode) continue;
+    const double energy = bond_energy(bond.springs, motion);
+    breakable.broken[b] = 1;
+    breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
+    system.lost.lost_breaking += energy - energy_of_overlap(system, bond);
+    any = true;
+  }
+  if (!any) return;
+  tie_those_left(system);
+  find_candidates(system);
+}
+
+void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
+  BreakableBonds& breakable = *system.bonds.breakable;
+  breakable.breaks = std::move(breaks);
+  std::vector<std::uint8_t> by_number(breakable.all.size(), 0);
+  for (const BondBreak& event : breakable.breaks) by_number.at(event.bond) = 1;
+  for (std::size_t b = 0; b < breakable.all.size(); ++b) breakable.broken[b] = by_number[breakable.number[b]];
+  tie_those_left(system);
+}
+
+std::vector<double> numbers_of(const std::vector<BondBreak>& breaks) {
+  std::vector<double> numbers;
+  for (const BondBreak& event : breaks) {
+    numbers.insert(numbers.end(), {static_cast<double>(event.step), static_cast<double>(event.bond),
+                                   static_cast<double>(event.mode), event.place.x, event.place.y, event.energy});
+  }
+  return numbers;
+}
+
+std::vector<BondBreak> breaks_of(const std::vector<double>& numbers) {
+  std::vector<BondBreak> breaks;
+  for (std::size_t at = 0; at + numbers_per_break <= numbers.size(); at += numbers_per_break) {
+    const double* n = numbers.data() + at;
+    breaks.push_back({static_cast<std::int64_t>(n[0]),
+                      static_cast<std::size_t>(n[1]),
+                      static_cast<BreakMode>(n[2]),
+                      {n[3], n[4]},
+                      n[5]});
+  }
+  return breaks;
+}
+
+}  // namespace equidem

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Bonds of colliding discs that break.
+///
+/// A bond carries N (tension positive), T and M, the forces and the moment of its springs. A parallel bond of the width
+/// w, with kM = kN w²/12, has its largest tension at the outer fibre, N/w + 6 |M|/w² (Potyondy & Cundall 2004, Int. J.
+/// Rock Mech. Min. Sci. 41, 1329). It breaks where N + 6 |M|/w >= f_t, in bending where the moment has the larger share
+/// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others, and rub
+/// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
+/// and an unstretched tangential spring.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "equidem/breakage/break_search.hpp"
+#include "equidem/breakage/strengths.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+
+namespace equidem {
+
+/// A bond that broke.
+struct BondBreak {
+  std::int64_t step = 0;  ///< steps done when it broke
+  std::size_t bond = 0;   ///< in the order of the scene
+  BreakMode mode = BreakMode::tension;
+  Vec2 place;         ///< of the bond, m
+  double energy = 0;  ///< of its springs, J (discs: per metre of depth)
+};
+
+/// Strengths of the bonds of a scene, scattered in their order as those of the contacts of an assembly.
+/// \throws Error (bad_input) as contact_strengths
+ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options);
+
+/// How a bond breaks under the forces of its springs, if it does.
+/// \param moment of the bending spring, N m; \param tension, shear its strengths, N/m
+std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
+                                  double tension, double shear, double friction);
+
+/// All bonds of a scene whose bonds break, and those that did.
+struct BreakableBonds {
+  std::vector<TiedPair> all;           ///< ordered by i, then j
+  std::vector<std::size_t> number;     ///< in the order of the scene, of each
+  std::vector<double> tension, shear;  ///< N/m, of each
+  double friction = 0;
+  std::vector<std::uint8_t> broken;  ///< of each
+  std::vector<BondBreak> breaks;     ///< in the order of time
+
+  /// Takes the bonds that tie_bonds has tied. \param numbers of the scene, in the same order
+  BreakableBonds(const GrainSystem& system, const ContactStrengths& strengths, std::vector<std::size_t> numbers);
+};
+
+/// Breaks bonds by the present motions, and lets their discs collide.
+void break_bonds(GrainSystem& system);
+
+/// The state in which exactly these bonds have broken.
+void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks);
+
+/// Numbers of a SavedState.
+inline constexpr std::size_t numbers_per_break = 6;
+std::vector<double> numbers_of(const std::vector<BondBreak>& breaks);
+std::vector<BondBreak> breaks_of(const std::vector<double>& numbers);
+
+}  // namespace equidem
