@@ -242,6 +242,7 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       {data.substr(0, 900), {"ends within a line", "cut off"}, as_cell},
       {data.substr(0, 120), {"cut off"}, as_cell},
       {"x y r\n0 0 1\n2 0\n", {"line 3", "2 cells", "cut off"}},
+      {"\x1f\x8b\x08 squeezed", {"a.txt: this is not JSON, nor text", "Unpack it"}},
       // numbers
       {"x y r\n0 0 1\n2 0 nan\n", {"line 3", "'nan' is no radius"}},
       {"x y r\n0 0 1\n2 0 -1\n", {"line 3", "radius is -1"}},

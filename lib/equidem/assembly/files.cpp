@@ -260,14 +260,6 @@ Json parse(const std::string& text) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     bad_input_at("line 1, column 1", "the file is empty", "an assembly is made of discs", "Write it again");
   }
-  constexpr std::size_t head = 512;
-  const bool is_text = std::none_of(text.begin(), text.begin() + std::min(head, text.size()), [](char c) {
-    return std::iscntrl(static_cast<unsigned char>(c)) != 0 && std::isspace(static_cast<unsigned char>(c)) == 0;
-  });
-  if (!is_text) {
-    bad_input_at("line 1", "this is not JSON, nor text",
-                 "it is compressed, or written by a program in a form of its own", "Unpack it, or write it as text");
-  }
   // Numbers of a line such as "[0.5, 1, 0.25]" take the most: 16 bytes each and a vector that grows. Refused
   // beforehand, because the parser cannot free its values where memory has run out.
   constexpr double bytes_per_byte = 6;
@@ -341,6 +333,17 @@ void refuse_foreign_options(const AssemblyFileOptions& options) {
   }
 }
 
+void require_text(std::string_view content, const std::filesystem::path& path) {
+  constexpr std::size_t head = 512;
+  const bool is_text = std::ranges::none_of(content.substr(0, head), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return std::iscntrl(byte) != 0 && std::isspace(byte) == 0;
+  });
+  if (is_text) return;
+  bad_input_at(path.string(), "this is not JSON, nor text of another program",
+               "it is compressed, or in a binary form of its program", "Unpack it, or write it as text");
+}
+
 }  // namespace
 
 Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOptions& options) {
@@ -348,6 +351,7 @@ Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOpti
   const bool is_hdf5 = is_hdf5_name(path);
   if (is_hdf5) check_readable(path);
   const std::string text = is_hdf5 ? std::string() : read_file(path);
+  require_text(text, path);
   const ParticleFormat format = is_hdf5 || path.extension() == ".json" ? ParticleFormat::none : particle_format(text);
   if (format != ParticleFormat::none) {
     Assembly imported = imported_assembly(path, text, format, options);
