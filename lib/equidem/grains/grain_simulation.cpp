@@ -122,6 +122,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
 
 void GrainSimulation::Implementation::make_step() {
   if (flow) return step_together();
+  if (system.bonds.breakable) break_bonds(system);
   if (verlet()) return step_by_verlet();
   step_by_euler();
 }
@@ -154,7 +155,6 @@ void GrainSimulation::Implementation::step_by_verlet() {
 }
 
 void GrainSimulation::Implementation::find_impulses() {
-  if (system.bonds.breakable) break_bonds(system);
   collide(system);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
 }

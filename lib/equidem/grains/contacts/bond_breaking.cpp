@@ -25,8 +25,12 @@ Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
   return i + bond.share * (j - i);
 }
 
-/// What the bodies of a bond store as soon as they collide.
-double energy_of_overlap(const GrainSystem& system, const TiedPair& bond) {
+/// The bodies of a bond as a contact that begins now.
+struct NewContact {
+  double stiffness = 0, overlap = 0;
+};
+
+NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
   Candidate candidate;
   candidate.i = bond.i;
   candidate.j = bond.j;
@@ -34,16 +38,39 @@ double energy_of_overlap(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const double overlap = system.bodies.constants[i].radius + system.bodies.constants[j].radius -
                          norm(system.bodies.motions[j].position - system.bodies.motions[i].position);
-  return overlap > 0 ? system.law().energy(candidate.stiffness, overlap) : 0;
+  return {candidate.stiffness, std::max(overlap, 0.0)};
+}
+
+/// Verlet schemes kick bodies at the start of a step by the impulses of the last one: those of a bond that has broken
+/// give way to that of the spring behind it, so that both half kicks of the step are of the same contact.
+void replace_impulses(GrainSystem& system, TiedPair bond, const BondMotion<double>& motion, const NewContact& contact) {
+  const double dt = system.dt();
+  const BondForces<double> force = bond_forces(bond.springs, motion);
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
+  const double length = norm(branch);
+  bond.frame = {branch / length, bond.share * length, length - bond.share * length};
+  const BondModes last = last_impulse(system, bond);
+  give_impulse(system, bond, {-last.normal, -last.tangential, -last.rolling});
+  const double push = contact.stiffness * std::pow(contact.overlap, system.law().spring_power);
+  const Vec2 change = -dt * (Vec2{force.x, force.y} + push * bond.frame.normal);
+  BodyImpulse &on_i = system.bodies.impulses[i], &on_j = system.bodies.impulses[j];
+  on_i.impulse += change;
+  on_j.impulse -= change;
+  on_i.torque -= dt * force.moment_i;
+  on_j.torque -= dt * force.moment_j;
+}
+
+auto same_bond(std::vector<TiedPair>& bonds, const TiedPair& bond) {
+  return std::ranges::lower_bound(bonds, std::pair(bond.i, bond.j), {},
+                                  [](const TiedPair& b) { return std::pair(b.i, b.j); });
 }
 
 /// The bonds that are left become those of the steps; they keep their last impulses.
 void tie_those_left(GrainSystem& system) {
   BreakableBonds& breakable = *system.bonds.breakable;
   for (const TiedPair& bond : system.bonds.tied) {
-    const auto same = std::ranges::lower_bound(breakable.all, std::pair(bond.i, bond.j), {},
-                                               [](const TiedPair& b) { return std::pair(b.i, b.j); });
-    same->impulse = last_impulse(system, bond);
+    same_bond(breakable.all, bond)->impulse = last_impulse(system, bond);
   }
   system.bonds.tied.clear();
   for (std::size_t b = 0; b < breakable.all.size(); ++b)
@@ -97,11 +124,15 @@ void break_bonds(GrainSystem& system) {
     const double energy = bond_energy(bond.springs, motion);
     breakable.broken[b] = 1;
     breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
-    system.lost.lost_breaking += energy - energy_of_overlap(system, bond);
+    const NewContact contact = contact_of(system, bond);
+    system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
+    if (system.options.verlet()) replace_impulses(system, *same_bond(system.bonds.tied, bond), motion, contact);
     any = true;
   }
   if (!any) return;
+  system.free_flight = false;
   tie_those_left(system);
+  if (system.contacts.near.active) load_pair_bodies(system);
   find_candidates(system);
 }
 

@@ -13,6 +13,17 @@
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
+
+void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
+  BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
+  BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
+  const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
+  on_i.impulse -= on;
+  on_j.impulse += on;
+  on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
+  on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
+}
+
 namespace {
 
 InverseInertia inverse_of(const Grain& grain) {
@@ -71,16 +82,6 @@ BondModes gain_by_impulses(const GrainSystem& system, const TiedPair& bond) {
   return bond_rates(bond.frame, gain(bond.i), gain(bond.j));
 }
 
-void give(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
-  BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
-  BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
-  const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
-  on_i.impulse -= on;
-  on_j.impulse += on;
-  on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
-  on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
-}
-
 /// One bond after the other, each exact with those before it as they are: what dashpots take, they take from the
 /// motion, in whatever number they hang together.
 void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
@@ -93,11 +94,11 @@ void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& invers
   };
   bond.impulse = {impulse(c.normal, inverse.normal, v.normal, g.normal, all.normal),
                   impulse(c.tangential, inverse.tangential, v.tangential, g.tangential, all.tangential), 0};
-  give(system, bond, bond.impulse);
+  give_impulse(system, bond, bond.impulse);
   if (c.rolling == 0) return;
   all = gain_by_impulses(system, bond);  // spin of unequal discs has changed with the tangential impulse
   bond.impulse.rolling = impulse(c.rolling, inverse.rolling, v.rolling, g.rolling, all.rolling);
-  give(system, bond, {0, 0, bond.impulse.rolling});
+  give_impulse(system, bond, {0, 0, bond.impulse.rolling});
 }
 
 void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
@@ -108,7 +109,7 @@ void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inv
   const BondModes &c = bond.dashpots, &v = bond.rate;
   bond.impulse = {impulse(c.normal, inverse.normal, v.normal), impulse(c.tangential, inverse.tangential, v.tangential),
                   impulse(c.rolling, inverse.rolling, v.rolling)};
-  give(system, bond, bond.impulse);
+  give_impulse(system, bond, bond.impulse);
 }
 
 /// Energy lost by the motion: impulses times the rates after a share of all impulses has acted.

@@ -37,6 +37,9 @@ struct TiedPair {
 /// \return their numbers in the scene
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene);
 
+/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
+void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
+
 /// Motion of a bond from the start to now.
 BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bond);
 
