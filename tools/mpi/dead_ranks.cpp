@@ -42,6 +42,7 @@ void when_told_to_end(int signal_number) {
 }  // namespace
 
 void tell_of_dead_ranks(const petsc::Ranks& ranks, int descriptor) {
+  if (!ranks_here.empty()) return;
   MPI_Comm here = MPI_COMM_NULL;
   MPI_Comm_split_type(ranks.communicator(), MPI_COMM_TYPE_SHARED, ranks.rank(), MPI_INFO_NULL, &here);
   int count = 0;
@@ -60,8 +61,8 @@ void tell_of_dead_ranks(const petsc::Ranks& ranks, int descriptor) {
   sentences_to = descriptor;
   struct sigaction telling = {};
   telling.sa_handler = when_told_to_end;
-  if (sigaction(SIGTERM, nullptr, &told_before) != 0 || told_before.sa_handler == SIG_DFL ||
-      told_before.sa_handler == SIG_IGN)
+  if (sigaction(SIGTERM, nullptr, &told_before) != 0 || (told_before.sa_flags & SA_SIGINFO) != 0 ||
+      told_before.sa_handler == SIG_DFL || told_before.sa_handler == SIG_IGN)
     return;
   sigaction(SIGTERM, &telling, nullptr);
 }

@@ -11,9 +11,9 @@
 namespace equidem {
 namespace {
 
-constexpr double same_rates = 1e-6;        // of the forces of answers that differ by round-off, or in what is loose
-constexpr double singular = 1e-10;         // least pivot of a combination that has rates at all
-constexpr std::size_t most_pivoted = 400;  // contacts on limits, of complementary pivots
+constexpr double same_rates = 1e-6;  // of the forces of answers that differ by round-off
+constexpr double of_rates = 1e-10;   // round-off of forces, of springs times the rates of open contacts
+constexpr double singular = 1e-10;   // least pivot of a combination that has rates at all
 
 std::vector<ContactStatus> choices_of(const RateProblem& problem, const LimitContact& at) {
   using enum ContactStatus;
@@ -107,7 +107,7 @@ Branches find_branches(const RateProblem& problem, std::span<const double> c, co
     }
     d = d0;
     solve_dense(system, pivots, d);
-    double change = 0, size = 0;
+    double change = 0, size = 0, round_off = 0;
     bool agrees = true;
     for (std::size_t p = 0, k = 0; p < problem.limits.size() && agrees; ++p) {
       const LimitContact& at = problem.limits[p];
@@ -118,10 +118,12 @@ Branches find_branches(const RateProblem& problem, std::span<const double> c, co
       agrees = status_after(law, at, then, status, none) == status;
       const ContactForce f0 = law.tangent(answer.status[at.contact]).rate(now), f = law.tangent(status).rate(then);
       change = std::max({change, std::abs(f.normal - f0.normal), std::abs(f.tangential - f0.tangential)});
+      for (const ContactForce& force : {f0, f})
+        size = std::max({size, std::abs(force.normal), std::abs(force.tangential)});
       for (const ContactDeformation& rate : {now, then})
-        size = std::max({size, std::abs(law.k.kN * rate.normal), std::abs(law.k.kT * rate.tangential)});
+        round_off = std::max({round_off, std::abs(law.k.kN * rate.normal), std::abs(law.k.kT * rate.tangential)});
     }
-    if (!agrees || change <= same_rates * size) continue;
+    if (!agrees || change <= std::max(same_rates * size, of_rates * round_off)) continue;
     if (++result.others > 1) continue;
     result.other = answer.status;
     for (std::size_t k = 0; k < place.size(); ++k) result.other[problem.limits[place[k]].contact] = all.of(k);
@@ -132,7 +134,7 @@ Branches find_branches(const RateProblem& problem, std::span<const double> c, co
 std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
                                       std::vector<ContactStatus> status) {
   const std::size_t contacts = problem.limits.size();
-  if (contacts == 0 || contacts > most_pivoted) return {};
+  if (contacts == 0 || contacts > most_on_limits) return {};
   for (const LimitContact& at : problem.limits) status[at.contact] = ContactStatus::stuck;
   const Rates base = rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving);
   const std::vector<double> c = limit_compliance(problem, solver);

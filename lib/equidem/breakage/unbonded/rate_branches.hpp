@@ -21,6 +21,9 @@ namespace equidem {
 /// Combinations of statuses that are tried, at most.
 inline constexpr std::int64_t most_branches = 4096;
 
+/// Contacts on limits for which dense matrices of their size are made, at most: 5 MB each.
+inline constexpr std::size_t most_on_limits = 400;
+
 struct Branches {
   bool all_tried = false;              ///< every combination; false: they are too many, or one has no unique rates
   std::int64_t others = 0;             ///< answers with other rates of force than the one given

@@ -182,12 +182,15 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
       fresh.push_back(at.contact);
   }
   checked_ = true;
-  const std::vector<double> compliance = limit_compliance(problem, solver_);
-  if (proved_unique(problem, compliance, answer.status)) {
-    ++counters_.unique;
-    return;
+  Branches branches;
+  if (problem.limits.size() <= most_on_limits) {
+    const std::vector<double> compliance = limit_compliance(problem, solver_);
+    if (proved_unique(problem, compliance, answer.status)) {
+      ++counters_.unique;
+      return;
+    }
+    branches = find_branches(problem, compliance, answer, fresh);
   }
-  const Branches branches = find_branches(problem, compliance, answer, fresh);
   ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
   if (!branches.all_tried) {
     if (branches.others == 0)

@@ -47,9 +47,8 @@ std::vector<double> schur_complement(const RateProblem& problem, std::span<const
   return s;
 }
 
-/// Whether all pivots of a symmetric matrix, its lower half given, are above these.
-bool is_positive_definite(std::vector<double>& a, std::span<const double> least) {
-  const std::size_t n = least.size();
+/// Whether all pivots of a symmetric n x n matrix, its lower half given, are above a limit.
+bool is_positive_definite(std::vector<double>& a, std::size_t n, double least) {
   for (std::size_t k = 0; k < n; ++k) {
     double* const row = &a[k * n];
     for (std::size_t c = 0; c < k; ++c) {
@@ -58,7 +57,7 @@ bool is_positive_definite(std::vector<double>& a, std::span<const double> least)
       row[c] = sum / a[c * n + c];
       row[k] -= row[c] * row[c];
     }
-    if (!(row[k] > least[k])) return false;
+    if (!(row[k] > least)) return false;
     row[k] = std::sqrt(row[k]);
   }
   return true;
@@ -78,25 +77,33 @@ bool proved_unique(const RateProblem& problem, std::span<const double> complianc
     double alpha;     // of a slip whose theta is not known, else 0
   };
   std::vector<Unknown> unknowns;
-  std::vector<double> least;
-  const auto add = [&](std::size_t row, double along, double alpha, double spring) {
-    if (s[row * n + row] <= least_share * spring) return;  // it moves what is loose, and no force
-    unknowns.push_back({row, along, alpha});
-    least.push_back(least_share * spring);
+  // What is loose is held by a share of the stiffest spring of the network (tangent_solver.hpp).
+  double stiffest = 0;
+  for (const UnbondedLaw& law : problem.laws) stiffest = std::max({stiffest, law.k.kN, law.k.kT});
+  const double least = least_share * stiffest;
+  bool coupled = false;  // a row without resistance of its own is part of others
+  const auto add = [&](std::size_t row, double along, double alpha) {
+    if (s[row * n + row] > least) {
+      unknowns.push_back({row, along, alpha});
+      return;
+    }
+    for (std::size_t q = 0; q < n; ++q)
+      coupled = coupled || std::abs(s[row * n + q]) > least || std::abs(s[q * n + row]) > least;
   };
   for (std::size_t k = 0; k < m; ++k) {
     const LimitContact& at = problem.limits[k];
     const UnbondedLaw& law = problem.laws[at.contact];
     const std::size_t normal = 2 * k, tangential = normal + 1;
-    if (at.limit == OnLimit::apex) add(normal, 0, 0, law.k.kN);
+    if (at.limit == OnLimit::apex) add(normal, 0, 0);
     if (!law.rough()) continue;
     const double s_nn = s[normal * n + normal], s_tt = s[tangential * n + tangential];
     if (at.limit == OnLimit::apex) {
-      add(tangential, 0, std::sqrt(std::max(s_nn * s_tt, 0.0)), law.k.kT);
+      add(tangential, 0, std::sqrt(std::max(s_nn * s_tt, 0.0)));
     } else {
-      add(tangential, law.friction * at.direction, 0, law.k.kT);
+      add(tangential, law.friction * at.direction, 0);
     }
   }
+  if (coupled) return false;
   const std::size_t u = unknowns.size();
   const auto product = [&](const Unknown& p, const Unknown& q) {
     return s[p.row * n + q.row] + (p.along != 0 ? p.along * s[(p.row - 1) * n + q.row] : 0);
@@ -116,7 +123,7 @@ bool proved_unique(const RateProblem& problem, std::span<const double> complianc
       for (std::size_t q = 0; q <= p; ++q) a[p * u + q] -= 0.5 * mu / alpha * r[p] * r[q];
     }
   }
-  return is_positive_definite(a, least);
+  return is_positive_definite(a, u, least);
 }
 
 }  // namespace equidem

@@ -144,6 +144,7 @@ inline double dead_utilization(const ContactForce& dead, const ContactStrength& 
 /// Where the forces of a contact change by (N, T) with N²/kN + T²/kT <= e², the ratio of a force to its strength
 /// changes by at most e times this (Cauchy and Schwarz).
 inline double utilization_rate(const SpringConstants& k, const ContactStrength& strength, double friction) {
+  if (strength.tension == 0 || strength.shear == 0) return std::numeric_limits<double>::infinity();
   return std::max(std::sqrt(k.kN) / strength.tension,
                   std::sqrt(std::max(k.kT, 0.0) + friction * friction * k.kN) / strength.shear);
 }

@@ -97,12 +97,8 @@ void UpdatedState::bound_children(std::size_t number, const LoadFactorSearch& se
   thread_local std::vector<double> motion;
   for (const std::int32_t child : (*blocks_)[number].children) {
     BlockState& state = states_[child];
-    state.at_worst = state.subtree;
-    if (!boundary_motion(child, motion)) continue;
-    if (!options.skip) {
-      state.at_worst = ClassedUtilization::unknown();
-      continue;
-    }
+    state.at_worst = options.skip ? state.subtree : ClassedUtilization::unknown();
+    if (!options.skip || !boundary_motion(child, motion)) continue;
     const auto worsen = [&](const std::array<double, 2>& change) {
       double rate = largest_rate_;
       for (std::size_t c = 0; c < rate_classes; ++c, rate *= 0.5) {

@@ -167,6 +167,7 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
   const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
   add_forces(contacts, symbolic_->block, x.data(), cases.size() > 1 ? x.data() + n : nullptr);
   evaluate_block(number);
+  states_[number].subtree = ClassedUtilization::unknown();  // until its children are looked at
   done.fronts = block.root - block.first + 1;
   return done;
 }
@@ -201,7 +202,6 @@ void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> 
     Visit done = visit(*block, &path, 0);
     for (double& moved : done.moved) moved *= lost;
     account(done);
-    states_[*block].subtree = ClassedUtilization::unknown();  // its children are looked at
   }
   for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
 }
