@@ -216,7 +216,7 @@ TEST_CASE("hard_strengths_and_paths_have_an_answer_or_a_reason") {
   LoadPathOptions both;
   both.supports = {held, {"last", 1e-3, 0, 0}};
   both.loads = {{"last", LoadKind::per_disc, {0, 1}, 1}};
-  CHECK_THAT(refusal(chain, both), Catch::Contains("loads and motions of supports grow with lambda together"));
+  CHECK_THAT(refusal(chain, both), Catch::Contains("the loads and the motions of supports grow with lambda together"));
   LoadPathOptions loose;
   loose.supports = {held};
   loose.loads = {{"last", LoadKind::per_disc, {1, 0}, 0}};

@@ -72,8 +72,8 @@ class LimitNetwork {
 
 }  // namespace
 
-// What is not proved may still have one answer for these loads: the proof is of all loads, and fails where contacts that
-// let go together hold nothing.
+// What is not proved may still have one answer for these loads: the proof is of all loads, and fails where contacts
+// that let go together hold nothing.
 TEST_CASE("rates_that_are_proved_unique_have_no_other_combination_of_statuses") {
   std::int64_t proved = 0, several = 0, usual = 0, usual_proved = 0, apexes = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {

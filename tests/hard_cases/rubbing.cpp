@@ -36,9 +36,9 @@ Assembly rubbing_cell() {
 }
 
 /// A column of discs pressed by 1 N/m along x.
-Assembly pressed_chain(int discs, double force = -1) {
+Assembly pressed_chain(int discs) {
   Assembly chain = chain_of_discs(discs, 0.5);
-  chain.contact_normal_force.assign(chain.contacts.size(), force);
+  chain.contact_normal_force.assign(chain.contacts.size(), -1.0);
   chain.contact_tangential_force.assign(chain.contacts.size(), 0.0);
   return chain;
 }
@@ -60,12 +60,15 @@ TEST_CASE("an_inclined_crack_with_any_friction_goes_to_and_fro_and_closes_its_en
     Unbonded scene(block, usual_springs, strengths, path, {friction, {}});
     scene.all();
     CAPTURE(friction, told(scene.run()), scene.run().energy_error());
-    CHECK(scene.run().end() == PathEnd::legs_done);
+    // Much friction may leave no answer: the path says so.
+    CHECK(scene.run().end() == (friction > 1 ? PathEnd::no_answer : PathEnd::legs_done));
+    CHECK(!scene.run().why().empty());
     CHECK(scene.run().energy_error() < 1e-10);
     CHECK(scene.run().counters().largest_residual < 1e-12);
     CHECK((scene.run().state().ledger().friction > 0) == (friction > 0 && friction < 10));
     table.note(fmt::format("quasistatic, rubs, friction {:g}", friction),
-               "energy closes to 1e-10, residual below 1e-12", told(scene.run()));
+               friction > 1 ? "an end with its reason" : "energy closes to 1e-10, residual below 1e-12",
+               told(scene.run()));
   }
 }
 
@@ -88,27 +91,15 @@ TEST_CASE("discs_without_a_bond_and_without_a_force_open_or_close_at_once") {
   }
 }
 
-TEST_CASE("forces_at_rest_that_give_no_stiffness_of_their_own_are_refused") {
-  HardCase table(
-      {.name = "forces at rest", .why = "their stiffness may be beyond that of the springs, or not be defined"});
+TEST_CASE("forces_at_rest_of_what_rolls_or_does_not_balance_are_not_taken") {
+  HardCase table({.name = "forces at rest",
+                  .why = "what holds by them alone has no critical load, and what they do not balance moves"});
   const std::vector<Support> held{{"first", 0, 0, 0}};
   const ContactSprings springs = usual_springs;
-  const auto critical = [&](double force) {
-    const Assembly chain = pressed_chain(4, force);
-    return find_critical_load(chain, springs.with_prestress(prestress_of(chain)), held).factor * -force;
-  };
-  const double usual = critical(-1);
-  for (const double force : {-1e-60, -1e60}) {
-    CHECK(critical(force) == Approx(usual).epsilon(1e-9));
-    table.note(fmt::format("stability, forces at rest {:g} N/m", force), "the same critical load, to 1e-9",
-               std::abs(critical(force) / usual - 1) < 1e-9 ? "the same" : "another");
-  }
-  CHECK(std::isinf(critical(1)));
-  table.note("stability, forces at rest that pull", "no critical load", "none");
   const Assembly soft = pressed_chain(4);
   const CriticalLoad none = find_critical_load(soft, springs_of(0).with_prestress(prestress_of(soft)), held);
   CHECK_FALSE(none.sought);
-  table.note("stability, forces at rest, kT = 0", "not sought, and why", none.why);
+  table.note("stability, a chain of discs, kT = 0", "not sought, and why", none.why);
   Assembly cell = rubbing_cell();
   cell.contact_normal_force.assign(cell.contacts.size(), 0.0);
   cell.contact_tangential_force.assign(cell.contacts.size(), 0.0);

@@ -22,7 +22,8 @@ double sign_of(double x) {
 /// the round-off itself would break a sample that is in pieces from the start.
 double round_off_of_motions(const BreakageScene& scene) {
   const double length = scene.path.driven_by == DrivenBy::strain ? 2 * scene.assembly.mean_radius() : 1;
-  return scene.path.driven_by == DrivenBy::loads ? 0 : rounded_motion * scene.springs.largest() * length * scene.path.size;
+  return scene.path.driven_by == DrivenBy::loads ? 0
+                                                 : rounded_motion * scene.springs.largest() * length * scene.path.size;
 }
 
 }  // namespace
