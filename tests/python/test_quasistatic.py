@@ -31,7 +31,7 @@ def test_contacts_without_a_bond_slip_and_stick():
     result = eq.Case(assembly=pair, springs=(1000.0, 300.0), strength={"friction": friction, "after_breaking": "rubs"},
                      supports=[{"group": [0], "ux": 0.0, "uy": 0.0, "rotation": 0.0},
                                {"group": [1], "uy": amplitude, "rotation": 0.0}],
-                     dead_loads=[{"group": [1], "force": [-1.0, 0.0]}],
+                     dead_load=[{"group": [1], "force": [-1.0, 0.0]}],
                      quasistatic={"legs": [1.0, -1.0, 1.0]}).quasistatic()
     assert [event["mode"] for event in result.events] == ["slip", "stick", "slip", "stick", "slip"]
     np.testing.assert_allclose(result.events[0]["lambda"], friction / (300.0 * amplitude), rtol=1e-12)
