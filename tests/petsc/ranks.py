@@ -19,7 +19,8 @@ CUT = ("--set", "assembly.columns=41", "--set", "assembly.rows=23")
 def command(ranks, *arguments):
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
                        OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                       OMPI_MCA_rmaps_base_oversubscribe="1")
+                       OMPI_MCA_rmaps_base_oversubscribe="1",  # Open MPI 4; the next one is for 5
+                       PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe")
     return [MPIRUN, "-n", str(ranks), PARALLEL, *map(str, arguments)], environment
 
 

@@ -86,7 +86,8 @@ def run(build, folder, discs, ranks, kind="gamg", assembly="hexagonal"):
     made = ASSEMBLIES[assembly].format(columns=columns, rows=rows, discs=discs)
     case.write_text(CASE.format(assembly=made), encoding="utf-8")
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
-                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
+                       OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1",
+                       PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe")  # Open MPI 4 and 5
     used = processor_seconds()
     done = subprocess.run(["mpirun", "-n", str(ranks), build / "tools" / "equidem-mpi", "solve", case, "--quiet", "--overwrite",
                            "--json", out, "-equidem_pc_type", kind], env=environment, check=False, stdout=subprocess.DEVNULL,
