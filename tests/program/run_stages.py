@@ -9,7 +9,7 @@ import numpy
 from motion import RunTest, table
 from program import CASES, equidem
 
-BIAXIAL = CASES / "biaxial.toml"
+BIAXIAL = CASES / "grains_biaxial.toml"
 NO_PICTURE = ("--set", "output.picture=false")
 
 PRESS = """schema = "equidem/1"

@@ -21,6 +21,7 @@ struct RankHere {
 std::vector<RankHere> ranks_here;  // in their order
 int sentences_to = STDERR_FILENO;
 struct sigaction told_before = {};
+bool telling_is_on = false;
 
 bool is_gone(const RankHere& rank) {
   return kill(rank.process, 0) != 0 && errno == ESRCH;
@@ -65,6 +66,12 @@ void tell_of_dead_ranks(const petsc::Ranks& ranks, int descriptor) {
       told_before.sa_handler == SIG_DFL || told_before.sa_handler == SIG_IGN)
     return;
   sigaction(SIGTERM, &telling, nullptr);
+  telling_is_on = true;
+}
+
+void stop_telling_of_dead_ranks() {
+  if (telling_is_on) sigaction(SIGTERM, &told_before, nullptr);
+  telling_is_on = false;
 }
 
 }  // namespace equidem

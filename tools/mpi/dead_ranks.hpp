@@ -13,4 +13,7 @@ namespace equidem {
 /// \param descriptor of the file that the sentence is written to
 void tell_of_dead_ranks(const petsc::Ranks& ranks, int descriptor);
 
+/// This rank comes to its end: from here on those that are gone have ended as it does.
+void stop_telling_of_dead_ranks();
+
 }  // namespace equidem

@@ -23,6 +23,7 @@ int terminal = STDERR_FILENO;  // of all ranks
 
 /// Whether all ranks come to the end of the verb within some seconds.
 bool all_arrive() {
+  stop_telling_of_dead_ranks();
   constexpr double patience = 10;  // s
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibarrier(PETSC_COMM_WORLD, &request);
@@ -70,6 +71,7 @@ Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
       throw;
     }
     // The others may have failed: they wait in the same barrier.
+    stop_telling_of_dead_ranks();
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Ibarrier(PETSC_COMM_WORLD, &request);
     MPI_Wait(&request, MPI_STATUS_IGNORE);

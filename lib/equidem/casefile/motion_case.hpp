@@ -67,9 +67,7 @@ void bind_motion(File<F>& file, BodyFamily family, Links... probes) {
       .keys(schedule_keys());
   file.table("wall", &MotionTables::wall_tables, "a wall of infinite mass, in a run").keys(wall_keys(family));
   if (family == BodyFamily::colliding)
-    file.table("wall.servo",
-               "the wall moves so that it pushes the bodies with a wanted force or stress; its works are in "
-               "the ledger")
+    file.table("wall.servo", "the wall moves so that it pushes the bodies with a wanted force or stress")
         .described(servo_keys());
   file.table("probe", probes..., "a history of some bodies in a run").keys(probe_keys(family));
 }

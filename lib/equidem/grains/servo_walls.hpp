@@ -27,9 +27,4 @@ void place_servo_walls(GrainSystem& system);
 /// In the caller's order of the walls.
 std::vector<ServoReport> reports_of(const GrainSystem& system);
 
-/// Check the servos of all walls against each other.
-/// \throws Error (bad_input): a law without forces, a name of no wall, a wall that is moved by two servos, by its
-///         mirror and itself, or by a schedule along the same direction, a stress whose length is not known
-void check_servos(const GrainScene& scene, NormalLaw law);
-
 }  // namespace equidem

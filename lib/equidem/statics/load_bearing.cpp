@@ -187,6 +187,8 @@ class Pruning {
         const auto other = static_cast<std::size_t>(edge.other);
         if (other == disc || !in_chain(other) || carries_moment(edge.contact)) continue;
         const std::size_t mine = other_contact(disc, edge.contact), theirs = other_contact(other, edge.contact);
+        if (carries_moment(static_cast<std::int32_t>(mine)) || carries_moment(static_cast<std::int32_t>(theirs)))
+          continue;
         if (!points_in_line(assembly_, {mine, static_cast<std::size_t>(edge.contact), theirs})) chained.push_back(disc);
       }
     }

@@ -9,7 +9,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/servo_walls.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/grain_frames.hpp"
@@ -39,7 +38,7 @@ std::string checksum_of(const GrainCase& resolved) {
   for (const GrainBond& bond : resolved.scene.bonds)
     for (const double value :
          {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
-          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring})
+          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring, bond.bending_spring})
       sum.add(value);
   for (const Clump& clump : resolved.scene.clumps)
     for (const Clump::Disc& disc : clump.discs)

@@ -81,6 +81,9 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
     const TomlValue& table = *root.find("strength");
     if (tables.scene.bonds.empty())
       fail_at(table, "strength", "no grains are tied", "there is nothing that could break", "Add [bonds], or [[bond]]");
+    if (tables.body == Body::sphere)
+      fail_at(table, "strength", "the grains are spheres", "strengths are those of discs, N per metre of depth",
+              "Take the table out, or set grains.body = \"disc\"");
     tables.scene.strengths = at_key(table, "strength", [&] { return bond_strengths(tables.scene, *tables.strength); });
   }
   check_bonds(tables.scene, [&](std::size_t bond) { return read.places[bond]; });

@@ -165,6 +165,14 @@ StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls) {
   if (end.strain > 0 && end.walls[0] == end.walls[1])
     fail_at(*table, "stage.until.to", "both walls are the same", "the distance of a wall to itself does not change",
             "Name two walls");
+  if (end.strain > 0) {
+    const Wall &from = *find_wall(walls, end.walls[0]), &to = *find_wall(walls, end.walls[1]);
+    const bool lines = from.shape == Wall::Shape::line && to.shape == Wall::Shape::line;
+    if (!lines || norm(from.normal + to.normal) > 1e-9 || dot(to.point - from.point, from.normal) == 0)
+      fail_at(*table, "stage.until.strain",
+              fmt::format("the walls '{}' and '{}' do not face each other", from.name, to.name),
+              "the strain is the change of the distance of two parallel lines", "Name two lines with opposite normals");
+  }
   return end;
 }
 
@@ -203,8 +211,13 @@ bool change_contacts(const TomlValue& stage, TomlValue& root, PairOptions& conta
   return true;
 }
 
-/// What a case in stages says in its stages alone.
-void refuse_motion_outside(const TomlValue& root) {
+/// Motions that a case in stages gives in its stages alone, and bonds, which would be without stretch in each of them.
+void refuse_beside_stages(const TomlValue& root) {
+  for (const char* name : {"bonds", "bond"}) {
+    if (const TomlValue* given = root.find(name))
+      fail_at(*given, name, "a run in stages has bonds", "each stage would begin with bonds that carry no force",
+              "Take the bonds or the stages out");
+  }
   const std::string why = "the run is in stages, and schedules count from the start of a stage";
   for (const TomlValue& wall : repeated(root, "wall")) {
     if (const TomlValue* given = wall.find("displacement"))
@@ -224,10 +237,8 @@ void refuse_motion_outside(const TomlValue& root) {
 
 void bind_stages(File<GrainTables>& file) {
   using S = StageTable;
-  file.table(
-          "stage", &GrainTables::stage_tables,
-          "a part of the run, in place of run.duration: it begins with the state of the stage before and changes what "
-          "it names; what it does not name stays as it was, but walls that moved by a displacement or a velocity stand")
+  file.table("stage", &GrainTables::stage_tables,
+             "a part of the run, in place of run.duration; what it does not name stays as it was")
       .keys({key("name", &S::name, required, "for reports"),
              key("duration", &S::duration, required, unit("s"), positive,
                  "its length, or with [stage.until] the limit at which a run stops that has not met it"),
@@ -237,13 +248,14 @@ void bind_stages(File<GrainTables>& file) {
       .described(changed_contact_keys());
   file.table("stage.pair", repeated_table, "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
-  file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise").described(stage_wall_keys());
+  file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise; without a motion it stands")
+      .described(stage_wall_keys());
   file.table("stage.wall.servo", "as [wall.servo]; its schedule begins with the stage").described(servo_keys());
 }
 
 std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables) {
   check_names(root, "stage");
-  if (!tables.stage_tables.empty()) refuse_motion_outside(root);
+  if (!tables.stage_tables.empty()) refuse_beside_stages(root);
   std::vector<Wall> all = tables.scene.walls, walls = all;
   for (std::size_t k = 0; k < tables.stage_tables.size(); ++k) {
     const TomlValue& table = repeated(root, "stage")[k];

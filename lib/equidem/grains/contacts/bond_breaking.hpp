@@ -15,20 +15,11 @@
 #include <optional>
 #include <vector>
 
-#include "equidem/breakage/break_search.hpp"
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/scene/bond_break.hpp"
 
 namespace equidem {
-
-/// A bond that broke.
-struct BondBreak {
-  std::int64_t step = 0;  ///< steps done when it broke
-  std::size_t bond = 0;   ///< in the order of the scene
-  BreakMode mode = BreakMode::tension;
-  Vec2 place;         ///< of the bond, m
-  double energy = 0;  ///< of its springs, J (discs: per metre of depth)
-};
 
 /// Strengths of the bonds of a scene, scattered in their order as those of the contacts of an assembly.
 /// \throws Error (bad_input) as contact_strengths

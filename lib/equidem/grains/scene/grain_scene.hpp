@@ -171,4 +171,9 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
 /// \param where for error messages; may be empty
 void check_bonds(const GrainScene& scene, const PlaceOfBond& where = {});
 
+/// Check the servos of all walls against each other.
+/// \throws Error (bad_input): a law without forces, a name of no wall, a wall that is moved by two servos, by its
+///         mirror and itself, or by a schedule along the same direction, a stress whose length is not known
+void check_servos(const GrainScene& scene, NormalLaw law);
+
 }  // namespace equidem

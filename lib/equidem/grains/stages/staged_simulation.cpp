@@ -97,9 +97,8 @@ bool StagedSimulation::holds(const StageEnd& end) {
   }
   if (end.strain > 0) {
     const std::size_t a = index_of(walls, end.walls[0]), b = index_of(walls, end.walls[1]);
-    const double before = norm(places_[b] - places_[a]);
-    // the distance of walls that face each other, by the line between their places at the start
-    const double now = dot(walls[b].place - walls[a].place, places_[b] - places_[a]) / before;
+    const Vec2 across = present_->placed_walls()[a].normal;  // points on lines may lie anywhere along them
+    const double before = dot(places_[b] - places_[a], across), now = dot(walls[b].place - walls[a].place, across);
     report.strain = std::abs(now / before - 1);
     all = all && report.strain >= end.strain;
   }

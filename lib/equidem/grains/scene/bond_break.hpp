@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Breaks of the bonds of colliding discs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "equidem/breakage/break_search.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+/// A bond that broke.
+struct BondBreak {
+  std::int64_t step = 0;  ///< steps done when it broke
+  std::size_t bond = 0;   ///< in the order of the scene
+  BreakMode mode = BreakMode::tension;
+  Vec2 place;         ///< of the bond, m
+  double energy = 0;  ///< of its springs, J (discs: per metre of depth)
+};
+
+}  // namespace equidem
