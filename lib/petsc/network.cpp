@@ -24,6 +24,10 @@ constexpr double negligible = 1e-12;
 }  // namespace
 
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation) {
+  if (springs.bends()) {
+    bad_input("the contacts have bending springs", "the matrix of PETSc is that of contacts without moments",
+              "Take the factorizations of the serial library, or leave the bending springs out");
+  }
   const bool tangential = ranks.any(springs.any_tangential());
   const bool off_lines = ranks.any(!on_lines_of_centres(part.assembly));
   return derive_effects(ContactSprings(SpringConstants{1, tangential ? 1.0 : 0.0}), rotation, off_lines);

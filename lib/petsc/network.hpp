@@ -19,6 +19,7 @@
 namespace equidem::petsc {
 
 /// The effects of the whole scene, the same on all ranks.
+/// \throws Error (bad_input) where contacts have bending springs
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation);
 
 /// Refers to the part and the springs, which must outlive it and not move.

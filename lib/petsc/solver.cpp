@@ -44,6 +44,18 @@ void check_format(Mat matrix) {
             "it fills aij and the formats that begin with it", "Leave -equidem_mat_type out");
 }
 
+/// PETSc passes over such an option without its value, and counts it as used.
+void check_values_of_options() {
+  for (const char* option : {"-ksp_rtol", "-ksp_atol", "-ksp_max_it", "-ksp_type", "-pc_type"}) {
+    const std::string name = fmt::format("-{}{}", prefix, option + 1);
+    const char* value = nullptr;
+    PetscBool given = PETSC_FALSE;
+    check(PetscOptionsFindPair(nullptr, nullptr, name.c_str(), &value, &given));
+    if (given == PETSC_FALSE || (value != nullptr && *value != '\0')) continue;
+    bad_input(fmt::format("{} has no value", name), "PETSc would pass over it", "Give one after it, or leave it out");
+  }
+}
+
 /// Whether options asked for what PETSc does not have.
 bool is_choice(PetscErrorCode code) {
   return code == PETSC_ERR_SUP || code == PETSC_ERR_MISSING_FACTOR || code == PETSC_ERR_ARG_UNKNOWN_TYPE;
@@ -182,6 +194,7 @@ void PetscSolver::set_up(SolverMethod method) {
     check(PCSetType(pc, method == SolverMethod::multigrid ? grids_type : PCGAMG));
   }
   check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
+  check_values_of_options();
   options_were_read = true;
   check_options(KSPSetFromOptions(solver_));
   if (has_grids(pc)) build_grids(n, pc);

@@ -189,6 +189,7 @@ def bad_input_ends_all_ranks_with_one_sentence(folder):
     refused(parallel(2, "solve", case, "--accuracy", "1e-3"), "--accuracy")
     refused(parallel(2, "solve", case, "--dry-run"), "--dry-run")
     refused(parallel(2, "homogenize", case), "periodic")
+    refused(parallel(2, "solve", case, *CUT, "-equidem_ksp_rtol"), "-equidem_ksp_rtol has no value")
     refused(parallel(2, "homogenize", CASES / "ensemble.toml"), "ensemble")
     refused(parallel(2, "homogenize", CASES / "random_cell.toml", "--set", "springs.weighting=contact_density"), "weighting")
     refused(parallel(2, "homogenize", CASES / "hexagonal_cell.toml", "--set", "assembly.kind=square", "--set",
