@@ -213,6 +213,37 @@ TEST_CASE("the_energy_of_a_chain_that_breaks_and_collides_balances_to_the_error_
   }
 }
 
+TEST_CASE("what_a_break_takes_from_the_balance_is_of_the_second_order_of_a_verlet_step") {
+  // Whatever the step, the bond breaks in it under the same pull, at an offset of the same phase.
+  for (const Stepping stepping : {Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                  Stepping{NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet}}) {
+    for (const bool dashpots : {false, true}) {
+      for (const bool sheared : {false, true}) {
+        std::vector<double> errors;
+        for (const double step : {1.6e-3, 4e-4, 1e-4}) {
+          GrainScene scene = breaking_pair(stepping.law, sheared ? never : 1.0, sheared ? 0.4 : never);
+          if (dashpots) {
+            scene.bonds[0].normal_dashpot = 0.3;
+            scene.bonds[0].tangential_dashpot = 0.2;
+            scene.bonds[0].rolling_dashpot = 0.01;
+          }
+          scene.grains[0].velocity = {sheared ? 0.3 : -0.1, 0};
+          scene.grains[1].velocity = {sheared ? -0.3 : 0.1, 0};
+          scene.grains[0].spin = scene.grains[1].spin = 0.3;
+          GrainSimulation simulation(scene, options_of(stepping, step));
+          REQUIRE(run_to_break(simulation, 100000).size() == 1);
+          simulation.advance(1);
+          const EnergyLedger ledger = simulation.energy();
+          errors.push_back(std::abs(ledger.error()) / ledger.initial);
+        }
+        CAPTURE(stepping.name(), dashpots, sheared, errors);
+        CHECK(errors[0] < 1e-4);
+        CHECK(errors[2] < errors[0] / 100);  // 256 for the second order, 16 for the first
+      }
+    }
+  }
+}
+
 TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
   // A bonded block whose left and right discs are as heavy as plates, and part slowly.
   Assembly block =

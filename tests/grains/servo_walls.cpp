@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Walls that follow a force or a stress.
+#include "equidem/grains/stages/staged_simulation.hpp"
+
 #include "grains/resuming.hpp"
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
@@ -170,4 +172,47 @@ TEST_CASE("servos_that_contradict_each_other_are_refused") {
   refused([](GrainScene&, Servo& s) { s.is_stress = true; }, {"'lid'", "no other wall"});
   refused([](GrainScene&, Servo& s) { s.is_stress = true, s.between = {"left", "floor"}; }, {"'floor'", "cross"});
   refused([](GrainScene&, Servo&) {}, {"'lid'", "map"}, NormalLaw::energy_map);
+}
+
+TEST_CASE("a_servo_wall_on_bodies_at_rest_begins_with_the_force_that_they_carry") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  GrainScene scene = pressed_box(stepping.law, 20);
+  GrainSimulation settled(scene, options_of(stepping, 2e-4));
+  settled.advance(200000);
+  scene.grains = settled.grains();
+  scene.walls[3].point = settled.walls()[3].place;
+  GrainSimulation again(scene, options_of(stepping, 2e-4));
+  again.advance(1);
+  const WallState lid = again.walls()[3];
+  CAPTURE(stepping.name(), lid.velocity.y, lid.force.y, lid.impulse.y);
+  CHECK(std::abs(lid.velocity.y) < 1e-3 * 0.1);
+  CHECK(std::abs(lid.force.y - 20) < 1e-3 * 20);
+  CHECK(std::abs(lid.impulse.y - 20 * 2e-4) < 1e-3 * 20 * 2e-4);  // of one step
+}
+
+TEST_CASE("the_error_of_a_servo_wall_counts_from_where_the_force_of_its_stage_is_reached") {
+  GrainStage low{.name = "low", .scene = pressed_box(NormalLaw::linear_dashpot, 10), .steps = 200000}, high = low,
+                                                                                                       back = low;
+  high.name = "high";
+  high.scene.walls[3].servo->wanted.value = 40;
+  back.name = "back";
+  StagedSimulation staged({low, high, back}, options_of(NormalLaw::linear_dashpot, 2e-4));
+  while (!staged.over()) staged.advance(100000);
+  const std::vector<double> wanted{10, 40, 10};
+  REQUIRE(staged.reports().size() == 3);
+  StagedSimulation resumed({low, high, back}, options_of(NormalLaw::linear_dashpot, 2e-4));
+  resumed.restore(staged.save());
+  for (std::size_t k = 0; k < 3; ++k) {
+    REQUIRE(staged.reports()[k].servos.size() == 1);
+    const ServoReport report = staged.reports()[k].servos[0];
+    CAPTURE(k, report.wanted, report.force, report.overshoot, report.mean_error);
+    CHECK(report.reached);
+    CHECK(report.wanted == wanted[k]);
+    CHECK(std::abs(report.force - wanted[k]) < 1e-3 * wanted[k]);
+    CHECK(report.mean_error < 0.01);
+    if (k > 0) CHECK(report.overshoot < 0.3);  // the way from the force before would be 3 where it falls
+    REQUIRE(resumed.reports()[k].servos.size() == 1);
+    CHECK(resumed.reports()[k].servos[0].mean_error == report.mean_error);
+    CHECK(resumed.reports()[k].servos[0].wall == "lid");
+  }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/packing/packing.hpp"
 
@@ -151,6 +152,44 @@ TEST_CASE("a_box_filled_past_its_volume_balances_or_is_refused") {
     CHECK_THROWS_AS(further.advance(1), Error);
     CHECK(bits_of(further) == before);
     table.refused("pressed to three times its area, " + name_of(kind), answer, {"grain", "Use stiffer contacts"});
+  }
+}
+
+TEST_CASE("bonds_that_break_all_at_once_leave_discs_that_collide") {
+  HardCase table({.name = "every bond breaks at once",
+                  .why =
+                      "strengths are 0, or all bonds meet theirs in one step: lists of bonds and contacts change as a "
+                      "whole, and discs that pressed each other go on as contacts"});
+  struct Row {
+    double strength, distance;
+  };
+  for (const Row& row : {Row{0, 1 + 1e-3}, Row{0, 1 - 1e-3}, Row{0.3, 1 + 1e-3}}) {
+    std::vector<Grain> grains;
+    for (int k = 0; k < 40; ++k) grains.push_back(ball({k * row.distance, 0}, 0.5));
+    GrainScene scene = scene_of(grains, {}, {.stiffness = 1000, .restitution = 1});
+    for (std::size_t k = 0; k + 1 < grains.size(); ++k)
+      scene.bonds.push_back({.i = k,
+                             .j = k + 1,
+                             .normal_spring = 1000,
+                             .tangential_spring = 500,
+                             .bending_spring = 50,
+                             .rest = BondRest{{1, 0}, 0, 0}});
+    const std::vector<double> strengths(scene.bonds.size(), row.strength);
+    scene.strengths = ContactStrengths{strengths, strengths, 0};
+    GrainSimulation simulation(scene, verlet(1e-3));
+    const double stored = simulation.energy().elastic_bond;
+    const Balance balance = keep(simulation, 4000);
+    const EnergyLedger ledger = simulation.energy();
+    CAPTURE(row.strength, row.distance, ledger.lost_breaking, stored, balance.momentum);
+    REQUIRE(simulation.breaks().size() == scene.bonds.size());
+    CHECK(simulation.breaks().back().step == 0);
+    CHECK(std::abs(ledger.error()) < 1e-3 * stored);
+    CHECK(std::abs(ledger.lost_breaking - (row.distance > 1 ? stored : 0)) < 1e-9 * stored);  // contacts are as stiff
+    CHECK(balance.momentum < 1e-12);
+    table.note(fmt::format("40 discs, strength {}, {}", row.strength, row.distance > 1 ? "drawn" : "pressed"),
+               "all break in step 0, energy below 1e-3",
+               fmt::format("{} of {} broke, energy off by {}", simulation.breaks().size(), scene.bonds.size(),
+                           digits(std::abs(ledger.error()) / stored)));
   }
 }
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Servo walls, histories of walls and stages, as a user runs them: run_stages.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import random
+import shutil
 import unittest
 
 import numpy
@@ -178,6 +179,16 @@ class Stages(StageTest):
         self.assertFalse(numpy.isnan(lid[history["time_s"] <= ends[1]]).any())
         left = history["wall_left_x_m"]
         self.assertAlmostEqual(left[-1], 0.01 * (ends[1] - ends[0]), delta=1e-12)
+        self.assertEqual([(servo["stage"], servo["wall"]) for servo in result["servos"]],
+                         [("press", "lid"), ("slide", "lid"), ("open", "roof")])
+        # the checkpoint at the end of a stage goes on to the same end
+        parts = self.folder / "parts"
+        shutil.copytree(out, parts)
+        for stage in ("slide", "press"):
+            shutil.copy(parts / f"run.{stage}.checkpoint.h5", parts / "run.checkpoint.h5")
+            self.run_case(case, "--out", parts, "--resume", *VERLET)
+            for name in ("history.csv", "grains.csv", "contacts.csv", "energy.csv"):
+                self.assertEqual((out / name).read_bytes(), (parts / name).read_bytes(), name)
         self.assertIn("motion", (out / "index.html").read_text())
 
     def test_stages_that_are_interrupted_go_on_with_the_same_files(self):
@@ -219,7 +230,7 @@ class Stages(StageTest):
         for text, words in ((PRESS + SERVO + "[run]\n", ("run.duration", "missing")),
                             (stage("", run=RUN), ("run.duration", "both given")),
                             (stage('[[stage]]\nname = "a"\nduration = 1.0\n'), ("two stages 'a'",)),
-                            (stage('[[stage]]\nname = "b"\n'), ("stage.duration", "missing")),
+                            (stage('[[stage]]\nname = "b"\n'), ("neither duration nor steps",)),
                             (stage('[[stage]]\nname = "b c"\nduration = 1.0\n'), ("stage.name",)),
                             (stage("[stage.until]\n"), ("stage.until", "nothing is given")),
                             (stage("[stage.until]\nstrain = 0.1\n"), ("strain is given without from",)),
@@ -231,6 +242,21 @@ class Stages(StageTest):
                             (stage(wall.format("west") + "velocity = [1.0, 0.0]\n"), ("'west' is a new wall", "point")),
                             (stage(wall.format("left") + "point = [1.0, 0.0]\n"), ("'left' is there already",)),
                             (stage(wall.format("left") + "removed = true\nvelocity = [1.0, 0.0]\n"), ("removed and has",)),
+                            (stage(wall.format("left") + "removed = true\nnormal = [1.0, 0.0]\n"), ("removed and has",)),
+                            (stage(wall.format("left") + 'shape = "arc"\n'), ("'left' is there already", "stage.wall.shape")),
+                            (stage(wall.format("left") + "removed = true\n" + wall.format("left") +
+                                   "point = [0.0, 0.0]\nnormal = [1.0, 0.0]\n"), ("two walls 'left'",)),
+                            (stage(wall.format("left") + 'removed = true\n[[stage]]\nname = "b"\nduration = 0.1\n' +
+                                   wall.format("left") + "point = [0.0, 0.0]\nnormal = [1.0, 0.0]\n"),
+                             ("'left' is new", "an earlier one had that name")),
+                            (stage(wall.format("left") + 'displacement = 0.001\nschedule = "step"\n') +
+                             '[[schedule]]\nname = "step"\nkind = "table"\ntimes = [0.0, 1.0]\nvalues = [0.5, 1.0]\n',
+                             ("'left' would jump", "stage.wall.schedule")),
+                            (stage("steps = 10\n"), ("both given",)),
+                            (stage("[stage.bonds]\n"), ("stage.0.bonds", "bond")),
+                            (stage("[stage.bonds]\ngap_tolerance = 2.0\nnormal_spring = 1.0\n"), ("gap_tolerance",)),
+                            (stage("[stage.bonds]\nnormal_spring = -1.0\n"), ("stage.bonds.normal_spring",)),
+                            (stage("[strength]\ntension = 1.0\nshear = 1.0\n"), ("no grains are tied",)),
                             (stage(wall.format("floor") + "removed = true\n", mirror), ("'floor' is removed", "mirror")),
                             (stage(wall.format("left") + "speed = 1.0\n"), ("unknown key",)),
                             (stage(wall.format("left") + 'displacement = 1.0\nschedule = "up"\n'), ("stage.wall.schedule",)),

@@ -37,6 +37,11 @@ WRONG = {
     "springs_of_words": (lambda: eq.solve(BLOCK, "stiff", supports=HELD), "springs of type str"),
     "a_negative_normal_spring": (lambda: eq.tension_test(BLOCK, (-1.0, 0.0)), "kN"),
     "springs_of_too_few_contacts": (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(3), np.ones(3))), "shape"),
+    "a_negative_bond_width": (lambda: eq.tension_test(BLOCK, eq.Springs(1.0, 0.5, bond_width=-1)), "bond_width"),
+    "a_bond_width_beside_springs_of_each_contact":
+        (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(120), 0.5, bond_width=1)), "springs of each contact"),
+    "a_stiffness_matrix_of_bonds_with_a_width":
+        (lambda: eq.stiffness_matrix(BLOCK, eq.Springs(1.0, 0.5, bond_width=1)), "stiffness_matrix"),
     "nothing_that_acts": (lambda: eq.solve(BLOCK, (1.0, 0.5)), "nothing pulls"),
     "an_unknown_group": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": "lefft", "ux": 0}]), "left"),
     "an_unknown_component": (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=[{"group": "left", "uz": 0}]), "uz"),

@@ -86,6 +86,19 @@ def test_springs_that_are_given_replace_those_of_a_packing():
     assert eq.calibrate(packed, young_modulus=1e9, poisson_ratio=0.2).status == "calibrated"
 
 
+def test_bonds_of_a_width_resist_bending():
+    wide = eq.Springs(kN=1e9, kT=0.5e9, bond_width=0.8)
+    ends = [{"group": "left", "ux": 0, "uy": 0, "rotation": 0}, {"group": "right", "uy": 1e-6}]
+    bent = eq.solve(BLOCK, wide, supports=ends)
+    by_key = eq.solve(BLOCK, {"kN": 1e9, "kT": 0.5e9, "bond_width": 0.8}, supports=ends)
+    assert np.array_equal(bent.displacements, by_key.displacements)
+    assert np.abs(bent.bending_moments).max() > 0
+    assert bent.energy > eq.solve(BLOCK, SPRINGS, supports=ends).energy
+    case = eq.Case(assembly={"kind": "hexagonal", "columns": 7, "rows": 7, "radius": 1e-3},
+                   springs={"kN": 1e9, "kT": 0.5e9, "bond_width": 0.8}, supports=ends)
+    assert np.allclose(bent.displacements, case.solve().displacements, rtol=1e-9, atol=1e-18)
+
+
 def test_a_verb_says_how_long_it_took():
     result = eq.tension_test(BLOCK, SPRINGS)
     assert 0.5 * sum(result.times.values()) < result.elapsed < 60

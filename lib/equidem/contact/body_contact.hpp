@@ -21,7 +21,7 @@ struct BodyContact {
   Vec2 force = {};              ///< on i; its negative acts on j
   double normal_force = 0;      ///< bonded discs: tension positive; colliding bodies: compression positive
   double tangential_force = 0;  ///< along s = (-n_y, n_x), n the normal from i; bonded: on i, colliding: on j
-  double bending_moment = 0;    ///< N, of bonded discs, on i; its negative acts on j
+  double bending_moment = 0;    ///< N, of bonds with bending springs, on i; its negative acts on j
 };
 
 /// A contact of an assembly by its number, at the places of before the motion.

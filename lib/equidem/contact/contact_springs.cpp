@@ -165,9 +165,9 @@ std::vector<double> local_contact_density(const Assembly& assembly) {
   return angle;
 }
 
-ContactSprings equal_springs(const ContactSprings& springs) {
+ContactSprings equal_springs(const ContactSprings& springs, double radius) {
   std::vector<double> bending = springs.bending_springs();
-  for (std::size_t c = 0; c < bending.size(); ++c) bending[c] /= springs[c].kN;
+  for (double& kM : bending) kM = kM > 0 ? radius * radius : 0;
   return springs
       .changed([](SpringConstants k) {
         return SpringConstants{k.kN != 0 ? 1.0 : 0.0, k.kT != 0 ? 1.0 : 0.0};

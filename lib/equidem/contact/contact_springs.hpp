@@ -134,9 +134,10 @@ std::vector<double> contact_density(const Assembly& assembly);
 /// contact beside it counts its other side twice. A single contact has the full turn.
 std::vector<double> local_contact_density(const Assembly& assembly);
 
-/// Every spring replaced by one of 1 Pa, without prestress: the zero-energy modes of the springs stay, but not the
-/// energies of the other modes.
-ContactSprings equal_springs(const ContactSprings& springs);
+/// Every spring replaced by one of 1 Pa, and bending springs by the square of a length, without prestress: the
+/// zero-energy modes of the springs stay, but not the energies of the other modes.
+/// \param radius mean radius of the discs, m
+ContactSprings equal_springs(const ContactSprings& springs, double radius);
 
 /// All springs, bending springs too, and forces at rest, times a factor.
 ContactSprings scaled_springs(const ContactSprings& springs, double factor);

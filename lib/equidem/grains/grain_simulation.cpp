@@ -112,7 +112,11 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   if (self.verlet()) {
     self.find_impulses();
     system.lost = {};  // there was no drift before the start
-    std::fill(system.walls.loads.begin(), system.walls.loads.end(), WallLoad{});
+    // The force that servo walls find in the first step: walls got half of it, as from a step with no force before.
+    for (WallLoad& load : system.walls.loads)
+      load = {.impulse = -2 * load.step_impulse,
+              .step_impulse = 2 * load.step_impulse,
+              .step_angular = 2 * load.step_angular};
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();

@@ -65,15 +65,15 @@ class GrainSimulation final : public AnySimulation {
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options);
 
-  /// A simulation of the bodies of another one in a changed scene: they are where they are in `before`, which is taken
-  /// over by take_over() or restore().
-  /// \param scene its bodies are those of `before`; places and motions are not read
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before);
-  /// The same with places and motions of a state that such a simulation saved. \param first with the same bodies
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& first,
-                  const SavedState& state);
-  /// Go on from the step of `before` with its contacts, losses and counters. Contacts with walls that are no longer
-  /// there end, the control of servo walls that both have goes on, and their errors are counted anew.
+  /// A simulation of the bodies of another one in a changed scene, for take_over() or restore().
+  /// \param scene its bodies are those of `before`, places and motions are not read; its bonds begin with those of
+  ///        `before`, and have their rest
+  /// \param places, velocities of the bodies
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before,
+                  const std::vector<DiscMotion>& places, const std::vector<DiscMotion>& velocities);
+  /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with walls that are no
+  /// longer there end, and those of discs that are bonded now; the control of servo walls that both have goes on, and
+  /// their errors are counted anew.
   void take_over(const GrainSimulation& before);
 
   [[nodiscard]] const Effects& effects() const override;

@@ -21,10 +21,10 @@ constexpr std::size_t numbers_per_bond = 3;
 
 constexpr std::size_t numbers_per_wall = 6;
 constexpr double ServoState::*servo_saved[] = {
-    &ServoState::way,    &ServoState::speed,  &ServoState::passed_speed,   &ServoState::free_way,
-    &ServoState::wanted, &ServoState::force,  &ServoState::largest_wanted, &ServoState::overshoot,
-    &ServoState::pace,   &ServoState::errors, &ServoState::steps,          &ServoState::touched,
-    &ServoState::reached};
+    &ServoState::way,     &ServoState::speed,  &ServoState::passed_speed,   &ServoState::free_way,
+    &ServoState::wanted,  &ServoState::force,  &ServoState::largest_wanted, &ServoState::overshoot,
+    &ServoState::pace,    &ServoState::errors, &ServoState::steps,          &ServoState::touched,
+    &ServoState::reached, &ServoState::side};
 
 constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
                                                            &GrainCounters::rebuilds, &GrainCounters::sweeps,
@@ -171,8 +171,14 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const bool shapes = !system.shapes.parts.empty();
   const std::size_t impulses =
       implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
-  if (system.bonds.breakable) restore_breaks(system, breaks_of(state["breaks"]));
-  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * system.bonds.tied.size() : 0;
+  std::vector<BondBreak> breaks;
+  std::size_t tied = system.bonds.tied.size();
+  if (const auto& breakable = system.bonds.breakable) {
+    breaks = breaks_of(state["breaks"]);
+    check_breaks(system, breaks);
+    tied = breakable->all.size() - breaks.size();
+  }
+  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * tied : 0;
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
@@ -185,6 +191,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
               fmt::format("the scene has {}", system.bodies.motions.size()),
               "Resume with the scene that the state was saved from");
   }
+  if (system.bonds.breakable) restore_breaks(system, std::move(breaks));
   system.step = state.step;
   implementation_->potential_at_start = state["start"][0];
   implementation_->energy_at_start = state["start"][1];

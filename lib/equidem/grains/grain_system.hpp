@@ -92,6 +92,7 @@ struct ServoState {
   double largest_wanted = 0, overshoot = 0;  ///< N; largest F - W over largest_wanted
   double errors = 0, steps = 0;              ///< sum of |F - W| over largest_wanted, number of its steps
   double touched = 0, reached = 0;           ///< 0 or 1
+  double side = 0;                           ///< 1, -1: the force began above or below the wanted one; 0: not known yet
 };
 
 /// The bodies sorted by position.

@@ -79,7 +79,11 @@ Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direc
 
 void count_error(ServoState& state) {
   state.largest_wanted = std::max(state.largest_wanted, state.wanted);
-  if (state.touched != 0 && state.force >= 0.99 * state.wanted) state.reached = 1;
+  if (state.touched != 0 && state.reached == 0) {
+    const double missing = state.wanted - state.force;
+    if (state.side == 0) state.side = missing > 0 ? -1 : 1;
+    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = 1;
+  }
   if (state.reached == 0 || state.largest_wanted == 0) return;
   const double error = (state.force - state.wanted) / state.largest_wanted;
   state.overshoot = std::max(state.overshoot, error);

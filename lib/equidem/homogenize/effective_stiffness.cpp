@@ -131,7 +131,7 @@ std::optional<WeakStrain> judge(EffectiveStiffness& result) {
 bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& springs,
                                 const HomogenizeOptions& options) {
   try {
-    EffectiveStiffness equal = solve(assembly, equal_springs(springs), options);
+    EffectiveStiffness equal = solve(assembly, equal_springs(springs, assembly.mean_radius()), options);
     return !judge(equal);
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;
@@ -216,7 +216,9 @@ std::vector<StrainedState> strained_states(const Assembly& assembly, const Conta
   for (std::size_t k = 0; k < result.fluctuations.size(); ++k) {
     StrainedState state{.gradient = gradients[k],
                         .fluctuations = result.fluctuations[k],
-                        .forces = affine_contact_forces(assembly, springs, gradients[k], 0)};
+                        .forces = affine_contact_forces(assembly, springs, gradients[k], 0),
+                        .bending_moments = {}};
+    if (springs.bends()) state.bending_moments.resize(assembly.contacts.size());
     for (DiscMotion& motion : state.fluctuations) motion = {strain * motion.u, strain * motion.theta};
     for (std::size_t c = 0; c < state.forces.size(); ++c) {
       const Contact& contact = assembly.contacts[c];
@@ -224,11 +226,17 @@ std::vector<StrainedState> strained_states(const Assembly& assembly, const Conta
       const ContactForce f = force_of(springs, c, {deformation(frame_of(assembly, c), i, j), i.theta, j.theta});
       state.forces[c].normal += f.normal;
       state.forces[c].tangential += f.tangential;
+      if (springs.bends()) state.bending_moments[c] = bending_moment(springs.bending(c), i.theta, j.theta);
     }
     if (bearing.part) {
       std::vector<ContactForce> carried(state.forces.size());
-      for (const std::int32_t c : bearing.part->contacts) carried[c] = state.forces[c];
+      std::vector<double> moments(state.bending_moments.size());
+      for (const std::int32_t c : bearing.part->contacts) {
+        carried[c] = state.forces[c];
+        if (!moments.empty()) moments[c] = state.bending_moments[c];
+      }
       state.forces = std::move(carried);
+      state.bending_moments = std::move(moments);
     }
     states.push_back(std::move(state));
   }

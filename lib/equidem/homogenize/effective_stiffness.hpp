@@ -117,6 +117,7 @@ struct StrainedState {
   Tensor2 gradient;                      ///< of the mean displacement
   std::vector<DiscMotion> fluctuations;  ///< per disc, beside it
   std::vector<ContactForce> forces;      ///< per contact; 0 where no load is carried
+  std::vector<double> bending_moments;   ///< N, per contact, on its first disc; empty where contacts carry none
 };
 /// The states of the mean strains xx, yy and xy, each of the size `strain` (xy: engineering shear strain).
 /// \param result of the same assembly and springs; one of tractions has no states

@@ -304,6 +304,7 @@ inline constexpr Quantity quantities[] = {
     {"stages/start", "s", "start of a stage"},
     {"stages/end", "s", "end of a stage"},
     {"stages/steps", "", "number of steps of a stage"},
+    {"stages/bonds_made", "", "bonds made where a stage began"},
     {"stages/kinetic_over_elastic", "", "kinetic over elastic energy when it was last looked at"},
     {"servos/overshoot", "", "largest force above the wanted one, of the largest wanted, since it was reached"},
     {"servos/mean_error", "", "mean difference from the wanted force, of the largest wanted, since it was reached"},

@@ -178,9 +178,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     progress.update(std::min(static_cast<double>(simulation.step()) / expected, nearly_done));
     peak = std::max(peak, kinetic);
     if (kinetic <= resting_drop * weight_radius) {
-      const auto grains = simulation.grains();
-      const auto contacts = simulation.contacts();
-      const Unbalance unbalance = unbalance_of(grains, contacts, scene.bonds, scene.gravity);
+      const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
       if (unbalance.mean <= options.rest) {
         SettlingReport report{.unbalanced = unbalance.mean, .largest_unbalanced = unbalance.largest};
         report.time_step = step;
@@ -188,7 +186,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
         report.steps = simulation.step();
         report.ledger = simulation.energy();
         report.bonds = simulation.bonds();
-        return {grains, contacts, scene.bonds, report};
+        return {simulation.grains(), simulation.contacts(), scene.bonds, report};
       }
     }
     if (kinetic < lying_drop * weight_radius && kinetic < 0.5 * peak) {
@@ -196,7 +194,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
       peak = 0;
     }
   }
-  const Unbalance unbalance = unbalance_of(simulation.grains(), simulation.contacts(), scene.bonds, scene.gravity);
+  const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
   computation_failed(fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
                      fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
                                  unbalance.mean, options.rest),

@@ -89,6 +89,7 @@ class Case:
             self._assembly = assembly
             given = springs_from(springs)
             if given is not None and not given.uniform:
+                given = given._without_bending("a case with springs of each contact")
                 self._assembly = Assembly._of(assembly._native.with_springs(given.at_contacts(assembly)))
                 table["own_springs"] = True
                 springs = None
@@ -100,6 +101,8 @@ class Case:
             chosen = springs_from(springs)
             assert chosen is not None
             self._tables["springs"] = {"kN": chosen.kN, "kT": chosen.kT, "weighting": chosen.weighting}
+            if chosen.bond_width != 0:
+                self._tables["springs"]["bond_width"] = chosen.bond_width
 
     def _with_group(self, table: str, entry: Mapping[str, Any]) -> dict[str, Any]:
         """The entry with the name of its group, made where it lists discs."""

@@ -25,11 +25,16 @@ class Springs:
         Pa (N/m per metre of depth).
     weighting : str
         Of numbers: "uniform", "contact_density", "local_contact_density" or "voronoi" (`equidem help case`).
+    bond_width : float
+        Width w of a bond over the diameter of its smaller disc: contacts resist bending with kM = kN w²/12, the
+        stiffness of a parallel bond (Potyondy and Cundall 2004). 0: they carry no moments. For kN and kT that are
+        numbers.
     """
 
     kN: Any
     kT: Any
     weighting: str = "uniform"
+    bond_width: float = 0.0
 
     @property
     def uniform(self) -> bool:
@@ -44,6 +49,13 @@ class Springs:
         m = len(assembly.contacts)
         columns = [_column(name, value, m) for name, value in (("kN", self.kN), ("kT", self.kT))]
         return np.stack(columns, axis=1)
+
+    def _without_bending(self, wanted: str) -> Springs:
+        """Itself. Errors: bond_width is given, which `wanted` does not take."""
+        if self.bond_width == 0:
+            return self
+        raise BadInput(f"springs with bond_width = {self.bond_width}", f"{wanted} takes springs without moments",
+                       "Leave bond_width out", "springs")
 
     def _native(self, assembly: Assembly) -> Floats:
         """The two numbers, or at_contacts()."""
@@ -62,7 +74,7 @@ def springs_from(given: Any) -> Springs | None:
     if given is None or isinstance(given, Springs):
         return given
     if isinstance(given, dict) or hasattr(given, "keys"):
-        known = {name: given[name] for name in ("kN", "kT", "weighting") if name in given}
+        known = {name: given[name] for name in ("kN", "kT", "weighting", "bond_width") if name in given}
         if "kN" in known and "kT" in known:
             return Springs(**known)
     elif isinstance(given, (tuple, list)) and len(given) == 2:

@@ -166,4 +166,4 @@ def _springs_of(assembly: Assembly, springs: Any) -> Floats:
         raise BadInput("the springs are missing", "every contact has a normal and a tangential spring",
                        "Give equidem.Springs(kN=..., kT=...)", "springs")
     assert isinstance(chosen, Springs)
-    return chosen._native(assembly)
+    return chosen._without_bending("stiffness_matrix")._native(assembly)

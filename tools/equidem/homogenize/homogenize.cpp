@@ -81,12 +81,16 @@ void write_states(const CommonOptions& options, const OutputCase& wanted, const 
   const bool cells_known = cells_hold_area(assembly);
   const std::vector<StrainedState> states = strained_states(assembly, problem.springs.springs, result, written_strain);
   for (std::size_t k = 0; k < states.size(); ++k) {
-    const auto& [gradient, fluctuations, forces] = states[k];
+    const auto& [gradient, fluctuations, forces, moments] = states[k];
     const auto& [suffix, label] = written_states[k];
     std::vector<DiscMotion> motions = fluctuations;
     for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += gradient * assembly.centres[d];
     const std::vector<Tensor2> stresses = cells_known ? disc_stresses(assembly, forces) : std::vector<Tensor2>{};
-    AssemblyState state{.assembly = assembly, .motions = motions, .contact_forces = forces, .stresses = stresses};
+    AssemblyState state{.assembly = assembly,
+                        .motions = motions,
+                        .contact_forces = forces,
+                        .stresses = stresses,
+                        .bending_moments = moments};
     write_state(options, wanted, suffix, state);
     // A periodic cell is drawn undeformed but for what repeats with it: its images would have to move along.
     if (assembly.periodic()) state.motions = fluctuations;

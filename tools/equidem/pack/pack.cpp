@@ -57,7 +57,7 @@ void write_files(const CommonOptions& common, const PackCase& resolved, const Gr
     const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
     write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period},
                     common.overwrite);
-    if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
+    if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, {}, common.overwrite);
   }
   const auto place = [&](const char* stem) { return folder / assembly_file_name(stem, resolved.assembly); };
   write_assembly(place("assembly"), network, common.overwrite);

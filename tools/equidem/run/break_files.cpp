@@ -18,21 +18,13 @@ constexpr std::pair<BreakMode, PlotColour> modes_of_bonds[] = {{BreakMode::tensi
 
 }  // namespace
 
-std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks) {
-  std::vector<char> broken(bonds.size(), 0);
-  for (const BondBreak& event : breaks) broken[event.bond] = 1;
-  std::vector<GrainBond> left;
-  for (std::size_t b = 0; b < bonds.size(); ++b)
-    if (broken[b] == 0) left.push_back(bonds[b]);
-  return left;
-}
-
-void write_breaks(const std::filesystem::path& folder, const GrainCase& resolved, std::span<const BondBreak> breaks,
+void write_breaks(const std::filesystem::path& folder, const GrainCase& resolved, const BreaksOfRun& run,
                   double time_step, bool overwrite) {
   if (!resolved.scene.strengths) return;
+  const std::span<const BondBreak> breaks = run.breaks;
   if (resolved.output.csv) {
     Table table;
-    const auto bond = [&](const BondBreak& event) -> const GrainBond& { return resolved.scene.bonds[event.bond]; };
+    const auto bond = [&](const BondBreak& event) -> const GrainBond& { return run.bonds[event.bond]; };
     table.add("step", breaks, &BondBreak::step);
     table.add("time_s", breaks, [&](const BondBreak& event) { return static_cast<double>(event.step) * time_step; });
     table.add("bond", breaks, &BondBreak::bond);
@@ -60,13 +52,14 @@ void write_breaks(const std::filesystem::path& folder, const GrainCase& resolved
   write_plot(folder, "breaks_plot", plot, overwrite);
 }
 
-void add_breaks(Results& out, const GrainCase& resolved, std::span<const BondBreak> breaks, double time_step) {
+void add_breaks(Results& out, const GrainCase& resolved, const BreaksOfRun& run, double time_step) {
   if (!resolved.scene.strengths) return;
+  const std::span<const BondBreak> breaks = run.breaks;
   double energy = 0;
   for (const BondBreak& event : breaks) energy += event.energy;
   out.line("broken bonds")
       .add("breaks/number", "", breaks.size(), "", {Shown::count})
-      .note(fmt::format(" of {}", resolved.scene.bonds.size()));
+      .note(fmt::format(" of {}", run.bonds.size()));
   for (const auto& [mode, colour] : modes_of_bonds) {
     out.add(fmt::format("breaks/{}", to_string(mode)), to_string(mode),
             std::ranges::count(breaks, mode, &BondBreak::mode), "", {Shown::count});
@@ -74,7 +67,7 @@ void add_breaks(Results& out, const GrainCase& resolved, std::span<const BondBre
   out.set("breaks/energy", energy);
   if (breaks.empty()) return;
   const BondBreak& first = breaks.front();
-  const GrainBond& bond = resolved.scene.bonds[first.bond];
+  const GrainBond& bond = run.bonds[first.bond];
   out.line("", fmt::format("the first, of grains {} and {}, in {}: ", bond.i, bond.j, to_string(first.mode)))
       .add("breaks/first/time", "", static_cast<double>(first.step) * time_step, "s")
       .set("breaks/first/bond", first.bond)

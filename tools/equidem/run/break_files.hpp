@@ -14,14 +14,16 @@
 
 namespace equidem {
 
-/// The bonds that are left.
-std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks);
+struct BreaksOfRun {
+  std::span<const GrainBond> bonds;  ///< all that were made
+  std::span<const BondBreak> breaks;
+};
 
 /// breaks.csv, in the order of time; with pictures breaks_plot, their places by mode.
-void write_breaks(const std::filesystem::path& folder, const GrainCase& resolved, std::span<const BondBreak> breaks,
+void write_breaks(const std::filesystem::path& folder, const GrainCase& resolved, const BreaksOfRun& run,
                   double time_step, bool overwrite);
 
 /// Their number by mode, the first one, and the energy of their springs.
-void add_breaks(Results& out, const GrainCase& resolved, std::span<const BondBreak> breaks, double time_step);
+void add_breaks(Results& out, const GrainCase& resolved, const BreaksOfRun& run, double time_step);
 
 }  // namespace equidem

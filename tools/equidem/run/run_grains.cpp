@@ -40,6 +40,9 @@ std::string checksum_of(const GrainCase& resolved) {
          {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
           bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring, bond.bending_spring})
       sum.add(value);
+  if (const auto& strengths = resolved.scene.strengths)
+    for (std::size_t b = 0; b < strengths->tension.size(); ++b)
+      sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
   for (const Clump& clump : resolved.scene.clumps)
     for (const Clump::Disc& disc : clump.discs)
       for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
@@ -55,10 +58,13 @@ std::string checksum_of(const GrainCase& resolved) {
 }
 
 void check_events(const GrainCase& resolved, double step) {
+  const auto length_of = [&](const StageCase& stage) {
+    return stage.duration ? *stage.duration : static_cast<double>(*stage.steps) * step;
+  };
   for (std::size_t k = 0; k < resolved.stages.size(); ++k)
     for (const Wall& wall : resolved.stages[k].scene.walls)
       for (const Schedule* motion : {&wall.move_x, &wall.move_y})
-        check_event(*motion, step, resolved.stages[k].duration, resolved.where(fmt::format("stage.{}", k)));
+        check_event(*motion, step, length_of(resolved.stages[k]), resolved.where(fmt::format("stage.{}", k)));
   if (!resolved.stages.empty()) return;
   for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
     for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
@@ -76,6 +82,10 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   for (std::size_t k = 0; k < resolved.stages.size(); ++k)
     casefile::with_place(resolved.where(fmt::format("stage.{}", k)),
                          [&] { check_servos(resolved.stages[k].scene, options.law); });
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
+    if (const auto& bonds = resolved.stages[k].bonds)
+      casefile::with_place(resolved.where(fmt::format("stage.{}.bonds", k)),
+                           [&] { check(*bonds, scene.grains, options); });
   return {build_grain_stages(resolved, step), options};
 }
 
@@ -92,6 +102,20 @@ std::vector<Wall> all_walls(const GrainCase& resolved) {
     for (const Wall& wall : stage.scene.walls)
       if (std::ranges::find(walls, wall.name, &Wall::name) == walls.end()) walls.push_back(wall);
   return walls;
+}
+
+/// Of the bonds that have not broken, in their order. \param strengths null: none
+ContactStrengths strengths_left(const ContactStrengths* strengths, std::span<const BondBreak> breaks) {
+  ContactStrengths left;
+  if (strengths == nullptr) return left;
+  std::vector<char> broken(strengths->tension.size(), 0);
+  for (const BondBreak& event : breaks) broken[event.bond] = 1;
+  for (std::size_t b = 0; b < broken.size(); ++b) {
+    if (broken[b] != 0) continue;
+    left.tension.push_back(strengths->tension[b]);
+    left.shear.push_back(strengths->shear[b]);
+  }
+  return left;
 }
 
 /// Possible error of kinetic and potential energy by the rounding of positions.
@@ -150,6 +174,10 @@ GrainRun::GrainRun(GrainCase resolved)
   check_events(case_, step_.step);
   if (case_.measures) measures_.emplace(case_, simulation_);
   frames_.contacts = case_.output.frame_contacts;
+  const auto bends = [](const GrainBond& bond) { return bond.bending_spring > 0; };
+  frames_.moments =
+      std::ranges::any_of(case_.scene.bonds, bends) ||
+      std::ranges::any_of(case_.stages, [&](const StageCase& s) { return s.bonds && bends(s.bonds->like); });
   frame_discs_ = discs_of_frames(case_.scene.grains, case_.scene.clumps, frames_);
 }
 
@@ -173,6 +201,7 @@ RunPlan GrainRun::plan() {
           .frames = frames_,
           .probes = case_.probes,
           .walls = names_of(walls_),
+          .milestone_name = [this] { return simulation_.reports().back().name; },
           .body = case_.body,
           .samples = draws_paths ? samples_of_few : energy_samples,
           .paths = draws_paths,
@@ -190,7 +219,7 @@ std::string GrainRun::fingerprint() const {
   erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
   if (TomlValue* stages = known.find("stage"))
     for (TomlValue& stage : stages->items)
-      if (stage.find("until") != nullptr) erase_keys(stage, {"duration"});  // a limit alone
+      if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
   erase_keys(known, {"title", "output", "probe", "measures"});
   return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
                                                      toml_number(step_.step), checksum_of(case_));
@@ -225,10 +254,11 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
     write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
   }
   const std::vector<BondBreak> breaks = simulation_.present().breaks();
-  const std::vector<GrainBond> bonds = bonds_left(resolved.scene.bonds, breaks);
-  if (resolved.output.csv && !resolved.scene.bonds.empty())
-    write_bond_csv(folder / "bonds.csv", bonds, simulation_.present().bond_drifts(), overwrite);
-  write_breaks(folder, resolved, breaks, step_.step, overwrite);
+  const std::vector<GrainBond> bonds = bonds_left(simulation_.bonds(), breaks);
+  if (resolved.output.csv && !simulation_.bonds().empty())
+    write_bond_csv(folder / "bonds.csv", bonds, simulation_.present().bond_drifts(),
+                   strengths_left(simulation_.strengths(), breaks), overwrite);
+  write_breaks(folder, resolved, {simulation_.bonds(), breaks}, step_.step, overwrite);
   if (resolved.output.picture) {
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,

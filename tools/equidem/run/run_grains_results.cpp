@@ -292,6 +292,7 @@ void add_stages(Results& out, const std::vector<StageReport>& stages, double ste
         .set("effects", active);
     if (stage.kinetic > 0 || stage.unbalanced > 0)
       row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
+    if (stage.bonds_made > 0) row.set("bonds_made", stage.bonds_made);
     if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
     if (stage.displacement > 0)
       row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
@@ -300,13 +301,15 @@ void add_stages(Results& out, const std::vector<StageReport>& stages, double ste
   out.table("stages", std::move(rows));
 }
 
-/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error.
-void add_servos(Results& out, const std::vector<ServoReport>& servos, Body body) {
-  if (servos.empty()) return;
+/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error, and stage where there are some.
+/// \param present of the last stage
+void add_servos(Results& out, const std::vector<StageReport>& stages, const std::vector<ServoReport>& present,
+                bool in_stages, Body body) {
   const char* force = body == Body::disc ? "N/m" : "N";
   std::vector<Results> rows;
-  for (const ServoReport& servo : servos) {
+  const auto add = [&](const std::string& stage, const ServoReport& servo) {
     Results& row = rows.emplace_back();
+    if (in_stages) row.add("stage", "stage", stage);
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
         .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
         .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
@@ -315,8 +318,11 @@ void add_servos(Results& out, const std::vector<ServoReport>& servos, Body body)
     const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
     row.add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
         .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
-  }
-  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in this stage:");
+  };
+  for (const StageReport& stage : stages)
+    for (const ServoReport& servo : &stage == &stages.back() ? present : stage.servos) add(stage.name, servo);
+  if (rows.empty()) return;
+  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in its stage:");
   out.table("servos", std::move(rows));
 }
 
@@ -326,7 +332,7 @@ Results GrainRun::events() const {
   const GrainCounters& counters = simulation_.present().counters();
   Results out = measures_ ? measures_->results() : Results();
   if (!case_.stages.empty()) add_stages(out, simulation_.reports(), step_.step);
-  add_servos(out, simulation_.present().servos(), case_.body);
+  add_servos(out, simulation_.reports(), simulation_.present().servos(), !case_.stages.empty(), case_.body);
   out.line("collisions")
       .add("contacts", "", counters.contacts, "contact", {Shown::count})
       .note(" begun")
@@ -347,7 +353,8 @@ Results GrainRun::events() const {
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.present().bonds());
-  add_breaks(out, case_, simulation_.present().breaks(), step_.step);
+  const std::vector<BondBreak> breaks = simulation_.present().breaks();
+  add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
   return out;
 }
 

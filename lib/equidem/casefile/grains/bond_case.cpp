@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// [bonds] and [[bond]].
+#include <algorithm>
+
 #include "equidem/casefile/assembly/strength_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -54,15 +56,36 @@ void bind_bonds(File<GrainTables>& file) {
       .keys(strength_keys_of_bonds());
 }
 
+std::vector<Key<StageBonds>> stage_bond_keys() {
+  std::vector<Key<StageBonds>> keys{key("gap_tolerance", &StageBonds::gap_tolerance, from(0, 1),
+                                        "discs are bonded where the gap between them is at most this share of the sum "
+                                        "of their radii; 0: where they touch. Discs that press each other keep their "
+                                        "force; those that have or had a bond get no other")};
+  for (const BondProperty& property : bond_properties())
+    keys.push_back(key(property.name, &StageBonds::like, property.value, optional, unit(property.unit), not_negative,
+                       "instead of that of [bonds]"));
+  return keys;
+}
+
+StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage) {
+  StageBonds bonds{.like = tables.bonds.common, .strengths = tables.strength};
+  read_table(stage_bond_keys(), table, bonds);
+  if (bonds.strengths) bonds.strengths->seed += stage + 1;  // the bonds of the start take the seed itself
+  return bonds;
+}
+
 void complete_bonds(const TomlValue& root, GrainTables& tables) {
   static const auto keys = bond_keys(false);
+  const bool bonds_later = std::ranges::any_of(repeated(root, "stage"),
+                                               [](const TomlValue& stage) { return stage.find("bonds") != nullptr; });
   BondRows read;
   if (const TomlValue* table = root.find("bonds")) {
     const auto& path = tables.bonds.path;
     if (path)
       read = with_key(*table, "bonds", "path", [&] { return read_bonds(*path, tables.bonds.common); });
-    else if (repeated(root, "bond").empty())
-      fail_at(*table, "bonds", "no grains are tied", "the table only says how", "Add [[bond]] with grains, or a path");
+    else if (repeated(root, "bond").empty() && !bonds_later)
+      fail_at(*table, "bonds", "no grains are tied", "the table only says how",
+              "Add [[bond]] with grains, a path, or [stage.bonds]");
   }
   for (const TomlValue& table : repeated(root, "bond")) {
     const TomlValue& two = *table.find("grains");
@@ -79,12 +102,19 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
   tables.scene.bonds = std::move(read.bonds);
   if (tables.strength) {
     const TomlValue& table = *root.find("strength");
-    if (tables.scene.bonds.empty())
+    if (tables.scene.bonds.empty() && !bonds_later)
       fail_at(table, "strength", "no grains are tied", "there is nothing that could break", "Add [bonds], or [[bond]]");
     if (tables.body == Body::sphere)
       fail_at(table, "strength", "the grains are spheres", "strengths are those of discs, N per metre of depth",
               "Take the table out, or set grains.body = \"disc\"");
     tables.scene.strengths = at_key(table, "strength", [&] { return bond_strengths(tables.scene, *tables.strength); });
+    for (std::size_t b = 0; b < read.strengths.size(); ++b) {
+      if (const auto& own = read.strengths[b].tension) tables.scene.strengths->tension[b] = *own;
+      if (const auto& own = read.strengths[b].shear) tables.scene.strengths->shear[b] = *own;
+    }
+  } else if (std::ranges::any_of(read.strengths, &BondRows::Strength::given)) {
+    fail_at(*root.find("bonds"), "bonds.path", "the file gives strengths, and the case has no [strength]",
+            "bonds without that table never break", "Add [strength], or take the columns tension and shear out");
   }
   check_bonds(tables.scene, [&](std::size_t bond) { return read.places[bond]; });
 }

@@ -148,6 +148,9 @@ GrainTimeStep choose_grain_step(const GrainCase& resolved) {
     for (const StageCase& stage : resolved.stages) {
       const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, resolved.options, resolved.step);
       if (other.step < chosen.step) chosen = other;
+      if (chosen.automatic && stage.bonds)
+        chosen.step = std::min(chosen.step,
+                               0.5 * likely_step_limit(stage.scene.grains, *stage.bonds, resolved.options.bond_step));
     }
     return chosen;
   } catch (const Error& error) {
@@ -170,8 +173,12 @@ std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double ste
   if (resolved.stages.empty())
     stages.push_back({.name = "run", .scene = build_grain_scene(resolved, step), .steps = count_steps(resolved, step)});
   for (const StageCase& stage : resolved.stages) {
-    GrainStage& made = stages.emplace_back(GrainStage{
-        .name = stage.name, .scene = stage.scene, .steps = count_steps(stage.duration, step), .end = stage.end});
+    GrainStage& made =
+        stages.emplace_back(GrainStage{.name = stage.name,
+                                       .scene = stage.scene,
+                                       .steps = stage.steps ? *stage.steps : count_steps(*stage.duration, step),
+                                       .end = stage.end,
+                                       .bonds = stage.bonds});
     made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);
   }
   return stages;

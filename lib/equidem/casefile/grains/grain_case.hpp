@@ -24,8 +24,10 @@ namespace equidem {
 /// One [[stage]].
 struct StageCase {
   std::string name;
-  double duration = 0;  ///< s; with an end its limit
+  std::optional<double> duration;     ///< s; with an end its limit
+  std::optional<std::int64_t> steps;  ///< instead
   StageEnd end;
+  std::optional<StageBonds> bonds;
   GrainScene scene;  ///< as GrainStage::scene; `pairs` is not set
   ContactTable contacts;
 };
@@ -41,7 +43,7 @@ struct GrainCase : CaseDocument {
   ContactTable contacts;
   GrainOptions options;            ///< without its time step
   GrainStepOptions step;           ///< options of its choice
-  double duration = 0;             ///< s; with stages the sum of theirs
+  double duration = 0;             ///< s; with stages the sum of theirs, infinite where one counts its steps
   std::vector<StageCase> stages;   ///< empty: `scene` throughout; else `scene` and `contacts` are those of the first
   std::optional<Shaking> shaking;  ///< shaking; its motion is also set in the walls
   std::optional<MeasureOptions> measures;

@@ -58,8 +58,9 @@ struct ShakingTable {
 /// [[stage]], without the tables in it.
 struct StageTable {
   std::string name;
-  double duration = 0;          ///< s
-  std::optional<Vec2> gravity;  ///< m/s²
+  std::optional<double> duration;     ///< s
+  std::optional<std::int64_t> steps;  ///< instead
+  std::optional<Vec2> gravity;        ///< m/s²
 };
 
 /// A GrainCase and the tables from which it is completed.
@@ -103,6 +104,12 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
 /// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds;
 ///         as bond_strengths
 void complete_bonds(const TomlValue& root, GrainTables& tables);
+
+/// [stage.bonds].
+std::vector<Key<StageBonds>> stage_bond_keys();
+/// \param stage its number: each draws its own strengths
+/// \throws Error (bad_input) with line and key
+StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls

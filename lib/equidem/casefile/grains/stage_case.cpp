@@ -2,6 +2,7 @@
 /// \file
 /// [[stage]]: a run in stages.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
@@ -62,7 +63,8 @@ std::vector<Key<StageWallTable>> stage_wall_keys() {
   return keys;
 }
 
-std::vector<Wall>::iterator find_wall(std::vector<Wall>& walls, const std::string& name) {
+template <class Walls>
+auto find_wall(Walls& walls, const std::string& name) {
   return std::ranges::find(walls, name, &Wall::name);
 }
 
@@ -79,6 +81,11 @@ void check_removal(const TomlValue& table, const std::vector<Wall>& walls, const
   }
 }
 
+/// Of all keys of a wall that have a default the shape alone stands in every table.
+bool is_default(const TomlEntry& entry) {
+  return entry.name == "shape" && entry.value.text == to_string(Wall::Shape::line);
+}
+
 void move_at(Wall& wall, Vec2 velocity) {
   constexpr double longest = 1e9;  // s; a limit of the stage may be raised
   const auto ramp = [&](double speed) {
@@ -89,7 +96,9 @@ void move_at(Wall& wall, Vec2 velocity) {
 }
 
 /// Change the walls of the stage before by one [[stage.wall]].
-void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedules, std::vector<Wall>& walls) {
+/// \param known walls of all stages so far
+void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedules, const std::vector<Wall>& known,
+                 std::vector<Wall>& walls) {
   StageWallTable read;
   read_table(stage_wall_keys(), table, read);
   const std::string& name = read.wall.wall.name;
@@ -98,17 +107,18 @@ void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedule
     if (at == walls.end())
       fail_at(table, "stage.wall", fmt::format("there is no wall '{}'", name), "",
               "Remove a wall that stands in the stage before");
-    for (const char* key : {"velocity", "displacement", "servo", "point", "centre"})
-      if (const TomlValue* given = table.find(key))
-        fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is removed and has a {}", name, key),
-                "a wall that is gone does not move", "Remove one of them");
+    for (const TomlEntry& entry : table.entries)
+      if (entry.name != "name" && entry.name != "removed" && !is_default(entry))
+        fail_at(entry.value, fmt::format("stage.wall.{}", entry.name),
+                fmt::format("wall '{}' is removed and has a {}", name, entry.name), "a wall that is gone does not move",
+                "Remove one of them");
     walls.erase(at);
     return;
   }
   Wall wall;
   if (at != walls.end()) {
-    for (const char* key : {"point", "normal", "end", "centre", "radius"})
-      if (const TomlValue* given = table.find(key))
+    for (const char* key : {"shape", "point", "normal", "end", "centre", "radius"})
+      if (const TomlValue* given = table.find(key); given != nullptr && !is_default({key, *given}))
         fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is there already", name),
                 "it stays where it is when a stage begins", "Leave the key out, or give the new wall another name");
     wall = *at;
@@ -116,7 +126,13 @@ void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedule
     wall.servo.reset();
     read.wall.wall = wall;
     set_motion(table, "stage.wall", read.wall, schedules, wall);
+    if (table.find("displacement") != nullptr)
+      with_key(table, "stage.wall", table.find("schedule") != nullptr ? "schedule" : "displacement",
+               [&] { check_start(wall); });
   } else {
+    if (find_wall(known, name) != known.end())
+      fail_at(table, "stage.wall.name", fmt::format("wall '{}' is new, and an earlier one had that name", name),
+              "histories and contacts go by the names of walls", "Give the new wall another name");
     for (const char* key : read.wall.wall.shape == Wall::Shape::line      ? std::array{"point", "normal"}
                            : read.wall.wall.shape == Wall::Shape::segment ? std::array{"point", "end"}
                                                                           : std::array{"centre", "radius"})
@@ -133,9 +149,10 @@ void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedule
 
 /// The walls of a stage, from those of the stage before.
 std::vector<Wall> walls_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
-                                 std::vector<Wall> walls) {
+                                 const std::vector<Wall>& known, std::vector<Wall> walls) {
+  check_names(stage, "wall");
   for (Wall& wall : walls) wall.move_x = wall.move_y = {};
-  for (const TomlValue& table : repeated(stage, "wall")) change_wall(table, schedules, walls);
+  for (const TomlValue& table : repeated(stage, "wall")) change_wall(table, schedules, known, walls);
   for (const TomlValue& table : repeated(stage, "wall"))
     if (const TomlValue* removed = table.find("removed"); removed != nullptr && removed->boolean)
       check_removal(table, walls, table.find("name")->text);
@@ -211,13 +228,8 @@ bool change_contacts(const TomlValue& stage, TomlValue& root, PairOptions& conta
   return true;
 }
 
-/// Motions that a case in stages gives in its stages alone, and bonds, which would be without stretch in each of them.
+/// Motions that a case in stages gives in its stages alone.
 void refuse_beside_stages(const TomlValue& root) {
-  for (const char* name : {"bonds", "bond"}) {
-    if (const TomlValue* given = root.find(name))
-      fail_at(*given, name, "a run in stages has bonds", "each stage would begin with bonds that carry no force",
-              "Take the bonds or the stages out");
-  }
   const std::string why = "the run is in stages, and schedules count from the start of a stage";
   for (const TomlValue& wall : repeated(root, "wall")) {
     if (const TomlValue* given = wall.find("displacement"))
@@ -240,12 +252,15 @@ void bind_stages(File<GrainTables>& file) {
   file.table("stage", &GrainTables::stage_tables,
              "a part of the run, in place of run.duration; what it does not name stays as it was")
       .keys({key("name", &S::name, required, "for reports"),
-             key("duration", &S::duration, required, unit("s"), positive,
+             key("duration", &S::duration, unit("s"), positive, or_instead({"steps"}, "a stage has a length"),
                  "its length, or with [stage.until] the limit at which a run stops that has not met it"),
+             key("steps", &S::steps, from(1, 1000000000000), "instead: that number of steps"),
              key("gravity", &S::gravity, unit("m/s²"), "from now on")});
   file.table("stage.until", "what ends the stage; all that is given must hold").described(until_keys());
   file.table("stage.collisions", "contacts from now on, where they differ from [collisions]")
       .described(changed_contact_keys());
+  file.table("stage.bonds", "bonds that are made where the stage begins, beside those that there are")
+      .described(stage_bond_keys());
   file.table("stage.pair", repeated_table, "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
   file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise; without a motion it stands")
@@ -261,14 +276,16 @@ std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedu
     const TomlValue& table = repeated(root, "stage")[k];
     check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
     const StageTable& read = tables.stage_tables[k];
-    walls = walls_of_stage(table, schedules, walls);
+    walls = walls_of_stage(table, schedules, all, walls);
     StageCase& stage = tables.stages.emplace_back();
     stage.name = read.name;
     stage.duration = read.duration;
+    stage.steps = read.steps;
+    if (const TomlValue* bonds = table.find("bonds")) stage.bonds = read_stage_bonds(*bonds, tables, k);
     stage.end = end_of_stage(table, walls);
     stage.scene.walls = walls;
     stage.scene.gravity = read.gravity.value_or(k == 0 ? tables.scene.gravity : tables.stages[k - 1].scene.gravity);
-    tables.duration += stage.duration;
+    tables.duration += stage.duration.value_or(INFINITY);
     for (const Wall& wall : walls)
       if (find_wall(all, wall.name) == all.end()) all.push_back(wall);
   }

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -61,16 +63,11 @@ void replace_impulses(GrainSystem& system, TiedPair bond, const BondMotion<doubl
   on_j.torque -= dt * force.moment_j;
 }
 
-auto same_bond(std::vector<TiedPair>& bonds, const TiedPair& bond) {
-  return std::ranges::lower_bound(bonds, std::pair(bond.i, bond.j), {},
-                                  [](const TiedPair& b) { return std::pair(b.i, b.j); });
-}
-
 /// The bonds that are left become those of the steps; they keep their last impulses.
 void tie_those_left(GrainSystem& system) {
   BreakableBonds& breakable = *system.bonds.breakable;
   for (const TiedPair& bond : system.bonds.tied) {
-    same_bond(breakable.all, bond)->impulse = last_impulse(system, bond);
+    place_of_bond(breakable.all, bond.i, bond.j)->impulse = last_impulse(system, bond);
   }
   system.bonds.tied.clear();
   for (std::size_t b = 0; b < breakable.all.size(); ++b)
@@ -81,6 +78,15 @@ void tie_those_left(GrainSystem& system) {
 }
 
 }  // namespace
+
+std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks) {
+  std::vector<char> broken(bonds.size(), 0);
+  for (const BondBreak& event : breaks) broken[event.bond] = 1;
+  std::vector<GrainBond> left;
+  for (std::size_t b = 0; b < bonds.size(); ++b)
+    if (broken[b] == 0) left.push_back(bonds[b]);
+  return left;
+}
 
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options) {
   Assembly network;
@@ -126,7 +132,8 @@ void break_bonds(GrainSystem& system) {
     breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
     const NewContact contact = contact_of(system, bond);
     system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
-    if (system.options.verlet()) replace_impulses(system, *same_bond(system.bonds.tied, bond), motion, contact);
+    if (system.options.verlet())
+      replace_impulses(system, *place_of_bond(system.bonds.tied, bond.i, bond.j), motion, contact);
     any = true;
   }
   if (!any) return;
@@ -136,11 +143,23 @@ void break_bonds(GrainSystem& system) {
   find_candidates(system);
 }
 
+void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks) {
+  std::vector<std::uint8_t> broken(system.bonds.breakable->all.size(), 0);
+  for (const BondBreak& event : breaks) {
+    if (event.bond < broken.size() && std::exchange(broken[event.bond], std::uint8_t{1}) == 0) continue;
+    bad_input(fmt::format("the state has a break of bond {} at step {}", event.bond, event.step),
+              event.bond < broken.size()
+                  ? "it has broken before"
+                  : fmt::format("the scene has {}", counted(static_cast<long long>(broken.size()), "bond")),
+              "Resume with the scene that the state was saved from");
+  }
+}
+
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
   BreakableBonds& breakable = *system.bonds.breakable;
   breakable.breaks = std::move(breaks);
   std::vector<std::uint8_t> by_number(breakable.all.size(), 0);
-  for (const BondBreak& event : breakable.breaks) by_number.at(event.bond) = 1;
+  for (const BondBreak& event : breakable.breaks) by_number[event.bond] = 1;
   for (std::size_t b = 0; b < breakable.all.size(); ++b) breakable.broken[b] = by_number[breakable.number[b]];
   tie_those_left(system);
 }

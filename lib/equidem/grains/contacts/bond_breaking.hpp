@@ -46,7 +46,11 @@ struct BreakableBonds {
 /// Breaks bonds by the present motions, and lets their discs collide.
 void break_bonds(GrainSystem& system);
 
+/// \throws Error (bad_input) where breaks of a saved state name a bond that is not there, or one twice
+void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks);
+
 /// The state in which exactly these bonds have broken.
+/// \param breaks checked
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks);
 
 /// Numbers of a SavedState.

@@ -14,6 +14,10 @@
 
 namespace equidem {
 
+BondRest rest_of(const Grain& i, const Grain& j) {
+  return {j.position - i.position, i.angle, j.angle};
+}
+
 void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
   BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
   BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
@@ -144,7 +148,7 @@ struct Rates {
 
 Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::BondStep bond_step) {
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
-  const ContactFrame frame = frame_of(j.position - i.position, share_of(i, j));
+  const ContactFrame frame = frame_of(bond.rest.value_or(rest_of(i, j)).branch, share_of(i, j));
   const auto largest = [&](const BondModes& c) { return largest_bond_rate(c, frame, inverse_of(i), inverse_of(j)); };
   const bool limits = bond_step == GrainOptions::BondStep::explicit_euler;
   return {limits ? largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}) : 0.0,
@@ -157,21 +161,26 @@ BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bon
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
   const Vec2 way = mj.position - mi.position - bond.springs.branch;
-  return {way.x, way.y, mi.angle - system.scene.grains[i].angle, mj.angle - system.scene.grains[j].angle};
+  return {way.x, way.y, mi.angle - bond.angle_i, mj.angle - bond.angle_j};
 }
 
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene) {
   std::vector<TiedPair> pairs;
   for (const GrainBond& bond : scene.bonds) {
     TiedPair pair;
-    std::tie(pair.i, pair.j) = std::minmax(system.bodies.place_of_grain[bond.i], system.bodies.place_of_grain[bond.j]);
+    pair.i = system.bodies.place_of_grain[bond.i], pair.j = system.bodies.place_of_grain[bond.j];
+    BondRest rest = bond.rest.value_or(rest_of(scene.grains[bond.i], scene.grains[bond.j]));
+    if (pair.j < pair.i) {
+      std::swap(pair.i, pair.j);
+      rest = {-rest.branch, rest.angle_j, rest.angle_i};
+    }
     const Grain& i = system.scene.grains[static_cast<std::size_t>(pair.i)];
     const Grain& j = system.scene.grains[static_cast<std::size_t>(pair.j)];
     pair.dashpots = {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot};
     pair.share = share_of(i, j);
-    const Vec2 branch = j.position - i.position;
-    const ContactFrame frame = frame_of(branch, pair.share);
-    pair.springs = {branch,
+    pair.angle_i = rest.angle_i, pair.angle_j = rest.angle_j;
+    const ContactFrame frame = frame_of(rest.branch, pair.share);
+    pair.springs = {rest.branch,
                     frame.lever_i,
                     frame.lever_j,
                     {.kN = bond.normal_spring, .kT = bond.tangential_spring},
@@ -251,9 +260,12 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
         frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
     const BondModes impulse = last_impulse(system, bond);
     Vec2 on_i = -1 / system.dt() * (impulse.normal * frame.normal + impulse.tangential * frame.tangent());
+    double bending = 0;
     if (bond.has_springs()) {
-      const BondForces<double> springs = bond_forces(bond.springs, motion_of_bond(system, bond));
+      const BondMotion<double> motion = motion_of_bond(system, bond);
+      const BondForces<double> springs = bond_forces(bond.springs, motion);
       on_i += {springs.x, springs.y};
+      bending = bending_moment(bond.springs.kM, motion.theta_i, motion.theta_j);
     }
     const bool same = system.bodies.grain_of[i] < system.bodies.grain_of[j];
     const auto first = static_cast<std::int32_t>(system.bodies.grain_of[same ? i : j]),
@@ -263,7 +275,8 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
                       .arm = same ? frame.lever_i * frame.normal : -frame.lever_j * frame.normal,
                       .force = same ? on_i : -on_i,
                       .normal_force = -dot(on_i, frame.normal),
-                      .tangential_force = -dot(on_i, frame.tangent())});
+                      .tangential_force = -dot(on_i, frame.tangent()),
+                      .bending_moment = same ? bending : -bending});
   }
   std::ranges::sort(result, {}, [](const BodyContact& c) { return std::pair(c.i, c.j); });
   return result;
@@ -283,18 +296,22 @@ double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step
   return bond_step_limit(largest.rate, largest.square);
 }
 
-void check_bonds(const GrainScene& scene, const GrainOptions& options) {
-  if (scene.bonds.empty()) return;
-  if (is_simultaneous(options.law)) {
-    bad_input(fmt::format("bonds are asked for with the law \"{}\"", to_string(options.law)),
+void check_law_of_bonds(const GrainScene& scene, NormalLaw law) {
+  if (is_simultaneous(law)) {
+    bad_input(fmt::format("bonds are asked for with the law \"{}\"", to_string(law)),
               "it solves all contacts together and knows no bonds", "Use the law linear_dashpot");
   }
-  check_bonds(scene);
-  if (scene.strengths && !gives_force(options.law)) {
-    bad_input(fmt::format("bonds that break are asked for with the law \"{}\"", to_string(options.law)),
+  if (scene.strengths && !gives_force(law)) {
+    bad_input(fmt::format("bonds that break are asked for with the law \"{}\"", to_string(law)),
               "the discs of a bond that broke may overlap, and the law takes them for an impact",
               "Use the law linear_dashpot");
   }
+}
+
+void check_bonds(const GrainScene& scene, const GrainOptions& options) {
+  if (scene.bonds.empty()) return;
+  check_law_of_bonds(scene, options.law);
+  check_bonds(scene);
   const double limit = bond_step_limit(scene, options.bond_step);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",

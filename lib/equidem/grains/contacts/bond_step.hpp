@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "equidem/contact/body_contact.hpp"
@@ -22,16 +23,20 @@ struct GrainSystem;
 struct TiedPair {
   std::int32_t i = 0, j = 0;  ///< i < j
   BondModes dashpots;
-  double share = 0;          ///< lever i over the distance: r_i/(r_i + r_j)
-  FiniteBond springs;        ///< springs, unstretched at the start
-  std::int32_t packed = -1;  ///< index in PackedBonds, which stores the impulse; -1: not packed
-  BondModes impulse;         ///< impulse of the last step
+  double share = 0;  ///< lever i over the distance: r_i/(r_i + r_j)
+  FiniteBond springs;
+  double angle_i = 0, angle_j = 0;  ///< of the bodies at rest, rad
+  std::int32_t packed = -1;         ///< index in PackedBonds, which stores the impulse; -1: not packed
+  BondModes impulse;                ///< impulse of the last step
   // in the present step
   ContactFrame frame;
   BondModes rate, gained;
 
   [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
+
+/// Two discs that are bonded as they are now.
+BondRest rest_of(const Grain& i, const Grain& j);
 
 /// Set the bonds of a sorted scene, sorted in turn, so that results do not depend on the caller's order.
 /// \return their numbers in the scene
@@ -40,7 +45,13 @@ std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene)
 /// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
 void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
 
-/// Motion of a bond from the start to now.
+/// The place of the bond of two bodies i < j in a list ordered by them, or that of the first behind it.
+template <class Bonds>
+auto place_of_bond(Bonds& bonds, std::int32_t i, std::int32_t j) {
+  return std::ranges::lower_bound(bonds, std::pair(i, j), {}, [](const TiedPair& b) { return std::pair(b.i, b.j); });
+}
+
+/// Motion of a bond from rest to now.
 BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bond);
 
 /// Smallest distance of the centres over the sum of the radii at which the direction of a bond is defined.
@@ -82,6 +93,9 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system);
 /// conservative. Dashpots limit the step only if they are explicit: dt < 2 m_n/C_n, 2 m_s/C_s for a pair. Contacts with
 /// other bodies are not included.
 double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step);
+
+/// \throws Error (bad_input): a law without bonds, or without bonds that break where there are strengths
+void check_law_of_bonds(const GrainScene& scene, NormalLaw law);
 
 /// \throws Error (bad_input): bodies that do not exist, that are not discs, that are bonded to themselves or twice to
 ///         one another; centres that coincide; dashpots and springs that are negative, not finite or all 0; a law

@@ -5,9 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "equidem/breakage/break_search.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 
@@ -19,5 +22,8 @@ struct BondBreak {
   Vec2 place;         ///< of the bond, m
   double energy = 0;  ///< of its springs, J (discs: per metre of depth)
 };
+
+/// The bonds that have not broken, in their order.
+std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks);
 
 }  // namespace equidem

@@ -50,16 +50,22 @@ BondRows read_bonds(const std::filesystem::path& path, const GrainBond& common) 
   while (file.next()) {
     const auto& cells = file.cells();
     GrainBond bond = common;
+    BondRows::Strength own;
     bond.i = grain_number(cells[0], file);
     bond.j = grain_number(cells.size() > 1 ? cells[1] : "", file);
     for (std::size_t c = 2; c < std::min(cells.size(), names.size()); ++c) {
       const auto property = std::ranges::find(properties_of_bonds, names[c], &BondProperty::name);
-      if (property == std::end(properties_of_bonds) || cells[c].empty()) continue;
+      const bool strength = names[c] == "tension" || names[c] == "shear";
+      if ((property == std::end(properties_of_bonds) && !strength) || cells[c].empty()) continue;
       const auto value = number_from<double>(cells[c]);
       if (!value || !std::isfinite(*value) || *value < 0)
-        file.fail(fmt::format("'{}' is no {}", cells[c], property->name), "a number >= 0 is needed", "Correct it");
-      bond.*property->value = *value;
+        file.fail(fmt::format("'{}' is no {}", cells[c], names[c]), "a number >= 0 is needed", "Correct it");
+      if (strength)
+        (names[c] == "tension" ? own.tension : own.shear) = *value;
+      else
+        bond.*property->value = *value;
     }
+    result.strengths.push_back(own);
     result.bonds.push_back(bond);
     result.places.push_back(file.where());
   }

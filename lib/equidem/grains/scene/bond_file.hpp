@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,9 +25,16 @@ std::span<const BondProperty> bond_properties();
 struct BondRows {
   std::vector<GrainBond> bonds;
   std::vector<std::string> places;  ///< "bonds.csv:3" of each, for messages
+  /// Of one bond, N/m; none: the file has no such column, or an empty cell.
+  struct Strength {
+    std::optional<double> tension, shear;
+    [[nodiscard]] bool given() const { return tension || shear; }
+  };
+  std::vector<Strength> strengths;  ///< of each
 };
 
-/// Rows "i,j,..." under a row of names; columns named like a property of a bond set it, others are not read.
+/// Rows "i,j,..." under a row of names; columns named like a property of a bond, and tension and shear, set it; others
+/// are not read.
 /// \param common properties where the file has no column or an empty cell
 /// \throws Error (bad_input) with file and line: the first columns are not i and j, numbers of grains that are not
 ///         whole, properties that are negative or not finite

@@ -197,6 +197,11 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
     bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
               "a bond lies along the line between them", "Move them apart");
   }
+  if (bond.rest && !(norm(bond.rest->branch) > nearest_centres_of_bonds * (i.radius + j.radius))) {
+    bad_input(
+        fmt::format("the bond of grains {} and {} is at rest at {:.3g} m", bond.i, bond.j, norm(bond.rest->branch)),
+        "a bond lies along the line between the centres", "Give the branch at rest");
+  }
 }
 
 }  // namespace

@@ -54,15 +54,24 @@ struct Clump {
   std::vector<Disc> discs;
 };
 
+/// Two discs of a bond as they were without stretch.
+struct BondRest {
+  Vec2 branch;                      ///< from the centre of i to that of j, m
+  double angle_i = 0, angle_j = 0;  ///< of the discs, rad
+};
+
 /// Two discs bonded by dashpots along and across the line of their centres (Sukegawa 2010, (5.1)-(5.19)), optionally
 /// with springs. They do not collide with each other.
 struct GrainBond {
   std::size_t i = 0, j = 0;
   double normal_dashpot = 0, tangential_dashpot = 0;  ///< C_n, C_s; N s/m, discs: per metre of depth
   double rolling_dashpot = 0;                         ///< against the relative spin, N m s
-  /// Springs, unstretched at the start, N/m. 0 in the thesis: a bond under tension then creeps.
+  /// Springs, unstretched at rest, N/m. 0 in the thesis: a bond under tension then creeps.
   double normal_spring = 0, tangential_spring = 0;
-  double bending_spring = 0;  ///< kM, against the relative rotation, unstretched at the start, N m/rad
+  double bending_spring = 0;          ///< kM, against the relative rotation, unstretched at rest, N m/rad
+  std::optional<BondRest> rest = {};  ///< none: as the discs are at the start
+
+  [[nodiscard]] bool has_springs() const { return normal_spring > 0 || tangential_spring > 0 || bending_spring > 0; }
 };
 
 /// Contact properties of two kinds of bodies.

@@ -7,6 +7,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/stages/unbalance.hpp"
 
@@ -15,8 +17,6 @@ namespace {
 
 /// Steps between two looks at what ends a stage: at rest takes all contacts, walls are few.
 constexpr std::int64_t steps_between_rests = 256, steps_between_places = 16;
-
-constexpr std::size_t numbers_per_stage = 8;
 
 constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
 
@@ -45,13 +45,62 @@ void check_walls_of(const GrainStage& stage) {
 
 }  // namespace
 
+void check_start(const Wall& wall) {
+  const Vec2 jump = wall.displacement(0);
+  if (jump == Vec2{}) return;
+  bad_input(
+      fmt::format("wall '{}' would jump by ({:.6g}, {:.6g}) m where its motion begins", wall.name, jump.x, jump.y),
+      "a wall that stands moves on from its place", "Let its schedule begin with 0");
+}
+
 StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOptions& options)
     : AnySimulation(BodyFamily::colliding, options.time_step), stages_(std::move(stages)), options_(options) {
-  for (const GrainStage& stage : stages_) check_walls_of(stage);
-  present_ = std::make_unique<GrainSimulation>(stages_.front().scene, options_);
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    check_walls_of(stages_[k]);
+    const bool breaks = stages_.front().scene.strengths.has_value();
+    if (const auto& made = stages_[k].bonds;
+        made && made->strengths.has_value() != breaks && !stages_.front().scene.bonds.empty())
+      bad_input(
+          fmt::format("of the bonds of stage '{}' and those before it some alone have strengths", stages_[k].name),
+          "those without would never break, and none says so", "Give strengths to all bonds, or to none");
+    if (const auto& made = stages_[k].bonds) check(*made, stages_.front().scene.grains, options);
+    for (const Wall& wall : stages_[k].scene.walls)
+      if (k > 0 &&
+          std::ranges::find(stages_[k - 1].scene.walls, wall.name, &Wall::name) != stages_[k - 1].scene.walls.end())
+        check_start(wall);
+  }
+  bonds_ = bonds_at_start();
+  present_ = std::make_unique<GrainSimulation>(scene_of(0, 0, {}, bonds_), options_);
   initial_ = present_->energy().initial;
-  reports_.push_back({.name = stages_.front().name, .effects = present_->effects()});
-  for (const WallState& wall : present_->walls()) places_.push_back(wall.place);
+  reports_.push_back(
+      {.name = stages_.front().name, .effects = present_->effects(), .bonds_made = bonds_.stages.size()});
+  for (const WallState& wall : present_->walls()) start_.walls.push_back(wall.place);
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
+  const GrainScene& scene = stages_.front().scene;
+  Bonds bonds{scene.bonds, scene.strengths, {}};
+  for (GrainBond& bond : bonds.all)
+    if (!bond.rest) bond.rest = rest_of(scene.grains.at(bond.i), scene.grains.at(bond.j));
+  return bonds_of(0, std::move(bonds), scene.grains, {});
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, std::span<const Grain> grains,
+                                                   std::span<const GrainContact> contacts) const {
+  if (!stages_[stage].bonds) return bonds;
+  const StageBonds& how = *stages_[stage].bonds;
+  GrainScene scene;
+  scene.grains.assign(grains.begin(), grains.end());
+  scene.bonds = make_bonds(grains, contacts, bonds.all, how);
+  if (how.strengths) {
+    const ContactStrengths made = bond_strengths(scene, *how.strengths);
+    if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
+    bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
+    bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
+  }
+  bonds.all.insert(bonds.all.end(), scene.bonds.begin(), scene.bonds.end());
+  bonds.stages.insert(bonds.stages.end(), scene.bonds.size(), stage);
+  return bonds;
 }
 
 void StagedSimulation::advance(std::int64_t steps) {
@@ -77,13 +126,14 @@ void StagedSimulation::look_for_end() {
   StageReport& report = reports_.back();
   report.last = step();
   const std::int64_t done = step() - report.first;
-  if (!stage.end.given()) {
+  if (stage.end.given()) {
+    const std::int64_t stride = stage.end.at_rest() ? steps_between_rests : steps_between_places;
+    if (done % stride != 0 && done != stage.steps) return;
+    report.over = report.ended = holds(stage.end);
+  } else {
     report.over = done == stage.steps;
-    return;
   }
-  const std::int64_t stride = stage.end.at_rest() ? steps_between_rests : steps_between_places;
-  if (done % stride != 0 && done != stage.steps) return;
-  report.over = report.ended = holds(stage.end);
+  if (report.over) report.servos = present_->servos();
 }
 
 bool StagedSimulation::holds(const StageEnd& end) {
@@ -92,21 +142,22 @@ bool StagedSimulation::holds(const StageEnd& end) {
   bool all = true;
   if (end.displacement > 0) {
     const std::size_t w = index_of(walls, end.wall);
-    report.displacement = norm(walls[w].place - places_[w]);
+    report.displacement = norm(walls[w].place - start_.walls[w]);
     all = all && report.displacement >= end.displacement;
   }
   if (end.strain > 0) {
     const std::size_t a = index_of(walls, end.walls[0]), b = index_of(walls, end.walls[1]);
     const Vec2 across = present_->placed_walls()[a].normal;  // points on lines may lie anywhere along them
-    const double before = dot(places_[b] - places_[a], across), now = dot(walls[b].place - walls[a].place, across);
+    const double before = dot(start_.walls[b] - start_.walls[a], across),
+                 now = dot(walls[b].place - walls[a].place, across);
     report.strain = std::abs(now / before - 1);
     all = all && report.strain >= end.strain;
   }
   if (!end.at_rest() || !all) return all;
   const EnergyLedger energy = present_->energy();
   report.kinetic = energy.elastic() > 0 ? energy.kinetic / energy.elastic() : StageEnd::infinite;
-  const GrainScene& scene = stages_[number()].scene;
-  report.unbalanced = unbalance_of(present_->grains(), present_->contacts(), scene.bonds, scene.gravity).mean;
+  const std::vector<GrainBond> left = bonds_left(bonds_.all, present_->breaks());
+  report.unbalanced = unbalance_of(*present_, left, stages_[number()].scene.gravity).mean;
   return report.kinetic <= end.kinetic && report.unbalanced <= end.unbalanced;
 }
 
@@ -132,18 +183,20 @@ void StagedSimulation::refuse_endless() const {
               fmt::format("stage '{}'", stage.name));
 }
 
-/// The scene of a stage that begins now.
-/// \param places of its walls
-GrainScene StagedSimulation::scene_of(std::size_t stage, const std::vector<Vec2>& places) const {
+/// The scene of a stage that begins with a step.
+GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, const Start& start,
+                                      const Bonds& bonds) const {
   GrainScene scene = stages_[stage].scene;
-  const double start = static_cast<double>(reports_.back().first) * options_.time_step;
-  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+  scene.bonds = bonds.all;
+  scene.strengths = bonds.strengths;
+  const double time = static_cast<double>(first) * options_.time_step;
+  for (std::size_t w = 0; w < start.walls.size(); ++w) {
     Wall& wall = scene.walls[w];
-    wall.end += places[w] - wall.point;
-    wall.point = places[w];
-    wall.move_x = delayed(wall.move_x, start);
-    wall.move_y = delayed(wall.move_y, start);
-    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, start);
+    wall.end += start.walls[w] - wall.point;
+    wall.point = start.walls[w];
+    wall.move_x = delayed(wall.move_x, time);
+    wall.move_y = delayed(wall.move_y, time);
+    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time);
   }
   return scene;
 }
@@ -162,19 +215,26 @@ std::vector<Vec2> StagedSimulation::places_in(std::size_t stage) const {
 void StagedSimulation::begin_stage() {
   const EnergyLedger before = energy();
   const std::size_t next = number() + 1;
-  places_ = places_in(next);
-  reports_.push_back({.name = stages_[next].name, .first = step(), .last = step()});
-  auto simulation = [&] {
-    try {
-      return std::make_unique<GrainSimulation>(scene_of(next, places_), options_, *present_);
-    } catch (const Error& error) {
-      reports_.pop_back();
-      throw error.at(fmt::format("stage '{}'", stages_[next].name));
-    }
-  }();
-  simulation->take_over(*present_);
+  Start start{places_in(next), present_->motions(), present_->velocities()};
+  Bonds bonds;
+  std::unique_ptr<GrainSimulation> simulation;
+  try {
+    bonds = bonds_of(next, bonds_, present_->grains(), present_->contacts());
+    simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_, *present_,
+                                                   start.motions, start.velocities);
+    simulation->take_over(*present_);
+  } catch (const Error& error) {
+    throw error.at(fmt::format("stage '{}'", stages_[next].name));
+  }
+  const std::size_t made = bonds.all.size() - bonds_.all.size();
+  reports_.push_back({.name = stages_[next].name,
+                      .first = step(),
+                      .last = step(),
+                      .effects = simulation->effects(),
+                      .bonds_made = made});
   present_ = std::move(simulation);
-  reports_.back().effects = present_->effects();
+  start_ = std::move(start);
+  bonds_ = std::move(bonds);
   const EnergyLedger after = present_->energy();
   potential_ = before.potential;
   const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
@@ -195,57 +255,6 @@ EnergyLedger StagedSimulation::energy() const {
   ledger.potential += potential_;
   ledger.work_of_stages = changes_;
   return ledger;
-}
-
-SavedState StagedSimulation::save() const {
-  SavedState state = present_->save();
-  SavedArray stages{.name = "stages", .columns = numbers_per_stage, .values = {}};
-  for (const StageReport& report : reports_) {
-    stages.values.insert(stages.values.end(), {static_cast<double>(report.first), static_cast<double>(report.last),
-                                               report.over ? 1.0 : 0.0, report.ended ? 1.0 : 0.0, report.kinetic,
-                                               report.unbalanced, report.strain, report.displacement});
-  }
-  SavedArray walls{.name = "stage_walls", .columns = 2, .values = {}};
-  for (const Vec2 place : places_) walls.values.insert(walls.values.end(), {place.x, place.y});
-  state.arrays.push_back(std::move(stages));
-  state.arrays.push_back(std::move(walls));
-  state.arrays.push_back({"stage_energies", 1, {initial_, potential_, changes_}});
-  return state;
-}
-
-void StagedSimulation::restore(const SavedState& state) {
-  const std::vector<double>&stages = state["stages"], &walls = state["stage_walls"], &sums = state["stage_energies"];
-  const std::size_t begun = stages.size() / numbers_per_stage;
-  if (begun < 1 || begun > stages_.size() || sums.size() != 3 ||
-      walls.size() != 2 * stages_[begun - 1].scene.walls.size())
-    bad_input(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
-              fmt::format("this run has {} with other walls", stages_.size()),
-              "Go on with the case that the state was saved from");
-  reports_.clear();
-  for (std::size_t k = 0; k < begun; ++k) {
-    const double* row = stages.data() + numbers_per_stage * k;
-    reports_.push_back({.name = stages_[k].name,
-                        .first = static_cast<std::int64_t>(row[0]),
-                        .last = static_cast<std::int64_t>(row[1]),
-                        .over = row[2] != 0,
-                        .ended = row[3] != 0,
-                        .kinetic = row[4],
-                        .unbalanced = row[5],
-                        .strain = row[6],
-                        .displacement = row[7]});
-    const GrainScene& scene = stages_[k].scene;
-    reports_.back().effects = effects_of(scene, options_);
-  }
-  places_.clear();
-  for (std::size_t w = 0; w < walls.size(); w += 2) places_.push_back({walls[w], walls[w + 1]});
-  const GrainSimulation first(stages_.front().scene, options_);
-  present_ = begun == 1 ? std::make_unique<GrainSimulation>(stages_.front().scene, options_)
-                        : std::make_unique<GrainSimulation>(scene_of(begun - 1, places_), options_, first, state);
-  present_->restore(state);
-  initial_ = sums[0], potential_ = sums[1], changes_ = sums[2];
-  // a length or limit that was raised after the stage had reached it
-  StageReport& last = reports_.back();
-  if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) last.over = false;
 }
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
@@ -41,20 +42,43 @@ struct SavedContact {
   [[nodiscard]] Vec2 impulse_on_wall() const { return numbers[9] * normal() + numbers[11] * perpendicular(normal()); }
 };
 
+bool is_tied(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  const std::vector<TiedPair>& tied = system.bonds.tied;
+  const auto at = place_of_bond(tied, i, j);
+  return at != tied.end() && at->i == i && at->j == j;
+}
+
+/// Breaks, and the last impulses of bonds that both have.
+void take_over_bonds(const GrainSystem& old, GrainSystem& own, SavedState& state, bool verlet) {
+  if (own.bonds.breakable) {
+    if (old.bonds.breakable) {
+      restore_breaks(own, old.bonds.breakable->breaks);
+    } else {
+      state.arrays.push_back({"breaks", numbers_per_break, {}});
+    }
+  }
+  std::vector<double>& impulses = state["bonds"];
+  impulses.clear();
+  if (!verlet) return;
+  for (const TiedPair& bond : own.bonds.tied) {
+    const bool both = is_tied(old, bond.i, bond.j);
+    const BondModes last = both ? last_impulse(old, *place_of_bond(old.bonds.tied, bond.i, bond.j)) : BondModes{};
+    impulses.insert(impulses.end(), {last.normal, last.tangential, last.rolling});
+  }
+}
+
 }  // namespace
 
-GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before)
-    : GrainSimulation(with_motions(scene, before.motions(), before.velocities()), options,
+GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before,
+                                 const std::vector<DiscMotion>& places, const std::vector<DiscMotion>& velocities)
+    : GrainSimulation(with_motions(scene, places, velocities), options,
                       before.implementation_->system.bodies.grain_of) {}
 
-GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& first,
-                                 const SavedState& state)
-    : GrainSimulation(with_motions(scene, motions_of(state["motions"]), motions_of(state["velocities"])), options,
-                      first.implementation_->system.bodies.grain_of) {}
-
 void GrainSimulation::take_over(const GrainSimulation& before) {
-  const GrainSystem &old = before.implementation_->system, &own = implementation_->system;
+  const GrainSystem& old = before.implementation_->system;
+  GrainSystem& own = implementation_->system;
   SavedState state = before.save();
+  take_over_bonds(old, own, state, implementation_->verlet());
   const std::vector<std::int32_t> now_at = places_among(old.scene.walls, own.scene.walls);
   const bool shapes = !own.shapes.parts.empty();
   const std::size_t columns = std::ranges::find(state.arrays, "contacts", &SavedArray::name)->columns;
@@ -63,6 +87,7 @@ void GrainSimulation::take_over(const GrainSimulation& before) {
   std::vector<double>& contacts = state["contacts"];
   for (std::size_t at = 0; at < contacts.size(); at += columns) {
     const SavedContact contact{contacts.data() + at};
+    if (contact.j() >= 0 && is_tied(own, static_cast<std::int32_t>(contact.i()), contact.j())) continue;
     if (contact.j() >= 0 || now_at[static_cast<std::size_t>(~contact.j())] >= 0) {
       if (contact.j() < 0) contact.numbers[1] = static_cast<double>(~now_at[static_cast<std::size_t>(~contact.j())]);
       kept.emplace_back(contact.numbers, contact.numbers + columns);
@@ -113,7 +138,7 @@ void GrainSimulation::take_over(const GrainSimulation& before) {
   for (std::size_t at = 0; at < state["servos"].size(); at += numbers) state["servos"][at] = 0;
   restore(state);
   for (ServoState& servo : implementation_->system.walls.servos)
-    servo.overshoot = servo.errors = servo.steps = servo.largest_wanted = 0;
+    servo.overshoot = servo.errors = servo.steps = servo.largest_wanted = servo.reached = servo.side = 0;
 }
 
 }  // namespace equidem

@@ -14,8 +14,8 @@ struct Unbalance {
   double mean = 0, largest = 0;
 };
 
-/// Unbalanced forces: contact forces plus weights. Bonded grains are one body.
-Unbalance unbalance_of(std::span<const Grain> grains, std::span<const GrainContact> contacts,
-                       std::span<const GrainBond> bonds, Vec2 gravity);
+/// Unbalanced forces: forces of contacts and of bonds with springs, plus weights. Grains that are tied by dashpots
+/// alone, which creep under any force, are one body. \param bonds of the simulation that have not broken, in any order
+Unbalance unbalance_of(const GrainSimulation& simulation, std::span<const GrainBond> bonds, Vec2 gravity);
 
 }  // namespace equidem

@@ -5,7 +5,9 @@
 #include <cassert>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "equidem/core/text.hpp"
@@ -18,6 +20,18 @@ namespace {
 std::string discs_in_a_cell(const Clump& clump) {
   const auto numbers = [](const Clump::Disc& d) { return fmt::format("{} {} {}", d.offset.x, d.offset.y, d.radius); };
   return joined(clump.discs, numbers, "; ");
+}
+
+/// The drifts, i < j, in the order of the bonds; a roll is that of the second disc against the first.
+std::vector<BondDrift> drifts_of(std::span<const GrainBond> bonds, std::span<const BondDrift> drifts) {
+  std::map<std::pair<std::size_t, std::size_t>, const BondDrift*> by_pair;
+  for (const BondDrift& drift : drifts) by_pair[{drift.i, drift.j}] = &drift;
+  std::vector<BondDrift> ordered;
+  for (const GrainBond& bond : bonds) {
+    BondDrift& drift = ordered.emplace_back(*by_pair.at(std::minmax(bond.i, bond.j)));
+    if (bond.j < bond.i) drift.roll = -drift.roll;
+  }
+  return ordered;
 }
 
 }  // namespace
@@ -119,9 +133,10 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
 }
 
 void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
-                    std::span<const BondDrift> drifts, bool overwrite) {
+                    std::span<const BondDrift> drifts, const ContactStrengths& strengths, bool overwrite) {
   assert(drifts.empty() || drifts.size() == bonds.size());
   Table table;
+  const std::vector<BondDrift> of_rows = drifts.empty() ? std::vector<BondDrift>() : drifts_of(bonds, drifts);
   table.add("i", bonds, &GrainBond::i).add("j", bonds, &GrainBond::j);
   table.add("normal_dashpot", bonds, &GrainBond::normal_dashpot);
   table.add("tangential_dashpot", bonds, &GrainBond::tangential_dashpot);
@@ -129,9 +144,11 @@ void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond
   table.add("normal_spring", bonds, &GrainBond::normal_spring);
   table.add("tangential_spring", bonds, &GrainBond::tangential_spring);
   table.add("bending_spring", bonds, &GrainBond::bending_spring);
+  if (!strengths.tension.empty())
+    table.add("tension", strengths.tension, std::identity()).add("shear", strengths.shear, std::identity());
   if (!drifts.empty()) {
-    table.add("distance_drift", drifts, &BondDrift::distance).add("slip_drift", drifts, &BondDrift::slip);
-    table.add("roll_rad", drifts, &BondDrift::roll);
+    table.add("distance_drift", of_rows, &BondDrift::distance).add("slip_drift", of_rows, &BondDrift::slip);
+    table.add("roll_rad", of_rows, &BondDrift::roll);
   }
   write_csv(path, table, overwrite);
 }

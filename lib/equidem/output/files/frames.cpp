@@ -83,11 +83,12 @@ std::string frame_discs_text(const Assembly& assembly, const FrameOptions& optio
 /// The contacts of the bodies, which are the discs where none has parts.
 std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& options, double time,
                                 std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
+  const ContactLoads loads{.forces = true, .moments = options.moments};
   if (!options.travelling)
-    return contacts_text({.places = assembly.centres, .motions = motions}, contacts, true, &time);
+    return contacts_text({.places = assembly.centres, .motions = motions}, contacts, loads, &time);
   std::vector<Vec2> places;
   for (const DiscMotion& motion : motions) places.push_back(motion.u);
-  return contacts_text({.places = places}, contacts, true, &time);
+  return contacts_text({.places = places}, contacts, loads, &time);
 }
 
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
@@ -100,7 +101,7 @@ std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& op
 double bytes_of_frame(double discs, double contacts, const FrameOptions& options) {
   const double moving = options.travelling ? 0 : 24;  // the displacement
   const double of_disc = 80 + moving + 8.0 * static_cast<double>(options.of_discs.size());
-  return discs * of_disc + (options.contacts ? discs * (32 + moving) + 84 * contacts : 0);
+  return discs * of_disc + (options.contacts ? discs * (32 + moving) + (options.moments ? 92 : 84) * contacts : 0);
 }
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string& name, const Assembly& assembly,

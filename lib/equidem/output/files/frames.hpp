@@ -38,6 +38,7 @@ struct FrameOptions {
   /// displacement and rotation.
   bool travelling = false;
   bool contacts = true;                        ///< write contacts
+  bool moments = false;                        ///< with their bending moments
   std::optional<FileMark> continue_from = {};  ///< continue the files of an earlier run behind this mark
   std::vector<DiscNumbers> of_discs = {};      ///< beside the radius
   std::vector<FramePart> parts = {};           ///< of each disc; empty: every disc is a body

@@ -43,8 +43,10 @@ std::string state_contacts_text(const AssemblyState& state) {
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const ContactForce force = state.contact_forces.empty() ? ContactForce{} : state.contact_forces[c];
     contacts.push_back(bonded_contact(assembly, c, force));
+    if (!state.bending_moments.empty()) contacts.back().bending_moment = state.bending_moments[c];
   }
-  return contacts_text({.places = assembly.centres, .motions = state.motions}, contacts, !state.contact_forces.empty());
+  return contacts_text({.places = assembly.centres, .motions = state.motions}, contacts,
+                       {.forces = !state.contact_forces.empty(), .moments = !state.bending_moments.empty()});
 }
 
 /// \param blocks lines of the index
@@ -61,7 +63,7 @@ std::string piece_name(const std::string& name, const char* what, int piece) {
 
 }  // namespace
 
-std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, bool forces,
+std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
                           const double* time) {
   // The points: the bodies, then the ends at walls and at images behind the period.
   struct End {
@@ -95,11 +97,12 @@ std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContac
   data.declare<std::int32_t>("CellData", "i", m, 1, [=](std::size_t c, int) { return contacts[c].i; });
   data.declare<std::int32_t>("CellData", "j", m, 1, [=](std::size_t c, int) { return contacts[c].j; });
   vectors("contact_point", [&](const BodyContact& c) { return bodies.places[static_cast<std::size_t>(c.i)] + c.arm; });
-  if (forces) {
+  if (loads.forces) {
     vectors("force", [](const BodyContact& c) { return c.force; });
     numbers("normal_force", &BodyContact::normal_force);
     numbers("tangential_force", &BodyContact::tangential_force);
   }
+  if (loads.moments) numbers("bending_moment", &BodyContact::bending_moment);
   data.places([&](std::size_t point) {
     return point < n ? bodies.places[point] : bodies.places[ends[point - n].body] + ends[point - n].from_centre;
   });

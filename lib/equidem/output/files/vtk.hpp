@@ -20,12 +20,17 @@ struct PlacedBodies {
   std::span<const DiscMotion> motions = {};  ///< displacement of each from its place; empty: not written
 };
 
+/// What contacts carry, as far as it is known.
+struct ContactLoads {
+  bool forces = false, moments = false;
+};
+
 /// The PolyData of contacts: a line each from the centre of i to that of j, also where that leads through the period,
-/// or to the contact point at a wall. Arrays of lines: i, j (negative: wall -1 - j), contact_point (m), and with
-/// `forces` force (3-vector, on i), normal_force, tangential_force (body_contact.hpp); of points: displacement, and a
-/// radius of zero, so that Glyph draws circles of discs only.
+/// or to the contact point at a wall. Arrays of lines: i, j (negative: wall -1 - j), contact_point (m), and as `loads`
+/// say force (3-vector, on i), normal_force, tangential_force, bending_moment (body_contact.hpp); of points:
+/// displacement, and a radius of zero, so that Glyph draws circles of discs only.
 /// \param time see PolyData::text
-std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, bool forces,
+std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
                           const double* time = nullptr);
 
 /// Write NAME.vtm, the index to open, and beside it NAME_discs.vtp and NAME_contacts.vtp (VTK XML PolyData, appended

@@ -29,7 +29,8 @@ class RunLoop {
         stride_(static_cast<std::int64_t>(
             std::bit_floor(static_cast<std::uint64_t>(std::max<std::int64_t>(1, plan.steps / plan.samples))))),
         frame_times_(plan.frame_interval, plan.time_step),
-        probe_times_(plan.probe_interval, plan.time_step) {
+        probe_times_(plan.probe_interval, plan.time_step),
+        files_(files) {
     if (files.folder) open(files);
   }
 
@@ -51,7 +52,7 @@ class RunLoop {
       if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
       if (taken > look_every && chunk > 1) chunk /= 2;
       look();
-      if (simulation_.milestone() >= 0 && !simulation_.over()) save();
+      if (simulation_.milestone() >= 0 && !simulation_.over()) keep();
       try {
         progress.update(static_cast<double>(simulation_.step()) / static_cast<double>(plan_.steps));
       } catch (const Error&) {
@@ -188,7 +189,18 @@ class RunLoop {
 
   /// Everything that the checkpoint counts on is on the disk before it is.
   void save() {
+    if (checkpoint_) checkpoint_->write(checkpoint());
+  }
+
+  /// At the end of a stage.
+  void keep() {
     if (!checkpoint_) return;
+    save();
+    const std::filesystem::path path = *files_.folder / fmt::format("run.{}.checkpoint.h5", plan_.milestone_name());
+    CheckpointWriter(path, plan_.case_text, files_.overwrite || files_.resume).write(checkpoint());
+  }
+
+  Checkpoint checkpoint() {
     Checkpoint checkpoint{simulation_.save(), result_.record};
     if (history_) {
       history_->sync();
@@ -199,7 +211,7 @@ class RunLoop {
       checkpoint.files.push_back(frames_->mark());
     }
     if (plan_.recorder != nullptr) plan_.recorder->save(checkpoint);
-    checkpoint_->write(checkpoint);
+    return checkpoint;
   }
 
   void close() {
@@ -211,6 +223,7 @@ class RunLoop {
   const RunPlan& plan_;
   std::int64_t stride_;  ///< steps from one sample of the energies to the next
   Recurrence frame_times_, probe_times_;
+  const RunFiles& files_;
   std::optional<CheckpointWriter> checkpoint_;
   std::optional<FrameWriter> frames_;
   std::optional<ProbeWriter> history_;

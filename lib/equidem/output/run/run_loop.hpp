@@ -41,10 +41,12 @@ struct RunPlan {
   FrameOptions frames = {};                                        ///< options of frames, except files
   std::vector<Probe> probes = {};
   std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
-  Body body = Body::disc;               ///< unit of energies
-  std::int64_t samples = 200;           ///< of the energies, at least; at most twice as many
-  bool paths = false;                   ///< record the positions of all bodies at each sample
-  std::int64_t film_frames = 0;         ///< of RunRecord::film, at most but for the last; 0: none
+  /// Names what has ended at a milestone: run.NAME.checkpoint.h5 keeps the state there.
+  std::function<std::string()> milestone_name = {};
+  Body body = Body::disc;        ///< unit of energies
+  std::int64_t samples = 200;    ///< of the energies, at least; at most twice as many
+  bool paths = false;            ///< record the positions of all bodies at each sample
+  std::int64_t film_frames = 0;  ///< of RunRecord::film, at most but for the last; 0: none
   RunRecorder* recorder = nullptr;
   /// Checks the energies whenever they are recorded, and in between if `watch_between`. \throws Error
   std::function<void(const EnergyLedger&)> watch = {};
@@ -65,8 +67,8 @@ struct RunResult {
 };
 
 /// Perform all steps. Writes frames.pvd, history.csv and run.checkpoint.h5 on their schedules; progress on stderr. A
-/// checkpoint is also written at an interrupt and when a step fails. A run that is resumed writes the same files as one
-/// that was never stopped.
+/// checkpoint is also written at an interrupt and when a step fails, and at a milestone another one that stays. A run
+/// that is resumed writes the same files as one that was never stopped.
 /// \throws Error as the writers, the watch, advance() and stop_if_interrupted; (bad_input) where a checkpoint lies past
 ///         the end, or a file that it counts on was altered: then no file is changed
 RunResult run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files);

@@ -92,7 +92,7 @@ void check_null_motions(const System& system, const Factorization& factor) {
   constexpr std::int64_t most = 32;
   const Assembly& assembly = system.k.assembly;
   const bool far_apart = factor.report().zero_pivots > 0 && spring_spread(assembly, system.springs) > enough_digits;
-  const ContactSprings judged = far_apart ? equal_springs(system.springs) : system.springs;
+  const ContactSprings judged = far_apart ? equal_springs(system.springs, assembly.mean_radius()) : system.springs;
   for (std::int64_t k = 0; k < std::min(most, factor.report().zero_pivots); ++k) {
     const std::vector<double> motion = factor.null_motion(k);
     if (!costs_no_energy(system, judged, motion)) report_singular(system, motion);

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Runs in stages of discs that are bonded, or become so.
+#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
+#include "equidem/grains/stages/unbalance.hpp"
+
+#include "grains/bonded_scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+const std::vector<Stepping> steppings_of_bonded_stages{
+    {NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
+    {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+    {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
+    {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler}};
+
+/// A chain whose bonds break one after the other.
+GrainScene breaking_chain(NormalLaw law) {
+  GrainBond like = all_of_a_bond;
+  like.bending_spring = 0.4;
+  GrainScene scene = chain_scene(law, 12, like);
+  scene.strengths = bond_strengths(scene, {.tension = 0.9, .shear = 0.7, .friction = 0.2, .weibull_modulus = 3.0});
+  return scene;
+}
+
+/// Columns of discs between a floor, two walls and a lid that presses them with 20 N.
+GrainScene pressed_columns(NormalLaw law) {
+  std::vector<Grain> grains;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) grains.push_back(ball({i + 0.5, j + 0.5}, 0.5));
+  PairProperties pair = one_second(law, 0.2, 0.5);
+  pair.stiffness *= 1000;
+  pair.friction = 0.3;
+  pair.tangential_ratio = 0.5;
+  GrainScene scene = scene_of(grains,
+                              {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}),
+                               line("right", {4, 0}, {-1, 0}), line("lid", {0, 4.01}, {0, -1})},
+                              pair);
+  scene.walls[3].servo = Servo{.direction = {0, -1}, .wanted = {.value = 20}, .max_speed = 0.1};
+  return scene;
+}
+
+StageBonds stiff_bonds() {
+  return {.gap_tolerance = 0.01,
+          .like = {.normal_dashpot = 5, .normal_spring = 3000, .tangential_spring = 1500, .bending_spring = 100}};
+}
+
+void go_to(StagedSimulation& simulation, std::int64_t step) {
+  while (simulation.step() < step && !simulation.over()) simulation.advance(step - simulation.step());
+}
+
+}  // namespace
+
+TEST_CASE("bonds_keep_their_stretch_their_strength_and_their_breaks_over_a_stage_to_the_last_bit") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const GrainScene scene = breaking_chain(stepping.law);
+  const GrainOptions options = options_of(stepping, 1e-3);
+  GrainSimulation whole(scene, options);
+  StagedSimulation staged({{.name = "a", .scene = scene, .steps = 400}, {.name = "b", .scene = scene, .steps = 2600}},
+                          options);
+  go_to(staged, 400);
+  const std::size_t early = staged.present().breaks().size();
+  go_to(staged, 3000);
+  whole.advance(3000);
+  CAPTURE(stepping.name(), early, whole.breaks().size());
+  CHECK(early > 0);
+  CHECK(whole.breaks().size() > early);
+  REQUIRE(staged.present().breaks().size() == whole.breaks().size());
+  for (std::size_t b = 0; b < whole.breaks().size(); ++b) {
+    CHECK(staged.present().breaks()[b].bond == whole.breaks()[b].bond);
+    CHECK(staged.present().breaks()[b].step == whole.breaks()[b].step);
+  }
+  CHECK(bits_of(staged.present()).words.size() == bits_of(whole).words.size());
+  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+    CHECK(staged.present().grains()[g].position == whole.grains()[g].position);
+    CHECK(staged.present().grains()[g].velocity == whole.grains()[g].velocity);
+    CHECK(staged.present().grains()[g].spin == whole.grains()[g].spin);
+  }
+  CHECK(staged.energy().work_of_stages == 0);
+}
+
+TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const GrainScene scene = pressed_columns(stepping.law);
+  GrainStage press{.name = "press", .scene = scene, .steps = 150000};
+  GrainStage bond = press;
+  bond.name = "bond";
+  bond.steps = 400;
+  bond.bonds = stiff_bonds();
+  StagedSimulation staged({press, bond}, options_of(stepping, 2e-4));
+  go_to(staged, press.steps);
+  const auto before = staged.present().contacts();
+  const double kinetic = staged.energy().kinetic;
+  go_to(staged, press.steps + 1);
+  double largest = 0, off = 0;
+  for (const BodyContact& now : staged.present().body_contacts()) {
+    if (now.j < 0) continue;
+    const auto then = std::ranges::find_if(before, [&](const GrainContact& c) { return c.i == now.i && c.j == now.j; });
+    const double force = then == before.end() ? 0 : then->normal_force;
+    largest = std::max(largest, std::abs(force));
+    off = std::max(off, std::abs(force - now.normal_force));
+  }
+  CAPTURE(stepping.name(), staged.reports()[1].bonds_made, largest, off);
+  CHECK(staged.reports()[1].bonds_made == 24);
+  CHECK(staged.present().bonds().number == 24);
+  CHECK(largest > 4);
+  CHECK(off < 1e-5 * largest);
+  go_to(staged, press.steps + 400);
+  const EnergyLedger ledger = staged.energy();
+  CAPTURE(kinetic, ledger.kinetic, ledger.elastic(), ledger.error());
+  CHECK(ledger.kinetic < 1e-9 * ledger.elastic());
+  CHECK(std::abs(staged.walls()[3].force.y - 20) < 1e-4 * 20);
+  CHECK(staged.present().contacts().size() == 8);  // those with floor and lid alone are left
+}
+
+TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
+  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  CAPTURE(stepping.name());
+  GrainScene scene = busy_box(stepping.law, 4, 3, 5);
+  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  scene.bonds = {{.i = 0, .j = 1, .normal_spring = 300, .tangential_spring = 100, .bending_spring = 5}};
+  scene.strengths = ContactStrengths{{14}, {9}, 0.2};
+  GrainStage first{.name = "thrown", .scene = scene, .steps = 60};
+  GrainStage tied = first, open = first;
+  tied.name = "tied";
+  tied.bonds =
+      StageBonds{.gap_tolerance = 0.4,
+                 .like = scene.bonds[0],
+                 .strengths = StrengthOptions{.tension = 14, .shear = 9, .friction = 0.2, .weibull_modulus = 3.0}};
+  tied.bonds->like.normal_dashpot = 1;
+  open.name = "open";
+  open.scene.walls.pop_back();
+  const std::vector<GrainStage> stages{first, tied, open};
+  const GrainOptions options = options_of(stepping, 4e-3);
+  StagedSimulation whole(stages, options);
+  std::vector<SavedState> states;
+  while (!whole.over()) {
+    if (whole.step() % 7 == 0 || whole.milestone() >= 0) states.push_back(whole.save());
+    whole.advance(1);
+  }
+  const Bits end = bits_of(whole.present());
+  CAPTURE(whole.bonds().size(), whole.present().breaks().size());
+  CHECK(whole.bonds().size() > 5);
+  CHECK(whole.present().breaks().size() > 0);
+  CHECK(whole.present().breaks().size() < whole.bonds().size());
+  for (const SavedState& state : states) {
+    CAPTURE(state.step);
+    StagedSimulation resumed(stages, options);
+    resumed.restore(state);
+    go_to(resumed, 180);
+    CHECK(bits_of(resumed.present()) == end);
+    CHECK(resumed.energy().error() == whole.energy().error());
+    CHECK(resumed.reports()[1].bonds_made == whole.reports()[1].bonds_made);
+    CHECK(resumed.strengths()->tension == whole.strengths()->tension);
+  }
+}
+
+TEST_CASE("grains_tied_by_dashpots_are_as_many_bodies_as_groups_of_bonds_that_are_left") {
+  // three discs in a ring of three bonds, and one alone, on a floor
+  GrainScene scene = scene_of(
+      {ball({0, 0.5}, 0.5), ball({1, 0.5}, 0.5), ball({0.5, 0.5 + std::sqrt(0.75)}, 0.5), ball({3, 0.499}, 0.5)},
+      {line("floor", {0, 0}, {0, 1})}, one_second(NormalLaw::linear_dashpot, 0.5));
+  for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 1}, {1, 2}, {0, 2}})
+    scene.bonds.push_back({.i = i, .j = j, .normal_dashpot = 1});
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3));
+  simulation.advance(1);
+  const double pushed = simulation.contacts().front().normal_force;
+  REQUIRE(simulation.contacts().size() == 1);
+  const auto off = [&](std::size_t bonds) {
+    return unbalance_of(simulation, std::span(scene.bonds).first(bonds), {}).mean;
+  };
+  CAPTURE(pushed, off(3), off(2), off(0));
+  CHECK(off(3) == Approx(1.0 / 2).epsilon(1e-9));  // the force of one contact on one of two bodies
+  CHECK(off(2) == Approx(1.0 / 2).epsilon(1e-9));
+}
+
+TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shapes_are_refused") {
+  const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-4);
+  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 20000};
+  GrainStage bond = press;
+  bond.name = "bond";
+  bond.bonds = stiff_bonds();
+  bond.bonds->like.normal_spring = 1;
+  StagedSimulation soft({press, bond}, options);
+  go_to(soft, press.steps);
+  const Bits then = bits_of(soft.present());
+  for (int k = 0; k < 2; ++k) {
+    try {
+      soft.advance(1);
+      FAIL("it went on");
+    } catch (const Error& error) {
+      CHECK(error.where() == "stage 'bond'");
+      CHECK_THAT(error.what(), Catch::Contains("too soft"));
+    }
+    CHECK(bits_of(soft.present()) == then);  // the state is that before the stage
+    CHECK(soft.reports().size() == 1);
+    CHECK(soft.milestone() == press.steps);
+  }
+  const auto refused = [&](const auto& change, const std::string& word, NormalLaw law = NormalLaw::linear_dashpot) {
+    std::vector<GrainStage> stages{press, bond};
+    stages[1].bonds = stiff_bonds();
+    change(stages);
+    try {
+      StagedSimulation(stages, options_of(law, 2e-4));
+      FAIL_CHECK("it was accepted: " << word);
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), Catch::Contains(word));
+    }
+  };
+  refused([](std::vector<GrainStage>& s) { s[0].scene.grains[0].short_half_axis = 0.4; }, "no disc");
+  refused([](std::vector<GrainStage>& s) { s[1].bonds->like = {}; }, "bond");
+  refused([](std::vector<GrainStage>& s) { s[1].bonds->gap_tolerance = 2; }, "gap");
+  refused([](std::vector<GrainStage>& s) { s[1].bonds->like.normal_spring = -1; }, "-1");
+  refused([](std::vector<GrainStage>&) {}, "knows no bonds", NormalLaw::exact_flow);
+  refused(
+      [](std::vector<GrainStage>& s) {
+        s[0].scene.bonds = {{.i = 0, .j = 1, .normal_spring = 1}};
+        s[1].bonds->strengths = StrengthOptions{.tension = 1, .shear = 1};
+      },
+      "strengths");
+}
+
+TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
+  const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-3);
+  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 10};
+  GrainStage bond = press;
+  bond.name = "bond";
+  bond.bonds = stiff_bonds();
+  bond.bonds->like.normal_spring = 1e7;
+  StagedSimulation staged({press, bond}, options);
+  go_to(staged, press.steps);
+  try {
+    staged.advance(1);
+    FAIL("it went on");
+  } catch (const Error& error) {
+    CHECK(error.where() == "stage 'bond'");
+    CHECK_THAT(error.what(), Catch::Contains("limit"));
+  }
+  const double likely = likely_step_limit(press.scene.grains, *bond.bonds, GrainOptions::BondStep::exact);
+  CAPTURE(likely);
+  CHECK(likely < options.time_step);
+}
