@@ -107,14 +107,14 @@ def brazilian(folder, diameter):
     return {"strength": 2 * float(force[peak]) / (math.pi * diameter), "time": float(read["time_s"][peak + 2])}
 
 
-def crack_angle(folder, until):
-    """Share of the breaks up to a time within a fifth of the width of the loaded diameter x = 0, and their number."""
-    read = columns_of_breaks(folder)
+def breaks_near_the_diameter(folder, until):
+    """Share of the breaks up to a time within 5 mm of the loaded diameter x = 0, and their number."""
+    read = rows_of_breaks(folder)
     x = numpy.array([float(row["x_m"]) for row in read if float(row["time_s"]) <= until])
     return {"near": float(numpy.mean(abs(x) < 0.005)) if len(x) else math.nan, "breaks": len(x)}
 
 
-def columns_of_breaks(folder):
+def rows_of_breaks(folder):
     with open(Path(folder) / "breaks.csv", newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 

@@ -78,8 +78,8 @@ def hopper():
     """As grains_hopper.toml, with its dashpots for the mean mass."""
     mean = sum(2500 * math.pi * radius**2 for *_, radius in discs) / len(discs)
     loss = math.log(2) / math.hypot(math.pi, math.log(2))
-    # Springs and dashpots of two bodies act one behind the other.
-    O.materials.append(ViscElMat(kn=1e6, ks=5e5, cn=2 * loss * math.sqrt(mean / 2 * 1e6), cs=0, frictionAngle=math.atan(0.5), density=2500))
+    # Springs and dashpots of two bodies act one behind the other: a contact has half of each.
+    O.materials.append(ViscElMat(kn=2e6, ks=1e6, cn=4 * loss * math.sqrt(mean / 2 * 1e6), cs=0, frictionAngle=math.atan(0.5), density=2500))
     add_discs(0, 2500)
     for x, sense in ((0, 1), (0.15, -1)):
         O.bodies.append(utils.wall((x, 0, 0), 0, sense=sense, material=0))
@@ -102,16 +102,18 @@ def hopper():
 def unconfined():
     """As grains_unconfined.toml with springs along and across alone: CohFrictMat has no bond that breaks in bending."""
     speed, start = 0.95 * 2.5e-4 / 9e-3, 0.05 * 2.5e-4 / 1e-3
-    O.materials.append(CohFrictMat(young=1e9, poisson=0.4, density=2600, frictionAngle=math.atan(0.5), normalCohesion=1e30, shearCohesion=1e30,
-                                   isCohesive=True, momentRotationLaw=False, fragile=True))
-    O.materials.append(CohFrictMat(young=1e9, poisson=0.4, density=0, frictionAngle=0, normalCohesion=0, shearCohesion=0, isCohesive=False,
-                                   momentRotationLaw=False))
+    # Contacts with walls have their springs from the materials: those of the mean radius.
+    young = 2e9 / (sum(radius for *_, radius in discs) / len(discs))
+    O.materials.append(CohFrictMat(young=young, poisson=0.4, density=2600, frictionAngle=math.atan(0.5), normalCohesion=1e30,
+                                   shearCohesion=1e30, isCohesive=True, momentRotationLaw=False, fragile=True))
+    O.materials.append(CohFrictMat(young=young, poisson=0.4, density=0, frictionAngle=0, normalCohesion=0, shearCohesion=0,
+                                   isCohesive=False, momentRotationLaw=False))
     add_discs(0, 2600)
     bottom, top = (O.bodies.append(utils.wall((0, y, 0), 1, sense=sense, material=1)) for y, sense in ((-1e-6, 1), (0.080001, -1)))
     detect = Ig2_Sphere_Sphere_ScGeom6D(interactionDetectionFactor=1.12)
     bond = Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True, setCohesionOnNewContacts=True)
     O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.12), Bo1_Wall_Aabb()]),
-                 InteractionLoop([detect, Ig2_Wall_Sphere_ScGeom()], [bond, Ip2_FrictMat_FrictMat_FrictPhys(**springs(2e9, 8e8))],
+                 InteractionLoop([detect, Ig2_Wall_Sphere_ScGeom()], [bond],
                                  [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=False), Law2_ScGeom_FrictPhys_CundallStrack()]),
                  NewtonIntegrator(damping=0.2)]
     O.dt = 1e-15
