@@ -98,6 +98,7 @@ TEST_CASE("a_wrong_case_of_grains_is_refused_with_line_key_and_remedy") {
       {"duration = 0.5\n", "", "[run]", "run.duration", {"missing key"}},
       {"group = \"grains\"\nq", "group = \"gravel\"\nq", "group = \"gravel\"", "probe.group", {"no grains"}},
       {"group = \"grains\"\nq", "bodies = [3]\nq", "bodies = [3]", "probe.bodies", {"0 to 2"}},
+      {"group = \"grains\"\nq", "group = \"grains\"\nbox = [0.0, 1.0, 1.0, 0.5]\nq", "box", "probe.box", {"is empty"}},
       {"integrator = ", "scheme = ", "scheme", "run.scheme", {"is called integrator", "Write integrator"}},
       {"group = \"grains\"\nq", "grains = [0]\nq", "grains = [0]", "probe.grains", {"is called bodies"}},
       {"schedule = \"shake\"\n", "", "displacement", "wall.displacement", {"without schedule", "its point"}},

@@ -43,6 +43,20 @@ std::vector<std::int64_t> steps_in(const std::filesystem::path& path) {
 
 }  // namespace
 
+TEST_CASE("a_probe_with_a_box_counts_its_bodies_inside_sides_included") {
+  const TemporaryFolder folder;
+  const Probe probe{.name = "out", .bodies = {0, 1, 2, 4}, .quantities = {}, .box = Rectangle{{-1, -2}, {1, 0}}};
+  std::vector<DiscMotion> places(5), velocities(5);
+  places[0].u = {1, -2}, places[1].u = {0, 1e-9}, places[2].u = {1.1, -1}, places[3].u = {0, -1}, places[4].u = {0, -1};
+  {
+    ProbeWriter writer(folder / "count.csv", {probe}, places.size(), {.family = BodyFamily::colliding});
+    writer.record(0, 0, places, velocities, {}, {});
+  }
+  const std::string text = read_file(folder / "count.csv");
+  CHECK(text.starts_with("step,time_s,out_inside,"));
+  CHECK(text.find("\n0,0,2,") != std::string::npos);
+}
+
 TEST_CASE("probes_record_means_and_energies") {
   const TemporaryFolder folder;
   {

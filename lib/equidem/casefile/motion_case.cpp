@@ -124,6 +124,10 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
     keys.push_back(key("wavelength", &Probe::wavelength, unit("m"), positive,
                        "of a standing wave: the report gives the period of the mean velocity, from its passages "
                        "through zero, and the speed, wavelength over period"));
+  } else {
+    keys.push_back(key("box", &Probe::box, unit("m"),
+                       "how many of these bodies have their centre inside is recorded too, such as those that have "
+                       "left a hopper"));
   }
   return keys;
 }

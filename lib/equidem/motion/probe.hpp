@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/core/names.hpp"
 
 namespace equidem {
@@ -39,6 +40,7 @@ struct Probe {
   std::vector<std::int32_t> bodies;  ///< numbers from 0; empty: those of `group`
   std::vector<ProbeQuantity> quantities = {ProbeQuantity::displacement};
   std::string group = {};
+  std::optional<Rectangle> box = {};      ///< m; the bodies with their centre inside are counted too
   std::optional<double> wavelength = {};  ///< m, of a standing wave whose period the mean velocity has
 };
 

@@ -23,13 +23,6 @@ void check_radii(const TomlValue& table, const RadiusDistribution& radii) {
             "Exchange them");
 }
 
-void check_box(const TomlValue& table, const Rectangle& box) {
-  const TomlValue& given = *table.find("box");
-  if (box.low.x >= box.high.x || box.low.y >= box.high.y)
-    fail_at(given, "group.box", fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
-            "Put the smaller numbers first");
-}
-
 void check_support(const TomlValue& table, const Support& support) {
   if (support.ux || support.uy || support.rotation) return;
   fail_at(table, "support", fmt::format("the support of '{}' holds nothing", support.group),
@@ -209,7 +202,8 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
         at_key(*root.find("material"), "material", [&] { return moduli_of(tables.material->given); });
   check_names(root, "group");
   for (std::size_t k = 0; k < tables.groups.size(); ++k)
-    if (tables.groups[k].box) check_box(repeated(root, "group")[k], *tables.groups[k].box);
+    if (const auto& box = tables.groups[k].box)
+      check_box(*repeated(root, "group")[k].find("box"), "group.box", box->low, box->high);
   for (std::size_t k = 0; k < tables.supports.size(); ++k)
     check_support(repeated(root, "support")[k], tables.supports[k]);
   for (std::size_t k = 0; k < tables.load_tables.size(); ++k)

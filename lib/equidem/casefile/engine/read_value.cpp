@@ -34,4 +34,10 @@ void check_plain_name(const TomlValue& value, const std::string& key, const std:
           "Use letters, digits, '_' and '-' only");
 }
 
+void check_box(const TomlValue& given, const std::string& key, Vec2 low, Vec2 high) {
+  if (low.x >= high.x || low.y >= high.y)
+    fail_at(given, key, fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
+            "Put the smaller numbers first");
+}
+
 }  // namespace equidem::casefile

@@ -10,6 +10,7 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/vector.hpp"
 
 namespace equidem::casefile {
 
@@ -65,5 +66,8 @@ void check_names(const TomlValue& root, const char* list);
 /// \param use "it becomes part of the names of files"
 /// \throws Error (bad_input) where the text holds more than letters, digits, '_' and '-'
 void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use);
+
+/// \throws Error (bad_input) where the corners of a box are not in ascending order
+void check_box(const TomlValue& given, const std::string& key, Vec2 low, Vec2 high);
 
 }  // namespace equidem::casefile

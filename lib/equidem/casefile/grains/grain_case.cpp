@@ -34,6 +34,7 @@ void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>&
 /// A probe of a group has its bodies.
 void choose_bodies(const TomlValue& table, const std::vector<std::string>& groups, Probe& probe) {
   check_bodies(table, probe, groups.size());
+  if (probe.box) check_box(*table.find("box"), "probe.box", probe.box->low, probe.box->high);
   const TomlValue* group = table.find("group");
   if (group == nullptr) return;
   for (std::size_t g = 0; g < groups.size(); ++g)

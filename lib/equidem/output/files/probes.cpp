@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/files/probes.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -36,10 +37,12 @@ void check(const std::vector<Probe>& probes, std::size_t bodies) {
 
 std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const ProbeOptions& options) {
   std::vector<std::string> columns{"step", "time_s"};
-  for (const Probe& probe : probes)
+  for (const Probe& probe : probes) {
     for (const ProbeQuantity quantity : probe.quantities)
       for (const char* column : {entry_of(quantity).column, entry_of(quantity).second_column})
         if (column != nullptr) columns.push_back(probe.name + column);
+    if (probe.box) columns.push_back(probe.name + "_inside");
+  }
   const std::set<std::string> taken(columns.begin(), columns.end());
   for (const std::string& name : wall_columns(options.walls, options.family, options.body)) {
     columns.push_back(name);
@@ -59,6 +62,15 @@ DiscMotion mean_of(const std::vector<std::int32_t>& bodies, std::span<const Disc
   }
   const auto count = static_cast<double>(bodies.size());
   return {sum.u / count, sum.theta / count};
+}
+
+/// Number of the bodies with their centre in a box, its sides included.
+double count_inside(const Probe& probe, std::span<const DiscMotion> positions) {
+  return static_cast<double>(std::ranges::count_if(probe.bodies, [&](std::int32_t body) {
+    const Vec2 centre = positions[static_cast<std::size_t>(body)].u;
+    return probe.box->low.x <= centre.x && centre.x <= probe.box->high.x && probe.box->low.y <= centre.y &&
+           centre.y <= probe.box->high.y;
+  }));
 }
 
 std::vector<Probe> checked(std::vector<Probe> probes, std::size_t bodies) {
@@ -91,6 +103,7 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
         cells.insert(cells.end(), {value.u.x, value.u.y});
       }
     }
+    if (probe.box) cells.push_back(count_inside(probe, motions));
   }
   for (const double cell : wall_cells(walls_, family_, walls)) cells.push_back(cell);
   for (const double cell : energy_cells(family_, ledger)) cells.push_back(cell);

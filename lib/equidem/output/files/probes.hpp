@@ -29,8 +29,8 @@ struct ProbeOptions {
 };
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
-/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; those of every wall
-/// (wall_loads.hpp); then the columns of the energy ledger (energies.hpp).
+/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; NAME_inside of a probe with a box;
+/// those of every wall (wall_loads.hpp); then the columns of the energy ledger (energies.hpp).
 class ProbeWriter {
  public:
   /// \param bodies of the scene

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the histories of the laboratory's cases say: each function takes the folder that `equidem run` wrote."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy
+
+
+def columns(path):
+    """The columns of a table as arrays by their names."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    values = numpy.array([[float(cell) if cell else math.nan for cell in row] for row in rows[1:]])
+    return dict(zip(rows[0], values.T))
+
+
+def history(folder, stage=None):
+    """The columns of history.csv, of one stage alone where its name is given."""
+    folder = Path(folder)
+    read = columns(folder / "history.csv")
+    if stage is None:
+        return read
+    times = next(one for one in json.loads((folder / "result.json").read_text())["stages"] if one["name"] == stage)
+    kept = (read["time_s"] >= times["start"]) & (read["time_s"] <= times["end"])
+    return {name: values[kept] for name, values in read.items()}
+
+
+def mean_force(read, wall, axis):
+    """Mean force on a wall from each row to the next, N/m, by its impulse: without the noise of single steps."""
+    return numpy.diff(read[f"wall_{wall}_impulse_{axis}_N_s_per_m"]) / numpy.diff(read["time_s"])
+
+
+def middle(values):
+    return (values[1:] + values[:-1]) / 2
+
+
+def smooth(values, rows):
+    """Means over a number of neighbouring rows; shorter by that number less one."""
+    return numpy.convolve(values, numpy.full(rows, 1 / rows), "valid")
+
+
+def biaxial(folder):
+    """Angles of friction (degrees) at the peak and beyond 8 per cent of strain, and that which Rowe's relation gives at the peak:
+    s1/s2 = (1 + sin phi_cv)/(1 - sin phi_cv) (1 + D), D = -(volume strain rate)/(axial strain rate), compression positive."""
+    read = history(folder, "shear")
+    width = read["wall_right_x_m"] - read["wall_left_x_m"]
+    height = read["wall_top_y_m"] - read["wall_bottom_y_m"]
+    side = (mean_force(read, "right", "x") - mean_force(read, "left", "x")) / 2 / middle(height)
+    axial = (mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2 / middle(width)
+    strain, volume = numpy.log(height[0] / middle(height)), numpy.log(width[0] * height[0] / middle(width) / middle(height))
+    rows = 15
+    axial, side, strain, volume = (smooth(values, rows) for values in (axial, side, strain, volume))
+    sine = (axial - side) / (axial + side)
+    peak = int(numpy.argmax(sine[rows:-rows])) + rows
+    late = float(numpy.mean(sine[strain > 0.08]))
+    near = slice(peak - rows, peak + rows + 1)
+    dilation = -numpy.polyfit(strain[near], volume[near], 1)[0]
+    rowe = (1 + late) / (1 - late) * (1 + dilation)
+    return {"peak": math.degrees(math.asin(sine[peak])), "late": math.degrees(math.asin(late)), "strain": float(strain[peak]),
+            "dilation": float(dilation), "rowe": math.degrees(math.asin((rowe - 1) / (rowe + 1))),
+            "volume": float(-volume[-1]), "side": (float(side.min()), float(side.max()))}
+
+
+def shear_box(folder):
+    """Angles of friction in the plane of shear (degrees), at the peak and over the last quarter, and Taylor's sum at the peak: that of
+    the end and of dilation, T/N = (T/N)_cv + dy/dx."""
+    read = history(folder, "shear")
+    moved = read["wall_floor_x_m"] - read["wall_floor_x_m"][0]
+    lid = read["wall_lid_y_m"] - read["wall_lid_y_m"][0]
+    pushed = sum(mean_force(read, wall, "x") for wall in ("floor", "lower_left", "lower_right", "shelf"))
+    rows = 25
+    ratio = smooth(-pushed, rows) / smooth(mean_force(read, "lid", "y"), rows)
+    at, rise = smooth(middle(moved), rows), smooth(middle(lid), rows)
+    peak = int(numpy.argmax(ratio[rows:-rows])) + rows
+    late = float(numpy.mean(ratio[at > 0.75 * at[-1]]))
+    near = slice(peak - rows, peak + rows + 1)
+    dilation = float(numpy.polyfit(at[near], rise[near], 1)[0])
+    return {"peak": math.degrees(math.atan(ratio[peak])), "late": math.degrees(math.atan(late)), "moved": float(at[peak]),
+            "dilation": dilation, "taylor": math.degrees(math.atan(late + dilation)), "rise": float(rise[-1])}
+
+
+def unconfined(folder, width):
+    """Strength, and from the stresses between a tenth and four tenths of it Young's modulus and Poisson's ratio of the sheet (the
+    uniaxial stress over its strain, and the share across): those of the reading 'plane stress' of homogenize."""
+    read = history(folder)
+    stress = smooth((mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2 / width, 5)
+    along, across = read["upper_y_m"] - read["lower_y_m"], read["right_x_m"] - read["left_x_m"]
+    shorter, wider = smooth(middle(1 - along / along[0]), 5), smooth(middle(across / across[0] - 1), 5)
+    peak = int(numpy.argmax(stress))
+    before = numpy.arange(len(stress)) < peak
+    chosen = before & (stress > 0.1 * stress[peak]) & (stress < 0.4 * stress[peak])
+    return {"strength": float(stress[peak]), "strain": float(shorter[peak]), **elastic(stress[chosen], shorter[chosen], wider[chosen])}
+
+
+def elastic(stress, shorter, wider):
+    return {"young_modulus": float(numpy.polyfit(shorter, stress, 1)[0]), "poisson_ratio": float(numpy.polyfit(shorter, wider, 1)[0])}
+
+
+def brazilian(folder, diameter):
+    """2 P/(pi D) at the peak of the force on the plates, Pa."""
+    read = history(folder)
+    force = smooth((mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2, 5)
+    peak = int(numpy.argmax(force))
+    return {"strength": 2 * float(force[peak]) / (math.pi * diameter), "time": float(read["time_s"][peak + 2])}
+
+
+def breaks_near_the_diameter(folder, until):
+    """Share of the breaks up to a time within 5 mm of the loaded diameter x = 0, and their number."""
+    read = rows_of_breaks(folder)
+    x = numpy.array([float(row["x_m"]) for row in read if float(row["time_s"]) <= until])
+    return {"near": float(numpy.mean(abs(x) < 0.005)) if len(x) else math.nan, "breaks": len(x)}
+
+
+def rows_of_breaks(folder):
+    with open(Path(folder) / "breaks.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def beam(folder, start, cycles, frequency):
+    """Stiffness of the row (N/m per m) and what it dissipates in a cycle, by its loop and by the ledger."""
+    read = history(folder)
+    time, end = read["time_s"], start + cycles / frequency
+    # The loop is closed only where it ends at the moment at which it began.
+    moments = numpy.concatenate([[start], time[(time > start) & (time < end)], [end]])
+    load = numpy.interp(moments, time, read["wall_load_force_y_N_per_m"])
+    bent = numpy.interp(moments, time, read["ends_y_m"] - read["middle_y_m"])
+    lost = numpy.interp([start, end], time, read["lost_bond_J_per_m"])
+    return {"stiffness": float(numpy.polyfit(bent, load, 1)[0]), "amplitude": float(bent.max() - bent.min()) / 2,
+            "loop": float(numpy.trapz(load, bent)) / cycles, "lost": float(lost[1] - lost[0]) / cycles}
+
+
+def row_of_discs(bonds, spacing, bending, tangential, loss):
+    """The same of a row of bonds on supports at its ends, by statics: the bond k from an end carries P (k + 1/2) l/2 and P/2."""
+    arms = (numpy.arange(bonds // 2) + 0.5) * spacing
+    bent = (arms**2).sum() / (2 * bending)
+    stiffness = 1 / (bent + bonds / (4 * tangential))
+    return {"stiffness": stiffness, "loss_over_square": math.pi * loss * stiffness**2 * bent}
+
+
+def slope(folder, start=0.02, end=0.13, width=0.01):
+    """Angle of the surface (degrees) and its standard error: a line through the highest points in columns of one width, least squares."""
+    read = columns_without_text(Path(folder) / "grains.csv", ("x_m", "y_m", "radius_m"))
+    x, top = read["x_m"], read["y_m"] + read["radius_m"]
+    places, heights = [], []
+    for left in numpy.arange(start, end - width / 2, width):
+        inside = numpy.flatnonzero((x >= left) & (x < left + width) & (read["y_m"] > 0))
+        if len(inside):
+            highest = inside[numpy.argmax(top[inside])]
+            places.append(x[highest]), heights.append(top[highest])
+    line, covariance = numpy.polyfit(places, heights, 1, cov=True)
+    angle = math.atan(-line[0])
+    return {"angle": math.degrees(angle), "error": math.degrees(math.sqrt(covariance[0, 0]) * math.cos(angle) ** 2)}
+
+
+def columns_without_text(path, names):
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: numpy.array([float(row[name]) for row in rows]) for name in names}
+
+
+def discharge(folder, first=100, last=900):
+    """Bodies that leave in a second, and the standard error of that from four parts of the time."""
+    read = history(folder)
+    time, out = read["time_s"], read["out_inside"]
+    chosen = numpy.flatnonzero((out > first) & (out < last))
+    parts = [numpy.polyfit(time[part], out[part], 1)[0] for part in numpy.array_split(chosen, 4)]
+    return {"rate": float(numpy.polyfit(time[chosen], out[chosen], 1)[0]), "error": float(numpy.std(parts, ddof=1) / 2)}
+
+
+def power_law(openings, rates, errors, power=1.5):
+    """C and the closed width W0 of rates = C (W - W0)^power by weighted least squares of rates^(1/power), and chi squared over the
+    openings beyond two."""
+    openings, rates, errors = map(numpy.asarray, (openings, rates, errors))
+    root, weight = rates ** (1 / power), power * rates ** (1 - 1 / power) / errors
+    slope_of, offset = numpy.polyfit(openings, root, 1, w=weight)
+    misfit = float((((root - slope_of * openings - offset) * weight) ** 2).sum()) / max(1, len(rates) - 2)
+    return {"factor": float(slope_of**power), "closed": float(-offset / slope_of), "misfit": misfit}

@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""tools/bench/laboratory/samples.py PROGRAM FOLDER
+
+Writes the samples of the cases of the laboratory: lab_*.csv of data/cases, the same bytes each time. A rock is a jammed packing whose
+discs are bonded across gaps up to a tenth of their radii; a Brazilian disc is cut out of one whose walls are its flat ends."""
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PACK = """schema = "equidem/1"
+[packing]
+method = "growth"
+grains = {grains}
+box    = [{width}, {height}]
+solid_fraction = "auto"
+overlap = 1.0e-3
+seed   = {seed}
+gap_tolerance = 0.1
+[packing.radii]
+smallest = 0.0006
+largest  = 0.0010
+[springs]
+kN = 2.0e9
+kT = 8.0e8
+"""
+HEAP = """schema = "equidem/1"
+[packing]
+method = "falling"
+grains = 2000
+box    = [0.15, 0.5]
+seed   = 3
+[packing.radii]
+smallest = 0.0016
+largest  = 0.0024
+[settling]
+start = "relax"
+friction = 0.5
+wall_friction = 0.5
+unbalanced = 1.0e-3
+[springs]
+kN = 1.0e6
+kT = 5.0e5
+density = 2500.0
+"""
+ROCK = (0.04, 0.08)  # m, width and height
+RADIUS, HALF_ANGLE = 0.025, math.radians(10)  # m, of the Brazilian disc and of its flat ends
+
+
+def packed(program, case):
+    """Discs (x, y, r) and contacts (i, j) of a packing."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "pack.toml").write_text(case, encoding="utf-8")
+        subprocess.run([program, "pack", "pack.toml", "--out", "out", "--quiet"], cwd=folder, check=True)
+        made = json.loads((Path(folder) / "out" / "assembly.json").read_text())
+    return made["discs"], [contact[:2] for contact in made["contacts"]]
+
+
+def gauge_of(x, y):
+    """Groups of a rock whose mean motions give its strains: bands near its sides, away from its corners."""
+    width, height = ROCK
+    if 0.1 * width < x < 0.9 * width:
+        if 0.86 * height < y < 0.92 * height:
+            return "upper"
+        if 0.08 * height < y < 0.14 * height:
+            return "lower"
+    if 0.2 * height < y < 0.8 * height:
+        if 0.06 * width < x < 0.16 * width:
+            return "left"
+        if 0.84 * width < x < 0.94 * width:
+            return "right"
+    return "rock"
+
+
+def rock(program, grains=800, seed=4):
+    discs, contacts = packed(program, PACK.format(grains=grains, width=ROCK[0], height=ROCK[1], seed=seed))
+    return [(x, y, r, gauge_of(x, y)) for x, y, r in discs], contacts
+
+
+def brazilian(program, grains=1200, seed=6):
+    """The disc about the origin, pressed along y on ends that are flat over 2 HALF_ANGLE."""
+    half = RADIUS * math.cos(HALF_ANGLE)
+    discs, contacts = packed(program, PACK.format(grains=grains, width=2 * RADIUS, height=2 * half, seed=seed))
+    number, cut = {}, []
+    for k, (x, y, r) in enumerate(discs):
+        x, y = x - RADIUS, y - half
+        if math.hypot(x, y) <= RADIUS - r / 2:
+            number[k] = len(cut)
+            cut.append((x, y, r, "rock"))
+    return cut, [(number[i], number[j]) for i, j in contacts if i in number and j in number]
+
+
+def write(folder, name, discs, contacts=None):
+    with open(folder / f"{name}.csv", "w", encoding="utf-8") as file:
+        file.write("x,y,radius,group\n" + "".join(f"{x:.9f},{y:.9f},{r:.9f},{group}\n" for x, y, r, group in discs))
+    if contacts:
+        with open(folder / f"{name}_bonds.csv", "w", encoding="utf-8") as file:
+            file.write("i,j\n" + "".join(f"{i},{j}\n" for i, j in contacts))
+
+
+def main():
+    program, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    write(folder, "lab_rock", *rock(program))
+    write(folder, "lab_brazilian", *brazilian(program))
+    write(folder, "lab_heap", [(*disc, "grains") for disc in packed(program, HEAP)[0]])
+    ends = {0: "ends", 10: "middle", 20: "ends"}
+    write(folder, "lab_beam", [(0.01 * k, 0.0, 0.005, ends.get(k, "beam")) for k in range(21)], [(k, k + 1) for k in range(20)])
+
+
+if __name__ == "__main__":
+    main()
