@@ -42,6 +42,7 @@ struct BreakableCounters {
   std::int64_t factorizations = 0;  ///< of a whole matrix, the first included
   std::int64_t updates = 0;         ///< contacts taken out of a factor
   std::int64_t mended = 0;          ///< factorizations because round-off of updates had grown
+  std::int64_t refinements = 0;     ///< of motions behind a factor that was updated
   double largest_residual = 0;      ///< relative, of all states so far
 };
 

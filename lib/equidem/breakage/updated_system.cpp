@@ -109,7 +109,7 @@ class UpdatedSystem final : public SolvedStates {
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
     const std::int64_t more = alone_ ? alone_->counters().factorizations : 0;
-    return {c.factorizations + more, c.updates, c.mended + more, largest_residual()};
+    return {c.factorizations + more, c.updates, c.mended + more, c.refinements, largest_residual()};
   }
   [[nodiscard]] std::string solver_name() const override {
     const std::string updated = "multifrontal Cholesky, updated";
