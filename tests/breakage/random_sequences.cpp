@@ -162,7 +162,8 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
 
 TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew") {
   std::int64_t events = 0, refused = 0, by_control = 0, loosened = 0;
-  double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_residual = 0, least_swept = 1;
+  double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_residual = 0;
+  int skipping = 0;  // paths that left parts of the network as they were
   std::string worst;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Drawn d = draw(seed, seed % 10 < 3 ? 400 : 40);  // of forty discs hardly any part can be skipped
@@ -214,12 +215,12 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       CHECK(a.load == Approx(b.load).epsilon(1e-8).margin(1e-10));
       CHECK(a.motion == Approx(b.motion).epsilon(1e-8).margin(1e-10));
     }
-    least_swept = std::min(least_swept, fast.system().counters().swept);
+    skipping += fast.system().counters().swept < 0.9 ? 1 : 0;
     if (slow.run().end() != PathEnd::none) CHECK(fast.run().end() == slow.run().end());
   }
   CAPTURE(events, refused, by_control, loosened, worst, worst_lambda, worst_work, worst_stress, worst_residual,
-          least_swept);
-  CHECK(least_swept < 0.5);
+          skipping);
+  CHECK(skipping > 10);
   CHECK(events > 3000);
   CHECK(refused < 10);
   CHECK(by_control > 1000);

@@ -37,8 +37,8 @@ std::vector<ContactStrength> strengths_of(const BreakableNetwork& network) {
   return strengths;
 }
 
-/// Share of a force: lambda is to have nine digits, with a margin for what is estimated.
-constexpr double allowed_force_error = 1e-11;
+/// Share of a force: lambda is to have nine digits, and this is an estimate.
+constexpr double allowed_force_error = 1e-10;
 
 class UpdatedSystem final : public SolvedStates {
  public:
