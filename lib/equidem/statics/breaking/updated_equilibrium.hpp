@@ -93,8 +93,8 @@ class UpdatedEquilibrium {
   /// Contacts that were removed do not break. Where lambda goes back towards 0, in a time proportional to the contacts.
   [[nodiscard]] CriticalContact critical(const LoadFactorSearch& search = {});
 
-  /// Per contact, by the bounds with which the last search, of that kind, left parts of the network as they were: no key
-  /// (BreakingMoment) of it is less.
+  /// Per contact, by the bounds with which the last search, of that kind, left parts of the network as they were: no
+  /// key (BreakingMoment) of it is less.
   [[nodiscard]] std::vector<double> least_keys(const LoadFactorSearch& search = {}) const;
 
   /// The contact that the last call of remove() took out, where the state has followed from that before it alone: null
