@@ -163,8 +163,10 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
 TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew") {
   std::int64_t events = 0, refused = 0, by_control = 0, loosened = 0;
   double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_residual = 0;
+  int skipping = 0;  // paths that left parts of the network as they were
+  std::string worst;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    Drawn d = draw(seed, 40);
+    Drawn d = draw(seed, seed % 10 < 3 ? 400 : 40);  // of forty discs hardly any part can be skipped
     const LoadControl controls[] = {LoadControl::path, LoadControl::load, LoadControl::motion};
     d.path.control = controls[seed % 3];
     if (seed % 5 == 0) d.path.legs = {1.5, -1, 50};
@@ -172,7 +174,7 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
     Broken fast(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_breakable_system);
     Broken slow(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_refactorized_system);
     double largest_stress = 0, largest_work = 0;
-    while (true) {
+    while (slow.events().size() < 150) {
       CAPTURE(slow.events().size());
       bool more = false;
       try {
@@ -201,7 +203,9 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       loosened += a.loosened.empty() ? 0 : 1;
       worst_residual = std::max(worst_residual, a.relative_residual);
       if (std::abs(b.lambda) > 1e3) continue;  // what is left is as soft, and its digits as few
-      worst_lambda = std::max(worst_lambda, std::abs(a.lambda - b.lambda) / std::abs(b.lambda != 0 ? b.lambda : 1));
+      const double off = std::abs(a.lambda - b.lambda) / std::abs(b.lambda != 0 ? b.lambda : 1);
+      if (off > worst_lambda) worst = fmt::format("{}, event {}", d.name, slow.events().size());
+      worst_lambda = std::max(worst_lambda, off);
       for (const auto quantity :
            {&BreakEvent::energy_before, &BreakEvent::energy_after, &BreakEvent::energy_released, &BreakEvent::work}) {
         worst_work = std::max(worst_work, std::abs(a.*quantity - b.*quantity) / largest_work);
@@ -211,9 +215,12 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       CHECK(a.load == Approx(b.load).epsilon(1e-8).margin(1e-10));
       CHECK(a.motion == Approx(b.motion).epsilon(1e-8).margin(1e-10));
     }
+    skipping += fast.system().counters().swept < 0.9 ? 1 : 0;
     if (slow.run().end() != PathEnd::none) CHECK(fast.run().end() == slow.run().end());
   }
-  CAPTURE(events, refused, by_control, loosened, worst_lambda, worst_work, worst_stress, worst_residual);
+  CAPTURE(events, refused, by_control, loosened, worst, worst_lambda, worst_work, worst_stress, worst_residual,
+          skipping);
+  CHECK(skipping > 10);
   CHECK(events > 3000);
   CHECK(refused < 10);
   CHECK(by_control > 1000);

@@ -12,12 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 
+#include "statics/breaking_scenes.hpp"
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -26,122 +24,6 @@ using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-/// A network with what acts on it.
-struct BreakingScene {
-  std::string name;
-  Assembly assembly;
-  ContactSprings springs;
-  DegreesOfFreedom unknowns;
-  std::vector<RightHandSide> cases;
-  std::vector<ContactStrength> strengths;
-  double friction = 0;
-
-  [[nodiscard]] UpdatedEquilibrium updated(bool skip = true) const {
-    return {assembly, springs, unknowns, cases, strengths, {.friction = friction, .skip = skip}};
-  }
-};
-
-std::vector<ContactStrength> random_strengths(std::size_t contacts, double size, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<ContactStrength> strengths(contacts);
-  for (ContactStrength& s : strengths) {  // Weibull, modulus 4
-    s.tension = size * std::pow(-std::log(1 - random.uniform()), 0.25);
-    s.shear = 2 * size * std::pow(-std::log(1 - random.uniform()), 0.25);
-  }
-  return strengths;
-}
-
-DegreesOfFreedom unknowns_of(const Assembly& assembly, const ContactSprings& springs,
-                             std::span<const Support> supports) {
-  const Effects effects = derive_effects(assembly, springs, Rotation::from_scene);
-  DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  hold_free_motions(assembly, ContactGraph(assembly), springs, unknowns);
-  return unknowns;
-}
-
-/// Pulled at its right side, held at its left side; `dead`: its own weight beside that.
-BreakingScene pulled(std::string name, const Assembly& assembly, const ContactSprings& springs, bool dead,
-                     std::uint64_t seed) {
-  const std::vector<Support> supports = {{"left", 0.0, 0.0, std::nullopt}};
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0.3};
-  const auto b = static_cast<std::size_t>(scene.unknowns.per_disc);
-  RightHandSide live;
-  live.force.resize(assembly.size() * b);
-  for (const std::int32_t disc : group(assembly, "right").discs) live.force[disc * b] = 1;
-  scene.cases.push_back(live);
-  if (dead) {
-    RightHandSide weight;
-    weight.force.resize(assembly.size() * b);
-    for (std::size_t d = 0; d < assembly.size(); ++d) weight.force[d * b + 1] = -0.001;
-    scene.cases.push_back(weight);
-  }
-  scene.strengths = random_strengths(assembly.contacts.size(), 10, seed);
-  return scene;
-}
-
-/// A periodic cell under a mean strain.
-BreakingScene strained(std::string name, const Assembly& assembly, const ContactSprings& springs,
-                       const Tensor2& gradient, std::uint64_t seed) {
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, {}), {}, {}, 0.5};
-  scene.cases.resize(1);
-  scene.cases[0].gradient = gradient;
-  scene.strengths = random_strengths(assembly.contacts.size(), 10, seed);
-  return scene;
-}
-
-/// Moved at its right side.
-BreakingScene drawn(std::string name, const Assembly& assembly, const ContactSprings& springs, std::uint64_t seed) {
-  const std::vector<Support> supports = {{"left", 0.0, 0.0, 0.0}, {"right", 0.01, 0.0, std::nullopt}};
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0};
-  scene.cases.resize(1);
-  scene.cases[0].prescribed = scene.unknowns.prescribed;
-  scene.strengths = random_strengths(assembly.contacts.size(), 1e6, seed);
-  return scene;
-}
-
-ContactSprings spread_springs(std::size_t contacts, double ratio, double decades, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<SpringConstants> springs(contacts);
-  for (SpringConstants& k : springs) {
-    k.kN = 1e9 * std::pow(10, random.uniform(-decades, 0));
-    k.kT = ratio * k.kN;
-  }
-  return ContactSprings(std::move(springs));
-}
-
-std::vector<BreakingScene> breaking_scenes() {
-  const Assembly hexagonal = hexagonal_lattice({.columns = 20, .rows = 20, .radius = 0.01});
-  const Assembly cell = hexagonal_lattice({.columns = 18, .rows = 16, .radius = 0.01, .periodic = true});
-  const Assembly delaunay = delaunay_assembly({.discs = 500});
-  const ContactSprings uniform(SpringConstants{1e9, 4e8});
-  return {pulled("hexagonal", hexagonal, uniform, false, 1),
-          pulled("hexagonal with its weight", hexagonal, uniform, true, 2),
-          pulled("delaunay with its weight", delaunay, uniform, true, 3),
-          pulled("hexagonal, kT = 0", hexagonal, ContactSprings(SpringConstants{1e9, 0}), false, 4),
-          pulled("springs over six decades", delaunay, spread_springs(delaunay.contacts.size(), 0.5, 6, 1), false, 5),
-          strained("cell, sheared", cell, uniform, {1e-4, 2e-3, 0, 1e-4}, 6),
-          strained("cell, drawn", cell, uniform, {1e-3, 0, 0, 0}, 7),
-          drawn("delaunay, right side moved", delaunay, uniform, 8)};
-}
-
-/// Forces of the network with some contacts gone, factorized anew.
-std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, const ContactSprings& springs) {
-  StageTimes times;
-  SolverOptions options;
-  options.method = SolverMethod::multifrontal;
-  options.precision = FactorPrecision::double_precision;
-  const StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
-                               Mechanisms::hold, times);
-  const std::vector<Solution> solutions = solver.solve(scene.cases, times);
-  std::vector<std::vector<ContactForce>> forces(scene.cases.size());
-  for (std::size_t p = 0; p < scene.cases.size(); ++p) {
-    for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
-      forces[p].push_back(linear_spring_force(springs[c], solver.deformation(scene.cases[p], solutions[p].motion, c)));
-    }
-  }
-  return forces;
-}
 
 double largest_force(const std::vector<ContactForce>& forces) {
   double largest = 0;
@@ -181,15 +63,6 @@ Least first_to_break(const BreakingScene& scene, const std::vector<std::vector<C
     }
   }
   return least;
-}
-
-bool is_carried(const std::vector<HeldMechanism>& mechanisms) {
-  for (const HeldMechanism& m : mechanisms) {
-    for (const double r : m.reaction) {
-      if (std::abs(r) > 1e-6) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace

@@ -42,7 +42,9 @@ struct BreakableCounters {
   std::int64_t factorizations = 0;  ///< of a whole matrix, the first included
   std::int64_t updates = 0;         ///< contacts taken out of a factor
   std::int64_t mended = 0;          ///< factorizations because round-off of updates had grown
+  std::int64_t refinements = 0;     ///< of motions behind a factor that was updated
   double largest_residual = 0;      ///< relative, of all states so far
+  double swept = 1;                 ///< share of the factor that searches swept back through
 };
 
 /// The network after some breaks. Discs that can carry no force (load_bearing.hpp) have left it: they are held at 0 and

@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// Of motions: rounding that a spring takes for a force.
+/// Rounding of motions, relative, that a spring takes for a force.
 inline constexpr double rounded_motion = 1e-14;
 
 struct BreakEvent {

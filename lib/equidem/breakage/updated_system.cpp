@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "equidem/breakage/disjoint_ways.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
 #include "equidem/breakage/solved_states.hpp"
@@ -36,6 +37,9 @@ std::vector<ContactStrength> strengths_of(const BreakableNetwork& network) {
   return strengths;
 }
 
+/// Share of a force: lambda is to have nine digits, and this is an estimate.
+constexpr double allowed_force_error = 1e-10;
+
 class UpdatedSystem final : public SolvedStates {
  public:
   UpdatedSystem(BreakableNetwork network, std::vector<std::uint8_t> held)
@@ -45,13 +49,18 @@ class UpdatedSystem final : public SolvedStates {
         graph_(network_.assembly),
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
-        moved_(std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; })),
+        ways_(network_.assembly, graph_, broken_, left_),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
                       .memory_limit = network_.solver.memory_limit,
                       .force_moments = area_of_stress(network_.assembly) > 0}) {
     check_held_free();
-    energy_ = first_energy_ = energy();
+    for (const RightHandSide& given : network_.cases) {
+      moved_.push_back(std::ranges::all_of(given.force, [](double f) { return f == 0; }) ? 1 : 0);
+      energies_.push_back({.of_driving = energy_of_driving(given)});
+    }
+    sum_energies();
+    for (Energies& energies : energies_) energies.first = energies.now;
     measured(equilibrium_.estimated_residual());
   }
 
@@ -81,9 +90,12 @@ class UpdatedSystem final : public SolvedStates {
                                                     const LoadFactorSearch& search) override {
     if (alone_) return alone_->next_break(strengths, search);
     if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
-    CriticalContact found = equilibrium_.critical(search);
-    for (const HeldMechanism& mechanism : found.mechanisms) judge(mechanism);
-    found_late_ = found_late_ || !found.mechanisms.empty();
+    CriticalContact found = sought(search);
+    if (!alone_ && found.contact >= 0 && states_[0].carried && force_error(found, search) > allowed_force_error) {
+      static_cast<void>(equilibrium_.refine());
+      taken_ = false;
+      found = sought(search);
+    }
     judge_residual();
     return alone_ ? alone_->next_break(strengths, search) : next_break_of(found, search);
   }
@@ -109,7 +121,9 @@ class UpdatedSystem final : public SolvedStates {
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
     const std::int64_t more = alone_ ? alone_->counters().factorizations : 0;
-    return {c.factorizations + more, c.updates, c.mended + more, largest_residual()};
+    const auto searched = static_cast<double>(std::max<std::int64_t>(c.all_fronts, 1));
+    return {c.factorizations + more, c.updates,          c.mended + more,
+            c.refinements,           largest_residual(), static_cast<double>(c.fronts) / searched};
   }
   [[nodiscard]] std::string solver_name() const override {
     const std::string updated = "multifrontal Cholesky, updated";
@@ -120,7 +134,7 @@ class UpdatedSystem final : public SolvedStates {
   std::vector<std::int32_t> remove(std::size_t contact) {
     broken_[contact] = 1;
     taken_ = false;
-    bool loose = parts(contact) || found_late_;
+    bool loose = !ways_.around(contact) || found_late_;
     found_late_ = false;
     for (const HeldMechanism& mechanism : equilibrium_.remove(contact)) {
       loose = true;
@@ -129,25 +143,49 @@ class UpdatedSystem final : public SolvedStates {
     std::vector<std::int32_t> gone;
     if (loose) gone = leave();
     opened_ = equilibrium_.opened();
-    if (opened_ != nullptr) {
-      energy_ += (moved_ ? -0.5 : 0.5) * work_of(opened_->force[0], opened_->opening[0]);
-    } else {
-      energy_ = energy();
-    }
-    // Residuals are relative to forces at first. The softer the network is, the larger are the errors of motions that
-    // they leave, and where motions drive the fewer are the forces that are left.
-    constexpr double allowed = 1e-12, very_soft = 100;
-    const double softer = moved_ ? first_energy_ / energy_ : energy_ / first_energy_;
-    const bool soft = moved_ && !(energy_ * very_soft > first_energy_);
-    const double harm = moved_ ? softer * softer : softer;
-    if (states_[0].carried && (soft || !(harm * equilibrium_.estimated_residual() < allowed))) {
+    for (std::size_t p = 0; opened_ != nullptr && p < states_.size(); ++p)
+      energies_[p].now += (moved_[p] ? -0.5 : 0.5) * work_of(opened_->force[p], opened_->opening[p]);
+    if (opened_ == nullptr) sum_energies();
+    if (states_[0].carried && digits_lost()) {
       static_cast<void>(equilibrium_.refine());
       taken_ = false;
       opened_ = nullptr;
-      energy_ = energy();
+      sum_energies();
     }
     judge_residual();
     return gone;
+  }
+
+  CriticalContact sought(const LoadFactorSearch& search) {
+    CriticalContact found = equilibrium_.critical(search);
+    for (const HeldMechanism& mechanism : found.mechanisms) judge(mechanism);
+    found_late_ = found_late_ || !found.mechanisms.empty();
+    return found;
+  }
+
+  /// Where motions drive, forces and energies fall as the network gets softer, while residuals are relative to those of
+  /// the unbroken one: sums of changes lose as many digits, and products of two forces twice as many.
+  [[nodiscard]] bool digits_lost() const {
+    constexpr double allowed = 1e-12, very_soft = 100;
+    if (!moved_[0]) return false;
+    const double softer = energies_[0].first / energies_[0].now;
+    return !(softer < very_soft && softer * softer * equilibrium_.estimated_residual() < allowed);
+  }
+
+  /// The share of its force by which that of the critical contact may be wrong, and with it lambda. A residual r leaves
+  /// the motion K^-1 r of the energy r.K^-1 r/2, and no contact has more of it than all have together. r is rho |f|,
+  /// and taken as no more aligned with what is soft than the forces f that drive the motion are: r.K^-1 r <= rho²
+  /// f.K^-1 f. This is an estimate; rounding, which has no direction, is less aligned. f.K^-1 f is twice the energy
+  /// where loads act. Prescribed motions and mean strains drive the free components by forces whose f.K^-1 f is the
+  /// energy that the rest at its first place would take less that which is left.
+  [[nodiscard]] double force_error(const CriticalContact& found, const LoadFactorSearch& search) const {
+    const double lambda = search.from + search.direction * found.moment.t;
+    const ContactForce &live = found.force.live, &dead = found.force.dead;
+    const ContactForce at{dead.normal + lambda * live.normal, dead.tangential + lambda * live.tangential};
+    const double own = linear_spring_energy_of(network_.springs[static_cast<std::size_t>(found.contact)], at);
+    double driving = std::abs(lambda) * std::sqrt(energies_[0].now + energies_[0].of_driving);
+    if (energies_.size() > 1) driving += std::sqrt(energies_[1].now + energies_[1].of_driving);
+    return own > 0 ? equilibrium_.estimated_residual() * driving / std::sqrt(own) : 0;
   }
 
   /// Loads that move a part which nothing holds show as forces of the components that are held in place of it.
@@ -197,64 +235,28 @@ class UpdatedSystem final : public SolvedStates {
     }
   }
 
-  /// Whether discs may carry nothing any more without a contact that broke. No disc does that, and no part hangs by one
-  /// contact or disc, where the discs of the contact have more than two others each and are joined by two ways that
-  /// share nothing: the parts of the graph that no single disc divides are then the same. False only where that is
-  /// found.
-  [[nodiscard]] bool parts(std::size_t contact) {
-    const Contact& c = network_.assembly.contacts[contact];
-    for (const std::int32_t disc : {c.i, c.j}) {
-      std::int64_t others = 0;
-      for (const auto& edge : graph_.of(disc)) others += carries_on(edge) ? 1 : 0;
-      if (others <= 2) return true;
+  /// The elastic energy under each right-hand side.
+  void sum_energies() {
+    for (std::size_t p = 0; p < states_.size(); ++p) {
+      const std::span<const ContactForce> all = forces(p);
+      energies_[p].now = contact_sums<1>(all.size(), [&](std::size_t c, std::array<double, 1>& s) {
+        s[0] += linear_spring_energy_of(network_.springs[c], all[c]);
+      })[0];
     }
-    way_.clear();
-    return !(finds_way(c) && finds_way(c));
   }
 
-  [[nodiscard]] bool carries_on(const ContactGraph::Incidence& edge) const {
-    return broken_[edge.contact] == 0 && left_[edge.other] == 0;
-  }
-
-  /// A short way between the ends of a contact over contacts and discs that no earlier way takes; in a periodic cell to
-  /// the image of j that it joins to i.
-  bool finds_way(const Contact& gone) {
-    constexpr std::size_t most_discs = 300;
-    struct Step {
-      std::int32_t disc, before, contact, shift_x, shift_y;
-    };
-    const std::int32_t to = gone.j;
-    std::vector<Step> reached = {{gone.i, -1, -1, 0, 0}};
-    const auto taken = [&](std::int32_t disc) {
-      return std::any_of(reached.begin(), reached.end(), [&](const Step& step) { return step.disc == disc; }) ||
-             std::any_of(way_.begin(), way_.end(), [&](const auto& on) { return on.first == disc && disc != to; });
-    };
-    for (std::size_t next = 0; next < reached.size() && reached.size() < most_discs; ++next) {
-      for (const auto& edge : graph_.of(reached[next].disc)) {
-        const bool used =
-            std::any_of(way_.begin(), way_.end(), [&](const auto& on) { return on.second == edge.contact; });
-        if (!carries_on(edge) || used || taken(edge.other)) continue;
-        const Contact& contact = network_.assembly.contacts[edge.contact];
-        const std::int32_t sign = contact.i == reached[next].disc ? 1 : -1;
-        const std::int32_t x = reached[next].shift_x + sign * contact.shift_x;
-        const std::int32_t y = reached[next].shift_y + sign * contact.shift_y;
-        if (edge.other == to && (x != gone.shift_x || y != gone.shift_y)) continue;
-        reached.push_back({edge.other, static_cast<std::int32_t>(next), edge.contact, x, y});
-        if (edge.other != to) continue;
-        for (std::int32_t k = static_cast<std::int32_t>(reached.size()) - 1; reached[k].before >= 0;
-             k = reached[k].before)
-          way_.emplace_back(reached[k].disc, reached[k].contact);
-        return true;
-      }
+  /// The energy of the contacts where prescribed motions and a mean strain act and no free disc moves, N.
+  [[nodiscard]] double energy_of_driving(const RightHandSide& given) const {
+    if (given.prescribed.empty() && !given.gradient) return 0;
+    PreciseMotion motion(unknowns_.held.size());
+    for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
+      if (unknowns_.held[k] != DegreesOfFreedom::free) motion.high[k] = given.prescribed[k];
     }
-    return false;
-  }
-
-  /// The elastic energy under the first right-hand side, N.
-  [[nodiscard]] double energy() const {
-    const std::span<const ContactForce> all = forces(0);
-    return contact_sums<1>(all.size(), [&](std::size_t c, std::array<double, 1>& sum) {
-      sum[0] += linear_spring_energy_of(network_.springs[c], all[c]);
+    const SpringNetwork network{network_.assembly, graph_, network_.springs, unknowns_};
+    return contact_sums<1>(network_.assembly.contacts.size(), [&](std::size_t c, std::array<double, 1>& sum) {
+      sum[0] += linear_spring_energy_of(
+          network_.springs[c],
+          linear_spring_force(network_.springs[c], deformation_of(network, motion, given.gradient, c)));
     })[0];
   }
 
@@ -331,14 +333,18 @@ class UpdatedSystem final : public SolvedStates {
   DegreesOfFreedom unknowns_;
   ContactGraph graph_;
   std::vector<std::uint8_t> held_, broken_;
-  bool moved_;  // by imposed motions or a mean strain alone
+  DisjointWays ways_;
+  std::vector<std::uint8_t> moved_;  // per right-hand side, 1: by imposed motions or a mean strain alone
   mutable UpdatedEquilibrium equilibrium_;
   mutable bool taken_ = false;                // whether states_ are those of the network as it is
   std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
   const OpenedContact* opened_ = nullptr;
   bool found_late_ = false;  // mechanisms by the last search
-  double energy_ = 0, first_energy_ = 0;
-  std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
+  struct Energies {
+    double now = 0, first = 0;
+    double of_driving = 0;  // energy_of_driving
+  };
+  std::vector<Energies> energies_;  // N, per right-hand side
 };
 
 }  // namespace

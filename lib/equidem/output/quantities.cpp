@@ -182,7 +182,7 @@ ScalarNumber number_of_column(std::string_view column) {
   ScalarNumber number;
   std::size_t longest = 0;
   for (const std::string& symbol : unit_symbols()) {
-    const std::string end = "_" + unit_in_names(symbol);
+    const std::string end = fmt::format("_{}", unit_in_names(symbol));
     if (!column.ends_with(end) || end.size() <= longest) continue;
     longest = end.size();
     number.unit = symbol;

@@ -28,6 +28,7 @@ struct Request {
   std::vector<int> threads = {1, 2};
   int breaks = 5000;
   int rounds = 3;
+  int part = 0;  // breaks of one line of the table of parts; 0: no such table
   double weibull_modulus = 2;
   double notch = 0.2;
 };
@@ -131,15 +132,40 @@ Times follow(const Scene& scene, int breaks, bool skip) {
   return times;
 }
 
-/// Seconds for a break with all that quasistatic tells of it: load, motion, stress, energies, what comes loose.
-double follow_path(const Scene& scene, int breaks) {
+/// A part of a path, with all that quasistatic tells of a break: load, motion, stress, energies, what comes loose.
+struct PathPart {
+  std::int64_t first = 0, end = 0;  // breaks
+  double seconds = 0;
+  BreakableCounters counters;  // of this part
+  std::int64_t loosened = 0;   // discs
+  double softness = 1;         // motion over load behind it, over that at first
+};
+
+std::vector<PathPart> follow_path(const Scene& scene, int breaks, int part) {
   const BreakageScene all{scene.assembly, scene.springs, scene.strengths, scene.path};
   const auto system = make_breakable_system(breakable_network(all, scene.effects, scene.supports));
   BreakageRun run(all, *system);
+  const double stiff = run.response().motion[1];
+  std::vector<PathPart> parts;
+  BreakableCounters before = system->counters();
   Clock watch;
-  while (std::ssize(run.events()) < breaks && run.advance()) {
+  bool more = true;
+  while (more && std::ssize(run.events()) < breaks) {
+    const std::int64_t first = std::ssize(run.events()), end = std::min<std::int64_t>(first + part, breaks);
+    watch.lap();
+    while (std::ssize(run.events()) < end && more) more = run.advance();
+    PathPart now;
+    now.first = first, now.end = std::ssize(run.events()), now.seconds = watch.lap();
+    const BreakableCounters counters = system->counters();
+    now.counters.refinements = counters.refinements - before.refinements;
+    now.counters.factorizations = counters.factorizations - before.factorizations;
+    before = counters;
+    for (std::int64_t k = first; k < now.end; ++k)
+      now.loosened += std::ssize(run.events()[static_cast<std::size_t>(k)].loosened);
+    now.softness = run.response().motion[1] / stiff;
+    if (now.end > first) parts.push_back(now);
   }
-  return watch.lap() / static_cast<double>(run.events().size());
+  return parts;
 }
 
 /// Assemble, factorize in the order at hand, solve once, evaluate all contact forces: what a break costs without
@@ -160,12 +186,16 @@ double factorize_anew(const Scene& scene, const ContactGraph& graph, std::shared
   return watch.lap();
 }
 
+std::shared_ptr<const SymbolicFactor> order_of(const Scene& scene, const ContactGraph& graph) {
+  return std::make_shared<const SymbolicFactor>(
+      analyze(dissect(scene.assembly, graph), graph, scene.unknowns.per_disc));
+}
+
 void compare(const Request& request, const std::string& kind, double discs, int threads, TextTable& table) {
   set_thread_count(threads);
   const Scene scene = build(request, kind, discs);
   const ContactGraph graph(scene.assembly);
-  const auto symbolic =
-      std::make_shared<const SymbolicFactor>(analyze(dissect(scene.assembly, graph), graph, scene.unknowns.per_disc));
+  const auto symbolic = order_of(scene, graph);
   static_cast<void>(factorize_anew(scene, graph, symbolic));  // the first use of memory is slow
   Seconds anew, lazy, whole;
   Times times, all;
@@ -173,7 +203,8 @@ void compare(const Request& request, const std::string& kind, double discs, int 
     anew.push_back(factorize_anew(scene, graph, symbolic));
     times = follow(scene, request.breaks, true);
     lazy.push_back((times.remove + times.search) / times.breaks);
-    whole.push_back(follow_path(scene, request.breaks));
+    const PathPart path = follow_path(scene, request.breaks, request.breaks).front();
+    whole.push_back(path.seconds / static_cast<double>(path.end));
   }
   const int some = std::min(request.breaks, 200);
   all = follow(scene, some, false);
@@ -190,6 +221,48 @@ void compare(const Request& request, const std::string& kind, double discs, int 
       times.counters.largest_residual, times.counters.most_over_claimed, times.bytes_over_factor);
 }
 
+/// A path part by part, beside factorizing anew before it and behind it.
+void follow_in_parts(const Request& request, const std::string& kind, double discs, int threads, TextTable& table) {
+  set_thread_count(threads);
+  const Scene scene = build(request, kind, discs);
+  const ContactGraph graph(scene.assembly);
+  const auto symbolic = order_of(scene, graph);
+  static_cast<void>(factorize_anew(scene, graph, symbolic));  // the first use of memory is slow
+  Seconds anew{factorize_anew(scene, graph, symbolic)};
+  std::vector<PathPart> parts = follow_path(scene, request.breaks, request.part);
+  anew.push_back(factorize_anew(scene, graph, symbolic));
+  PathPart whole = parts.front();
+  whole.counters = {}, whole.seconds = 0, whole.loosened = 0;
+  for (const PathPart& part : parts) {
+    whole.end = part.end, whole.seconds += part.seconds, whole.softness = part.softness;
+    whole.loosened += part.loosened;
+    whole.counters.refinements += part.counters.refinements;
+    whole.counters.factorizations += part.counters.factorizations;
+  }
+  parts.push_back(whole);
+  for (const PathPart& part : parts) {
+    const double each = part.seconds / static_cast<double>(part.end - part.first);
+    table.add("{} & {} & {} & {} .. {} & {:.3g} & {:.3g} & {:.0f} & {} & {} & {} & {:.4g}", kind, scene.assembly.size(),
+              threads, part.first + 1, part.end, 1e3 * each, 1e3 * range_of(anew).median, range_of(anew).median / each,
+              part.counters.refinements, part.counters.factorizations, part.loosened, part.softness);
+  }
+}
+
+void report_parts(const Request& request, Report& report) {
+  TextTable table(
+      "assembly & discs & threads & breaks & a break, ms & anew, ms & anew over a break & refined & factorized & "
+      "loosened & softness");
+  for (const std::string& kind : request.kinds)
+    for (const double count : request.discs)
+      for (const int threads : request.threads) follow_in_parts(request, kind, count, threads, table);
+  report.add(
+      "\nPaths as quasistatic follows them, part by part, with the whole path in the last line of each. Anew: before "
+      "and behind the path. Refined, factorized: times that motions were, and that the factor was made anew, in the "
+      "part; loosened: discs that left the network; softness: motion over load behind the part, over that of the "
+      "unbroken sample.\n\n" +
+      table.markdown());
+}
+
 }  // namespace
 }  // namespace equidem::bench
 
@@ -204,11 +277,14 @@ int main(int argc, char** argv) {
         app.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
         app.add_option("--breaks", request.breaks, "of each assembly")->check(CLI::PositiveNumber);
         app.add_option("--rounds", request.rounds, "of both, one after the other")->check(CLI::PositiveNumber);
+        app.add_option("--part", request.part, "breaks of a line of the table of parts, which is made in place of all")
+            ->check(CLI::PositiveNumber);
         app.add_option("--weibull-modulus", request.weibull_modulus, "of the strengths")->check(CLI::PositiveNumber);
         app.add_option("--notch", request.notch, "length over the width")->check(CLI::Range(0.0, 0.9));
       },
       [&](Report& report) {
         report.begin("Breaking contacts");
+        if (request.part > 0) return report_parts(request, report);
         equidem::TextTable table(
             "assembly & discs & threads & breaks & a break, ms & change & search & of a path & without skipping & anew "
             "& "

@@ -43,20 +43,24 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
 
 /// Whether the contacts also carry what the loads and the motions of supports of the case cause: where prestress is
 /// asked for.
+/// \throws Error (bad_input) where there are several load cases: stability is that of one state
 bool acts_on_rest(const Problem& problem) {
-  if (problem.resolved.prestress != PrestressChoice::on || problem.load_cases.empty()) return false;
+  if (problem.resolved.prestress != PrestressChoice::on) return false;
   const auto moves = [](const Support& support) {
     return support.ux.value_or(0) != 0 || support.uy.value_or(0) != 0 || support.rotation.value_or(0) != 0;
   };
-  return !problem.load_cases.front().loads.empty() || std::ranges::any_of(problem.supports, moves);
+  const auto& load_cases = problem.load_cases;
+  const bool acts = std::ranges::any_of(load_cases, [](const NamedLoads& each) { return !each.loads.empty(); }) ||
+                    (!load_cases.empty() && std::ranges::any_of(problem.supports, moves));
+  if (acts && load_cases.size() > 1)
+    bad_input_at(problem.resolved.where("load"), "there are several load cases, and prestress is asked for",
+                 "stability is that of one state", "Keep the loads of one");
+  return acts;
 }
 
 /// To first order, as in Euler's load, that is at the places of before the loads.
 Problem under_loads(Problem problem) {
   if (!acts_on_rest(problem)) return problem;
-  if (problem.load_cases.size() > 1)
-    bad_input_at(problem.resolved.where("load"), "there are several load cases, and prestress is asked for",
-                 "stability is that of one state", "Keep the loads of one");
   Assembly& assembly = problem.assembly;
   const Equilibrium loaded = solve_equilibrium(assembly, problem.springs.springs, problem.supports,
                                                problem.load_cases.front().loads, problem.options());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -60,7 +61,8 @@ StrengthSample::StrengthSample(Assembly assembly, ContactSprings springs, const 
   if (assembly_.periodic())
     bad_input("a periodic cell has no ends to pull at or press", "a strength is that of a free sample",
               "Set periodic = false; a mean strain breaks a cell by quasistatic");
-  const auto [low, high] = ends_of(options_.axis);
+  const Ends ends = ends_of(options_.axis);
+  const std::string low = ends.low, high = ends.high;
   const DiscGroup &stays = group(assembly_, low), &moves = group(assembly_, high);
   for (const std::int32_t disc : stays.discs) {
     if (std::ranges::binary_search(moves.discs, disc))

@@ -82,7 +82,7 @@ class StrengthSample {
 };
 
 /// Mode I toughness of a plate of width W with a notch of length 2a in its middle, which bears the stress sigma, Pa
-/// sqrt(m): K = sigma sqrt(pi a sec(pi a/W)), with the secant for the finite width.
+/// sqrt(m): K = sigma sqrt(pi a sec(pi a/W)) (Feddersen 1966), with the secant for the finite width.
 double notch_toughness(double stress, double notch, double width);
 inline constexpr double longest_notch = 0.7;  ///< of the width: beyond, the ends of the notch are near the sides
 

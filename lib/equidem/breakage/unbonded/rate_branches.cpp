@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/breakage/unbonded/complementarity.hpp"
 #include "equidem/breakage/unbonded/dense_lu.hpp"
 #include "equidem/breakage/unbonded/limit_compliance.hpp"
 

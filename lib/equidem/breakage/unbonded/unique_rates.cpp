@@ -77,7 +77,7 @@ bool proved_unique(const RateProblem& problem, std::span<const double> complianc
     double alpha;     // of a slip whose theta is not known, else 0
   };
   std::vector<Unknown> unknowns;
-  // What is loose is held by a share of the stiffest spring of the network (tangent_solver.hpp).
+  // Loose parts are held by a share of the stiffest spring of the network (tangent_solver.hpp).
   double stiffest = 0;
   for (const UnbondedLaw& law : problem.laws) stiffest = std::max({stiffest, law.k.kN, law.k.kT});
   const double least = least_share * stiffest;

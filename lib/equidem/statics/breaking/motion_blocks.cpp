@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "equidem/contact/linear_spring.hpp"
 
@@ -41,10 +42,18 @@ double quadratic(const std::array<double, 10>& a, const std::array<double, 4>& x
 
 MotionBlocks::MotionBlocks(const SpringNetwork& network, const SymbolicFactor& symbolic)
     : symbolic_(symbolic), rotation_scale_(network.unknowns.rotation_scale) {
-  for (const std::int32_t disc : symbolic.tree.order) centres_.push_back(network.assembly.centres[disc]);
+  Vec2 low = network.assembly.centres.front(), high = low;
+  for (const std::int32_t disc : symbolic.tree.order) {
+    const Vec2 at = network.assembly.centres[disc];
+    centres_.push_back(at);
+    low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y)};
+  }
+  extent_ = norm(high - low);
   divide();
   sort_contacts(network);
   add_energies(network);
+  find_rigid_motions(network);
   for (MotionBlock& block : blocks_) describe_boundary(network, block);
 }
 
@@ -119,6 +128,33 @@ void MotionBlocks::add_energies(const SpringNetwork& network) {
   }
 }
 
+void MotionBlocks::find_rigid_motions(const SpringNetwork& network) {
+  const auto& [assembly, graph, springs, unknowns] = network;
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  const double round_off = 2 * std::numeric_limits<double>::epsilon() * extent_;
+  const auto is_held = [&](std::int32_t disc) {
+    bool held = false;
+    for (std::size_t r = 0; r < b; ++r) held = held || unknowns.held[disc * b + r] != DegreesOfFreedom::free;
+    return held;
+  };
+  for (MotionBlock& block : blocks_) {  // children before their parents
+    const auto lower = [&](MotionBlock::Rigid rigid) { block.rigid = std::min(block.rigid, rigid); };
+    for (const std::int32_t child : block.children) lower(blocks_[child].rigid);
+    for (std::int32_t p = symbolic_.tree.nodes[block.first].begin; p < block.interior_end; ++p) {
+      if (is_held(symbolic_.tree.order[p])) lower(MotionBlock::Rigid::none);
+    }
+    for (std::int64_t k = block.contacts_begin; k < block.contacts_end; ++k) {
+      const auto number = static_cast<std::size_t>(contacts_[k]);
+      const Contact& contact = assembly.contacts[number];
+      if (is_held(contact.i) || is_held(contact.j)) lower(MotionBlock::Rigid::none);
+      const AffineGradient g = affine_gradient(frame_of(assembly, number), assembly.branch(contact), b == 3);
+      const bool slips = springs[number].kT != 0 && std::abs(g.tangential[3]) > round_off;
+      if (contact.shift_x != 0 || contact.shift_y != 0 || std::abs(g.normal[3]) > round_off || slips)
+        lower(MotionBlock::Rigid::translation);
+    }
+  }
+}
+
 void MotionBlocks::describe_boundary(const SpringNetwork& network, MotionBlock& block) {
   const auto& [assembly, graph, springs, unknowns] = network;
   const auto& rows = symbolic_.rows[block.root];
@@ -158,36 +194,63 @@ void MotionBlocks::describe_boundary(const SpringNetwork& network, MotionBlock& 
 
 void MotionBlocks::hold(std::int64_t component, double stiffness) {
   const std::int64_t b = symbolic_.block;
-  holds_.push_back({symbolic_.position[component / b], static_cast<int>(component % b), stiffness});
+  const std::int32_t position = symbolic_.position[component / b];
+  holds_.push_back({position, static_cast<int>(component % b), stiffness});
+  for (MotionBlock& block : blocks_) {
+    if (position >= block.interior_begin && position < block.interior_end) block.rigid = MotionBlock::Rigid::none;
+  }
+}
+
+MotionBlocks::Homogeneous MotionBlocks::translation_of(const MotionBlock& block, std::span<const double> motion) const {
+  const std::size_t count = symbolic_.rows[block.root].size(), b = static_cast<std::size_t>(symbolic_.block);
+  Homogeneous fit;
+  for (std::size_t k = 0; k < count; ++k) fit.translation += {motion[k * b], motion[k * b + 1]};
+  fit.translation = fit.translation / static_cast<double>(std::max<std::size_t>(count, 1));
+  return fit;
+}
+
+void MotionBlocks::add_gradient(const MotionBlock& block, std::span<const double> motion, Homogeneous& to) const {
+  const auto& rows = symbolic_.rows[block.root];
+  const auto b = static_cast<std::size_t>(symbolic_.block);
+  double sxx = 0, sxy = 0, syx = 0, syy = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Vec2 x = centres_[rows[k]] - block.centre;
+    sxx += motion[k * b] * x.x, sxy += motion[k * b] * x.y;
+    syx += motion[k * b + 1] * x.x, syy += motion[k * b + 1] * x.y;
+  }
+  const auto& m = block.moments;
+  to.xx = sxx * m[0] + sxy * m[1], to.xy = sxx * m[1] + sxy * m[2];
+  to.yx = syx * m[0] + syy * m[1], to.yy = syx * m[1] + syy * m[2];
+}
+
+RigidBlockMotion MotionBlocks::rigid_motion(std::size_t number, std::span<const double> motion) const {
+  const MotionBlock& block = blocks_[number];
+  if (block.rigid == MotionBlock::Rigid::none) return {};
+  Homogeneous fit = translation_of(block, motion);
+  if (block.rigid == MotionBlock::Rigid::any) add_gradient(block, motion, fit);
+  return {fit.translation, 0.5 * (fit.yx - fit.xy)};
+}
+
+std::array<double, 3> MotionBlocks::motion_at(const RigidBlockMotion& rigid, std::size_t block,
+                                              std::int32_t place) const {
+  const Vec2 x = centres_[place] - blocks_[block].centre;
+  return {rigid.translation.x - rigid.spin * x.y, rigid.translation.y + rigid.spin * x.x, rigid.spin * rotation_scale_};
 }
 
 double MotionBlocks::force_bound(std::size_t number, std::span<const double> motion) const {
   const MotionBlock& block = blocks_[number];
   const auto& rows = symbolic_.rows[block.root];
   const auto b = static_cast<std::size_t>(symbolic_.block);
-  Vec2 translation;
-  double gxx = 0, gxy = 0, gyx = 0, gyy = 0;  // of the displacement
-  if (block.fit != MotionBlock::Fit::none) {
-    for (std::size_t k = 0; k < rows.size(); ++k) translation += {motion[k * b], motion[k * b + 1]};
-    translation = translation / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
-  }
-  if (block.fit == MotionBlock::Fit::affine) {
-    double sxx = 0, sxy = 0, syx = 0, syy = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Vec2 x = centres_[rows[k]] - block.centre;
-      sxx += motion[k * b] * x.x, sxy += motion[k * b] * x.y;
-      syx += motion[k * b + 1] * x.x, syy += motion[k * b + 1] * x.y;
-    }
-    const auto& m = block.moments;
-    gxx = sxx * m[0] + sxy * m[1], gxy = sxx * m[1] + sxy * m[2];
-    gyx = syx * m[0] + syy * m[1], gyy = syx * m[1] + syy * m[2];
-  }
-  const double shear = 0.5 * (gxy + gyx), spin = 0.5 * (gyx - gxy), turn = spin * rotation_scale_;
+  Homogeneous fit;
+  if (block.fit != MotionBlock::Fit::none) fit = translation_of(block, motion);
+  if (block.fit == MotionBlock::Fit::affine) add_gradient(block, motion, fit);
+  const double shear = 0.5 * (fit.xy + fit.yx), spin = 0.5 * (fit.yx - fit.xy), turn = spin * rotation_scale_;
   const auto trial = [&](std::int32_t p) {
     const Vec2 x = centres_[p] - block.centre;
-    return std::array<double, 3>{translation.x + gxx * x.x + gxy * x.y, translation.y + gyx * x.x + gyy * x.y, turn};
+    return std::array<double, 3>{fit.translation.x + fit.xx * x.x + fit.xy * x.y,
+                                 fit.translation.y + fit.yx * x.x + fit.yy * x.y, turn};
   };
-  double homogeneous = quadratic(block.affine, {gxx, gyy, shear, spin});
+  double homogeneous = quadratic(block.affine, {fit.xx, fit.yy, shear, spin});
   for (const Hold& hold : holds_) {
     if (hold.position < block.interior_begin || hold.position >= block.interior_end) continue;
     homogeneous += hold.stiffness * squared(trial(hold.position)[hold.component]);

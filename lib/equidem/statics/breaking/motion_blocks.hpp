@@ -36,6 +36,19 @@ struct MotionBlock {
   std::array<double, 3> moments{};  ///< inverse of sum x x^T over the boundary, 1/m²: xx, xy, yy
   /// x.A x with x = (e_xx, e_yy, e_xy, spin), N: twice the energy of a homogeneous motion, lower triangle by rows.
   std::array<double, 10> affine{};
+
+  /// Rigid motions of the interior with its boundary that no contact resists.
+  enum class Rigid : std::uint8_t {
+    none,         ///< a component of a disc, or of one that it touches, is held
+    translation,  ///< it meets images of itself, or levers do not add up to branches
+    any
+  } rigid = Rigid::any;
+};
+
+/// A translation, m, and a rotation, rad, about MotionBlock::centre.
+struct RigidBlockMotion {
+  Vec2 translation;
+  double spin = 0;
 };
 
 class MotionBlocks {
@@ -49,6 +62,14 @@ class MotionBlocks {
   [[nodiscard]] std::size_t boundaries() const { return resistance_.size(); }
   /// Contacts in the order of their blocks.
   [[nodiscard]] std::span<const std::int32_t> contacts() const { return contacts_; }
+
+  /// A rigid motion near that of a boundary (its discs one after another) that no contact of the interior resists.
+  [[nodiscard]] RigidBlockMotion rigid_motion(std::size_t block, std::span<const double> motion) const;
+  /// Of the disc at a place of the order of elimination, m.
+  [[nodiscard]] std::array<double, 3> motion_at(const RigidBlockMotion& rigid, std::size_t block,
+                                                std::int32_t place) const;
+  /// Of the sample, m: larger than the distance of any two centres.
+  [[nodiscard]] double extent() const { return extent_; }
 
   /// A spring that holds one component, beside the contacts.
   void hold(std::int64_t component, double stiffness);
@@ -67,13 +88,21 @@ class MotionBlocks {
     double stiffness;
   };
 
+  /// A homogeneous motion, by least squares: its gradient is 0 where the boundary does not tell one.
+  struct Homogeneous {
+    Vec2 translation;
+    double xx = 0, xy = 0, yx = 0, yy = 0;
+  };
+  [[nodiscard]] Homogeneous translation_of(const MotionBlock& block, std::span<const double> motion) const;
+  void add_gradient(const MotionBlock& block, std::span<const double> motion, Homogeneous& to) const;
   void divide();
   void sort_contacts(const SpringNetwork& network);
   void add_energies(const SpringNetwork& network);
+  void find_rigid_motions(const SpringNetwork& network);
   void describe_boundary(const SpringNetwork& network, MotionBlock& block);
 
   const SymbolicFactor& symbolic_;
-  double rotation_scale_;
+  double rotation_scale_, extent_ = 0;
   std::vector<Vec2> centres_;  // m, in the order of elimination
   std::vector<MotionBlock> blocks_;
   std::vector<std::int32_t> block_of_front_;

@@ -206,7 +206,8 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
     }
   }
   measured = after;
-  // What rounding may leave is known for all networks; a network leaves less, and how much less is seen here.
+  // Rounding has a bound for all networks (UpdatedState::rounding). A network leaves less: the factor `caution` on the
+  // bound is an estimate, learned from the residuals that refinements find, and not below `least`.
   constexpr double margin = 4, least = 0.125, noise = 1e-14;
   if (found_over_claimed > 1) {
     caution *= 2 * found_over_claimed;
@@ -263,13 +264,25 @@ std::vector<HeldMechanism> UpdatedEquilibrium::change(std::size_t contact, Sprin
 
 CriticalContact UpdatedEquilibrium::critical(const LoadFactorSearch& search) {
   Implementation& all = *implementation_;
-  CriticalContact found{all.state.critical(search)};
+  const auto sought = [&] {
+    CriticalContact found{all.state.critical(search)};
+    if (found.contact < 0) return found;
+    const auto number = static_cast<std::size_t>(found.contact);
+    found.force.live = all.state.force_of(number, 0);
+    if (all.state.cases.size() > 1) found.force.dead = all.state.force_of(number, 1);
+    return found;
+  };
+  CriticalContact found = sought();
   if (!all.carried || !(all.claimed() > all.state.options.watched_residual) || all.state.is_refined()) return found;
   std::vector<HeldMechanism> mechanisms;
   all.refine(0, &mechanisms);
-  found = all.carried ? CriticalContact{all.state.critical(search)} : CriticalContact{};
+  found = all.carried ? sought() : CriticalContact{};
   found.mechanisms = std::move(mechanisms);
   return found;
+}
+
+std::vector<double> UpdatedEquilibrium::least_keys(const LoadFactorSearch& search) const {
+  return implementation_->state.least_keys(search);
 }
 
 std::vector<ContactForce> UpdatedEquilibrium::forces(std::size_t of_case) {

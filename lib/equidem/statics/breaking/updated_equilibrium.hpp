@@ -47,6 +47,7 @@ struct UpdateCounters {
   std::int64_t refinements = 0;     ///< times that the residual was evaluated and the motion refined
   std::int64_t held = 0;            ///< components held because a removal left a mechanism
   std::int64_t fronts = 0;          ///< swept back through, by all searches
+  std::int64_t all_fronts = 0;      ///< that there are, at every search
   double largest_residual = 0;      ///< relative, claimed of the states behind changes
   double most_over_claimed = 0;     ///< residual found when motions were refined, over that claimed before; the largest
 };
@@ -63,6 +64,7 @@ struct HeldMechanism {
 
 /// The contact that breaks next.
 struct CriticalContact : FirstToBreak {
+  ProportionalForce force{};  ///< of the contact, N/m
   /// Found where motions had to be refined, and the factor made anew, before the contact could be told.
   std::vector<HeldMechanism> mechanisms{};
 };
@@ -90,6 +92,10 @@ class UpdatedEquilibrium {
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
   /// Contacts that were removed do not break. Where lambda goes back towards 0, in a time proportional to the contacts.
   [[nodiscard]] CriticalContact critical(const LoadFactorSearch& search = {});
+
+  /// Per contact, by the bounds with which the last search, of that kind, left parts of the network as they were: no
+  /// key (BreakingMoment) of it is less.
+  [[nodiscard]] std::vector<double> least_keys(const LoadFactorSearch& search = {}) const;
 
   /// The contact that the last call of remove() took out, where the state has followed from that before it alone: null
   /// where motions were refined with it.

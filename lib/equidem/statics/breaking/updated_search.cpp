@@ -85,6 +85,7 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
         candidates.emplace(states_[child].at_worst.least_key(search), child);
     }
   }
+  counters.all_fronts += static_cast<std::int64_t>(symbolic_->fronts());
   const FirstToBreak first = first_of_open(search, keys.second);
   for (auto k = open_.rbegin(); k != open_.rend(); ++k) {  // children first
     BlockState& state = states_[*k];
@@ -95,6 +96,24 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
   }
   for (const std::int32_t k : open_) states_[k].open = false;
   return first;
+}
+
+std::vector<double> UpdatedState::least_keys(const LoadFactorSearch& search) const {
+  std::vector<double> keys(contacts_.size()), of_subtree(states_.size());
+  std::vector<std::uint8_t> open(states_.size(), 0);
+  for (const std::int32_t k : open_) open[k] = 1;
+  for (std::size_t k = states_.size(); k-- > 0;) {  // parents before their children
+    const MotionBlock& block = (*blocks_)[k];
+    const bool below_open = block.parent >= 0 && open[block.parent] != 0;
+    if (open[k] == 0) {
+      of_subtree[k] = block.parent < 0 ? states_[k].subtree.least_key(search)
+                      : below_open     ? states_[k].at_worst.least_key(search)
+                                       : of_subtree[block.parent];
+    }
+    for (std::int64_t c = block.contacts_begin; c < block.contacts_end; ++c)
+      keys[blocks_->contacts()[c]] = open[k] != 0 ? moment_of(c, search).key() : of_subtree[k];
+  }
+  return keys;
 }
 
 FirstToBreak UpdatedState::first_of_open(const LoadFactorSearch& search, double limit) const {

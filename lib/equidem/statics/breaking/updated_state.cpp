@@ -131,12 +131,17 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const std::size_t n = components();
   LargeVector<double>& x = scratch_[worker];
+  // Rigid motions that nothing resists need no solution, and leave no rounding of one: x is what is beside them.
+  std::array<RigidBlockMotion, most_right_sides> rigid{};
+  for (std::size_t p = 0; p < cases.size(); ++p)
+    rigid[p] = blocks_->rigid_motion(number, std::span(motion).subspan(p * rows.size() * b, rows.size() * b));
   for (std::size_t p = 0; p < cases.size(); ++p) {
     double* last = boundary_.data() + (p * blocks_->boundaries() + block.boundary) * b;
     for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::array<double, 3> rigidly = blocks_->motion_at(rigid[p], number, rows[k]);
       for (std::size_t r = 0; r < b; ++r) {
         const std::size_t component = rows[k] * b + r;
-        x[p * n + component] = motion[(p * rows.size() + k) * b + r];
+        x[p * n + component] = motion[(p * rows.size() + k) * b + r] - rigidly[r];
         last[k * b + r] = moved_[p * n + component];
       }
     }
@@ -153,15 +158,18 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
     }
     factor->backward(t, {x.data(), n, cases.size()});
   }
-  const std::size_t begin = nodes[block.first].begin * b, end = nodes[block.root].end * b;
   const std::span<const double> stiffness = factor->stiffness_in_order();
   for (std::size_t p = 0; p < cases.size(); ++p) {
-    for (std::size_t k = begin; k < end; ++k) {
-      double& moved = moved_[p * n + k];
-      moved += x[p * n + k];
-      const double by = stiffness[k] * x[p * n + k], in_all = stiffness[k] * moved;
-      done.moved[p] += by * by;
-      done.accumulated[p] += in_all * in_all;
+    const double turned = rigid[p].spin * blocks_->extent();
+    for (std::int32_t place = nodes[block.first].begin; place < nodes[block.root].end; ++place) {
+      const std::array<double, 3> rigidly = blocks_->motion_at(rigid[p], number, place);
+      for (std::size_t r = 0; r < b; ++r) {
+        const std::size_t k = place * b + r;
+        double& moved = moved_[p * n + k];
+        moved += x[p * n + k] + rigidly[r];
+        done.moved[p] += squared(stiffness[k] * x[p * n + k]);
+        done.accumulated[p] += squared(stiffness[k]) * (squared(moved) + squared(turned));
+      }
     }
   }
   const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
@@ -231,9 +239,10 @@ void UpdatedState::bring_all_up_to_date() {
 
 // A solution with L leaves a residual of some units of round-off of sqrt(K_ii K_jj) |x_j|, summed over j (Higham,
 // Accuracy and Stability of Numerical Algorithms, theorem 10.4), and each addition to a motion one of half a unit of
-// K_ii |u_i|. Roundings are independent of each other, so that squares add up; K is the first one, of which errors of
-// the factor keep the size. The factors are about twice the largest that sequences of lattices and random networks
-// needed to their last contact.
+// K_ii |u_i|. A rotation leaves as much where
+// levers and branches differ by round-off of the places of discs. Roundings are independent of each other, so that
+// squares add up; K is the first one, of which errors of the factor keep the size. The factors are about twice the
+// largest that sequences of lattices and random networks needed to their last contact.
 double UpdatedState::rounding() const {
   constexpr double of_solution = 20, of_sum = 0.6;
   double largest = 0;

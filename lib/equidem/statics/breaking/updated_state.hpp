@@ -47,6 +47,8 @@ class UpdatedState {
   /// True where motions were refined after the last visit that found any.
   [[nodiscard]] bool is_refined() const { return visits_.fronts == 0; }
   [[nodiscard]] FirstToBreak critical(const LoadFactorSearch& search);
+  /// Behind critical(), per contact: its key where its block was brought up to date, else the bound of its subtree.
+  [[nodiscard]] std::vector<double> least_keys(const LoadFactorSearch& search) const;
 
   /// The factor with other springs of one contact. \param changes of them that there are, normal before tangential
   /// \param moments get what sum F_i l_j changes by where it is taken out, per right-hand side

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Ways around a contact that broke, over what is left of a network.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "equidem/assembly/assembly.hpp"
+#include "equidem/linear/contact_graph.hpp"
+
+namespace equidem {
+
+class DisjointWays {
+ public:
+  /// All must outlive the object. \param broken per contact, `left` per disc, 1: no way goes there
+  DisjointWays(const Assembly& assembly, const ContactGraph& graph, const std::vector<std::uint8_t>& broken,
+               const std::vector<std::uint8_t>& left)
+      : assembly_(assembly), graph_(graph), broken_(broken), left_(left) {}
+
+  /// True where without this contact no disc carries nothing any more, and no part hangs by one contact or disc, that
+  /// did not before: its discs have more than two other contacts each and are joined by two ways that share nothing, so
+  /// that the parts of the graph which no single disc divides stay the same. False: nothing is found.
+  [[nodiscard]] bool around(std::size_t contact);
+
+ private:
+  [[nodiscard]] bool carries_on(const ContactGraph::Incidence& edge) const {
+    return broken_[edge.contact] == 0 && left_[edge.other] == 0;
+  }
+  /// A short way between the ends of a contact over contacts and discs that no earlier way takes; in a periodic cell to
+  /// the image of j that it joins to i.
+  bool finds_way(const Contact& gone);
+
+  const Assembly& assembly_;
+  const ContactGraph& graph_;
+  const std::vector<std::uint8_t>&broken_, &left_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
+};
+
+}  // namespace equidem
