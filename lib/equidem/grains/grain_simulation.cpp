@@ -31,7 +31,7 @@ constexpr std::int64_t steps_between_kept_states = 256;
 std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
   const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
   if (candidate.j < 0) return {radius * candidate.normal, {}};
-  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(candidate.j)].radius;
+  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))].radius;
   const double lever = radius / sum * (sum - candidate.overlap);
   return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
 }

@@ -38,6 +38,11 @@ struct CollisionTable {
   std::optional<double> young_modulus, poisson_ratio, shear_wave_speed;  ///< Pa, -, m/s
 };
 
+/// [cell], without the tables in it.
+struct CellTable {
+  PeriodicCell cell;
+};
+
 /// [bonds].
 struct BondsTable {
   GrainBond common;
@@ -70,6 +75,7 @@ struct GrainTables : GrainCase, MotionTables {
   std::optional<SpringsTable> springs;
   BondsTable bonds;
   std::optional<StrengthOptions> strength;
+  std::optional<CellTable> cell_table;
   std::optional<ShakingTable> shaking_table;
   std::vector<StageTable> stage_tables;
 };
@@ -79,6 +85,7 @@ const File<GrainTables>& grain_file();
 
 void bind_collisions(File<GrainTables>& file);
 void bind_bonds(File<GrainTables>& file);
+void bind_cell(File<GrainTables>& file);
 void bind_shaking(File<GrainTables>& file);
 void bind_stages(File<GrainTables>& file);
 
@@ -103,6 +110,11 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
 /// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds;
 ///         as bond_strengths
 void complete_bonds(const TomlValue& root, GrainTables& tables);
+
+/// Set the periodic cell of the scene.
+/// \throws Error (bad_input) with line and key: a height that is missing, stages, spheres in a cell that repeats along x
+///         and y, a deformation of one that repeats along x alone, a schedule that is not there
+void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls

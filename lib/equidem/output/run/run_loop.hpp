@@ -41,6 +41,7 @@ struct RunPlan {
   FrameOptions frames = {};                                        ///< options of frames, except files
   std::vector<Probe> probes = {};
   std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
+  bool cell = false;                    ///< the history has the periodic cell
   Body body = Body::disc;               ///< unit of energies
   std::int64_t samples = 200;           ///< of the energies, at least; at most twice as many
   bool paths = false;                   ///< record the positions of all bodies at each sample
