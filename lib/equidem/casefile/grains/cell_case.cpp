@@ -39,7 +39,8 @@ std::vector<Key<CellServoTable>> cell_servo_keys() {
           key("stress_yy", &S::stress_yy, unit("Pa"), "tension positive; the height follows it"),
           key("schedule", &S::schedule, "factor of the stresses; without one they are constant"),
           key("max_rate", &S::servo, &CellServo::max_rate, required, unit("1/s"), positive,
-              "width and height never change faster, and shrink by it while nothing touches"),
+              "width and height never change faster, and shrink by it while nothing touches and the wanted stress is a "
+              "pressure"),
           key("relaxation", &S::servo, &CellServo::relaxation, range({.low = 0, .high = 1, .low_open = true}),
               "share of the difference that a step mends, by stiffness and dashpots of the contacts")};
 }
@@ -79,6 +80,10 @@ void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedul
     fail_at(stage->items.front(), "stage", "a run in a periodic cell is in stages",
             "stages change walls, and do not carry a cell on",
             "Let schedules of [cell.motion] and [cell.servo] change it");
+  if (const TomlValue* measures = root.find("measures"))
+    fail_at(*measures, "measures", "a run in a periodic cell measures the bodies in a box",
+            "a branch across a side of the cell would be taken for one through it",
+            "Remove it: the histories have stress, void ratio and coordination number of the cell");
   if (tables.body == Body::sphere && cell.along == PeriodicCell::Along::xy)
     fail_at(*given, "cell", "a cell that repeats along xy holds spheres",
             "its stress is by area, and a plane of spheres has no thickness",
