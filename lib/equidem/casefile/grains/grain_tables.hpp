@@ -112,7 +112,7 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
 void complete_bonds(const TomlValue& root, GrainTables& tables);
 
 /// Set the periodic cell of the scene.
-/// \throws Error (bad_input) with line and key: a height that is missing, stages, spheres in a cell that repeats along x
+/// \throws Error (bad_input) with line and key: a height that is missing, stages, [measures], spheres in a cell along x
 ///         and y, a deformation of one that repeats along x alone, a schedule that is not there
 void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/core/error.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -77,6 +78,9 @@ void list_contacts(GrainSystem& system, const std::vector<std::pair<Candidate, P
     Candidate& again = listed.emplace_back(contact);
     if (image.a == 0 && image.b == 0) continue;
     const auto place = std::ranges::lower_bound(cell.images, image);
+    if (place == cell.images.end() || *place != image)
+      bad_input("the state has a contact with an image that is far away", "it is of another scene, or damaged",
+                "Resume with the scene that the state was saved from");
     again.j = static_cast<std::int32_t>(circles.size()) + static_cast<std::int32_t>(place - cell.images.begin());
   }
   std::ranges::sort(listed, {}, [](const Candidate& contact) { return std::pair(contact.i, contact.j); });
