@@ -23,6 +23,7 @@ radius = 0.01
 [collisions]
 law = "linear_dashpot"
 stiffness = 1.0e6
+restitution = 0.5
 """
 CELL = '[cell]\nwidth = 0.1\nheight = 0.1\n'
 RUN = '[run]\nduration = 0.01\nintegrator = "velocity_verlet"\n'
@@ -60,7 +61,7 @@ class CellTest(RunTest):
         late = history["cell_strain_xy"] > 0.3
         friction = history["cell_stress_xy_Pa"][late].mean() / -history["cell_stress_yy_Pa"][late].mean()
         self.assertTrue(0.15 < friction < 0.45, friction)
-        self.assertAlmostEqual(history["cell_stress_yy_Pa"][late].mean(), -1e5, delta=1e3)
+        self.assertAlmostEqual(history["cell_stress_yy_Pa"][late].mean(), -1e5, delta=5e3)  # as the mean error
         area = history["cell_area_m2"][late]
         work = numpy.trapz(history["cell_stress_xy_Pa"][late] * area, history["cell_strain_xy"][late])
         work += numpy.trapz(history["cell_stress_yy_Pa"][late] * area, history["cell_strain_yy"][late])
@@ -70,7 +71,7 @@ class CellTest(RunTest):
 
     def test_a_run_that_was_cut_off_ends_with_the_same_rows(self):
         case, whole, parts = self.small_case(), self.folder / "whole", self.folder / "parts"
-        short = ("--set", "run.time_step=8e-6", *NO_PICTURE)
+        short = ("--set", "run.steps_per_contact=none", "--set", "run.time_step=4e-6", *NO_PICTURE)
         self.run_case(case, "--out", whole, "--set", "run.duration=0.2", *short)
         self.run_case(case, "--out", parts, "--set", "run.duration=0.13", *short)
         self.run_case(case, "--out", parts, "--resume", "--set", "run.duration=0.2", *short)
@@ -96,7 +97,7 @@ class CellTest(RunTest):
                 (CELL + servo.replace("max_rate = 1.0\n", ""), ("cell.servo.max_rate",)),
                 (CELL + "[measures]\n", ("measures",)),
                 (CELL + '[[stage]]\nname = "a"\nduration = 1.0\n', ("stages",)),
-                (CELL + "[[bond]]\ni = 0\nj = 1\nnormal_dashpot = 1.0\n", ("bonds in a periodic cell",))):
+                (CELL + "[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", ("bonds in a periodic cell",))):
             with self.subTest(text=text):
                 run = RUN.replace("duration = 0.01\n", "") if "stage" in text else RUN
                 self.check_error(equidem("run", self.write(DISCS + text + run)), 2, "case.toml:", *words)
