@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/touch_instants.hpp"
 #include "equidem/grains/grain_simulation.hpp"
@@ -16,7 +17,6 @@
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
-#include "equidem/grains/periodic_motion.hpp"
 #include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"

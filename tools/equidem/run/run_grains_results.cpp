@@ -8,7 +8,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/kinds.hpp"
-#include "equidem/output/files/cell_history.hpp"
+#include "equidem/output/run/cell_history.hpp"
 
 #include "run/break_files.hpp"
 #include "run/run_grains.hpp"

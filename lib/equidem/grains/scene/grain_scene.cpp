@@ -10,9 +10,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
-#include "equidem/grains/neighbours/periodic_images.hpp"
 #include "equidem/grains/scene/shape_check.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 #include "equidem/grains/servo_walls.hpp"

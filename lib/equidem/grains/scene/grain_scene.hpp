@@ -15,7 +15,7 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/grains/scene/periodic_cell.hpp"
+#include "equidem/grains/cell/periodic_cell.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_scene.hpp"

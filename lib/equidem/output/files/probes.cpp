@@ -7,9 +7,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/cell_history.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"
+#include "equidem/output/run/cell_history.hpp"
 
 namespace equidem {
 namespace {

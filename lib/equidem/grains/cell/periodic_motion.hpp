@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
-#include "equidem/grains/neighbours/periodic_images.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
 #include "equidem/motion/cell_state.hpp"
 
 namespace equidem {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/periodic_motion.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

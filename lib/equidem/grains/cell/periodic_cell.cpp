@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/scene/periodic_cell.hpp"
+#include "equidem/grains/cell/periodic_cell.hpp"
 
 #include <algorithm>
 #include <cmath>

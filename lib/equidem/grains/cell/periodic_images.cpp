@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/neighbours/periodic_images.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
 
 #include <algorithm>
 #include <cmath>

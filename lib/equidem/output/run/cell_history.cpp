@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/files/cell_history.hpp"
+#include "equidem/output/run/cell_history.hpp"
 
 #include <utility>
 
