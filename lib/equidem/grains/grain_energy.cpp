@@ -12,6 +12,7 @@ double GrainSimulation::Implementation::potential() const {
   double sum = 0;
   for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
     Vec2 position = system.bodies.motions[i].position;
+    if (system.cell.active) position += system.cell.now.shift(system.cell.crossed[i]);
     if (behind) position -= (0.5 * system.dt()) * system.bodies.motions[i].velocity;
     sum -= dot(system.scene.gravity, position) / system.bodies.constants[i].inverse_mass;
   }

@@ -31,7 +31,7 @@ constexpr std::int64_t steps_between_kept_states = 256;
 std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
   const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
   if (candidate.j < 0) return {radius * candidate.normal, {}};
-  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(candidate.j)].radius;
+  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))].radius;
   const double lever = radius / sum * (sum - candidate.overlap);
   return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
 }
@@ -62,6 +62,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.bodies.ways.resize(system.bodies.blocks.count());
   system.bodies.inwards.resize(system.bodies.blocks.count());
   order_by_place(system, scene, order);
+  set_cell(system);
   std::vector<std::size_t> numbers = tie_bonds(system, scene);
   if (scene.strengths)
     system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
@@ -117,6 +118,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
       load = {.impulse = -2 * load.step_impulse,
               .step_impulse = 2 * load.step_impulse,
               .step_angular = 2 * load.step_angular};
+    if (system.cell.deforms) begin_cell_stress(system);
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -127,8 +129,12 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
 void GrainSimulation::Implementation::make_step() {
   if (flow) return step_together();
   if (system.bonds.breakable) break_bonds(system);
-  if (verlet()) return step_by_verlet();
-  step_by_euler();
+  if (verlet()) {
+    step_by_verlet();
+  } else {
+    step_by_euler();
+  }
+  if (system.cell.active && system.step % steps_between_wraps == 0) wrap_bodies(system);
 }
 
 void GrainSimulation::Implementation::step_together() {
@@ -149,13 +155,15 @@ void GrainSimulation::Implementation::step_by_euler() {
 
 void GrainSimulation::Implementation::step_by_verlet() {
   count_opening_kick(system);
-  drift_of_verlet(system);
+  const bool deforms = system.cell.deforms;
+  if (deforms) steer_cell(system);
+  (deforms ? drift_in_cell : drift_of_verlet)(system);
   update_candidates();
   start_next_step();
   system.deepest = 0;
   begin_loads_of_walls(system);  // servo walls were steered by those of the last step
   find_impulses();
-  kick_of_verlet(system);
+  (deforms ? kick_in_cell : kick_of_verlet)(system);
 }
 
 void GrainSimulation::Implementation::find_impulses() {
@@ -173,6 +181,7 @@ void GrainSimulation::Implementation::update_candidates() {
 
 void GrainSimulation::Implementation::start_next_step() {
   system.bodies.motions.swap(system.bodies.next);
+  if (system.cell.deforms) advance_cell(system);
   ++system.step;
   if (!system.walls.servos.empty()) steer_walls(system);
   place_walls(system);
@@ -255,7 +264,8 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
     if (candidate.j < 0) {
       contact.j = ~static_cast<std::int32_t>(system.walls.wall_of[static_cast<std::size_t>(~candidate.j)]);
     } else {
-      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.j)]);
+      const std::int32_t other = system.body_of(candidate.j);
+      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(other)]);
       if (contact.j < contact.i) {
         std::swap(contact.i, contact.j);
         contact.normal = -contact.normal;
@@ -322,6 +332,12 @@ std::vector<WallState> GrainSimulation::walls() const {
   return walls;
 }
 
+std::optional<CellState> GrainSimulation::cell() const {
+  const GrainSystem& system = implementation_->system;
+  if (!system.cell.active || system.cell.now.b.y == 0) return {};
+  return state_of_cell(system, contacts());
+}
+
 std::vector<Wall> GrainSimulation::placed_walls() const {
   const GrainSystem& system = implementation_->system;
   std::vector<Wall> walls(system.scene.walls.size());
@@ -359,7 +375,7 @@ double GrainSimulation::bytes_per_body() const {
       system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
-      system.scene.grains.capacity() * sizeof(Grain));
+      system.cell.images.capacity() * sizeof(PeriodicImage) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.constants.size());
 }
 

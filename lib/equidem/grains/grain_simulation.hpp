@@ -88,6 +88,7 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] std::vector<WallState> walls() const override;
+  [[nodiscard]] std::optional<CellState> cell() const override;
   /// The walls at their present places, without motion, in the caller's order.
   [[nodiscard]] std::vector<Wall> placed_walls() const;
   /// One for each servo wall, in the caller's order.

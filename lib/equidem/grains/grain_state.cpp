@@ -16,6 +16,7 @@ namespace {
 /// The state of a contact as numbers: i, j, steps, mode, then the other members; for parts also their indices and arms.
 constexpr std::size_t numbers_per_plain_contact = 13;
 constexpr std::size_t numbers_per_pair_of_parts = 6;
+constexpr std::size_t numbers_per_image = 2;
 constexpr std::size_t numbers_per_impulse = 3;
 constexpr std::size_t numbers_per_bond = 3;
 
@@ -32,7 +33,8 @@ constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evalu
 static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
 
 std::size_t numbers_per_contact_of(const GrainSystem& system) {
-  return numbers_per_plain_contact + (system.shapes.parts.empty() ? 0 : numbers_per_pair_of_parts);
+  return numbers_per_plain_contact + (system.shapes.parts.empty() ? 0 : numbers_per_pair_of_parts) +
+         (system.cell.active ? numbers_per_image : 0);
 }
 
 void append(std::vector<double>& numbers, const PartPair& pair) {
@@ -40,6 +42,11 @@ void append(std::vector<double>& numbers, const PartPair& pair) {
                               pair.arm_j.x, pair.arm_j.y}) {
     numbers.push_back(number);
   }
+}
+
+void append(std::vector<double>& numbers, const PeriodicImage& image) {
+  numbers.push_back(image.a);
+  numbers.push_back(image.b);
 }
 
 PartPair parts_of_discs(const GrainSystem& system, const Candidate& candidate) {
@@ -60,6 +67,10 @@ PartPair pair_of(const double* numbers) {
 
 bool is_of(const double* numbers, const PartPair& pair) {
   return numbers[0] == static_cast<double>(pair.i) && numbers[1] == static_cast<double>(pair.j);
+}
+
+PeriodicImage image_of(const double* numbers, std::int32_t body) {
+  return {body, static_cast<std::int32_t>(numbers[1]), static_cast<std::int32_t>(numbers[0])};
 }
 
 void append(std::vector<double>& numbers, const Candidate& candidate) {
@@ -94,8 +105,11 @@ SavedState GrainSimulation::save() const {
   for (const PairBlock& block : system.contacts.near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
       if (!block.touching(p)) continue;
-      const Candidate candidate = candidate_of(system, block, p);
+      Candidate candidate = candidate_of(system, block, p);
+      const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
+      candidate.j = image.body;
       append(contacts, candidate);
+      if (system.cell.active) append(contacts, image);
       if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
     }
   }
@@ -110,6 +124,7 @@ SavedState GrainSimulation::save() const {
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
     if (!system.contacts.candidates[c].touching) continue;
     append(contacts, system.contacts.candidates[c]);
+    if (system.cell.active) append(contacts, PeriodicImage{});
     if (!system.shapes.parts.empty()) append(contacts, system.contacts.part_pairs[c]);
   }
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) losses.push_back(system.lost.*term.value);
@@ -142,6 +157,13 @@ SavedState GrainSimulation::save() const {
                               {"start", 1, {implementation_->potential_at_start, implementation_->energy_at_start}}}};
   if (const auto& breakable = system.bonds.breakable)
     state.arrays.push_back({"breaks", numbers_per_break, numbers_of(breakable->breaks)});
+  if (system.cell.active) {
+    std::vector<double> crossed;
+    for (const std::int32_t place : system.bodies.place_of_grain)
+      append(crossed, system.cell.crossed[static_cast<std::size_t>(place)]);
+    state.arrays.push_back({"cell", 1, numbers_of_cell(system.cell)});
+    state.arrays.push_back({"crossed", numbers_per_image, std::move(crossed)});
+  }
   return state;
 }
 
@@ -195,6 +217,14 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   system.step = state.step;
   implementation_->potential_at_start = state["start"][0];
   implementation_->energy_at_start = state["start"][1];
+  if (system.cell.active) {
+    const std::vector<double>& crossed = state["crossed"];
+    if (crossed.size() != numbers_per_image * system.bodies.motions.size() || !take_numbers(state["cell"], system.cell))
+      bad_input("the state is of another periodic cell", "it has other numbers than this one",
+                "Resume with the scene that the state was saved from");
+    for (std::size_t k = 0; k < system.cell.crossed.size(); ++k)
+      system.cell.crossed[k] = image_of(crossed.data() + numbers_per_image * system.bodies.grain_of[k], 0);
+  }
   const double* loss = losses.data();
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value = *loss++;
   for (std::size_t k = 0; k < system.bodies.motions.size(); ++k) {
@@ -225,6 +255,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   system.contacts.exact_pairs.clear();
   system.contacts.part_pairs.clear();
   std::vector<Candidate> near;
+  std::vector<std::pair<Candidate, PeriodicImage>> imaged;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
   for (std::size_t at = 0; at < contacts.size(); at += numbers_per_contact) {
@@ -232,7 +263,11 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     take(contacts.data() + at, contact);
     const double* numbers = contacts.data() + at;
     if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.contacts.near.active) {
-      near.push_back(contact);
+      if (system.cell.active) {
+        imaged.emplace_back(contact, image_of(numbers + numbers_per_plain_contact, contact.j));
+      } else {
+        near.push_back(contact);
+      }
     } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.contacts.near_parts.active) {
       near_parts.emplace_back(contact, pair_of(numbers + numbers_per_plain_contact));
     } else {
@@ -241,7 +276,11 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   }
   if (system.contacts.near.active) {
     load_pair_bodies(system);
-    take_near_pairs(system, near);
+    if (system.cell.active) {
+      list_contacts(system, imaged);
+    } else {
+      take_near_pairs(system, near);
+    }
   }
   if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   find_candidates(system);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/touch_instants.hpp"
 #include "equidem/grains/grain_simulation.hpp"
@@ -165,6 +166,7 @@ struct GrainSystem {
   Walls walls;
   ContactList contacts;
   BondList bonds;
+  MovingCell cell;
 
   std::int64_t step = 0;
   std::vector<TouchImpulse> touch_impulses;  ///< of the present step
@@ -182,6 +184,25 @@ struct GrainSystem {
     const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(candidate.j)].kind
                                        : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
     return scene.between(bodies.constants[static_cast<std::size_t>(candidate.i)].kind, other);
+  }
+  /// The image that a number behind those of all bodies stands for.
+  [[nodiscard]] const PeriodicImage& image(std::int32_t j) const {
+    return cell.images[static_cast<std::size_t>(j) - bodies.constants.size()];
+  }
+  [[nodiscard]] bool is_image(std::int32_t j) const {
+    return j >= 0 && static_cast<std::size_t>(j) >= bodies.constants.size();
+  }
+  /// The body of a partner in a near pair: itself, or that of which it is an image.
+  [[nodiscard]] std::int32_t body_of(std::int32_t j) const { return is_image(j) ? image(j).body : j; }
+  /// Place of a body or an image at the start of the step.
+  [[nodiscard]] Vec2 position_of(std::int32_t j) const {
+    const Vec2 own = bodies.motions[static_cast<std::size_t>(body_of(j))].position;
+    return is_image(j) ? own + cell.now.shift(image(j)) : own;
+  }
+  /// The same in bodies.next.
+  [[nodiscard]] Vec2 next_position_of(std::int32_t j) const {
+    const Vec2 own = bodies.next[static_cast<std::size_t>(body_of(j))].position;
+    return is_image(j) ? own + cell.next.shift(image(j)) : own;
   }
   [[nodiscard]] double dissipation(const Candidate& candidate) const {
     return dissipations[static_cast<std::size_t>(&properties(candidate) - scene.pairs.data())];

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
+#include "equidem/motion/cell_state.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
 #include "equidem/motion/wall.hpp"
@@ -44,6 +46,8 @@ class AnySimulation {
   [[nodiscard]] virtual EnergyLedger energy() const = 0;
   /// In the caller's order. Works of colliding bodies add up to that of the ledger.
   [[nodiscard]] virtual std::vector<WallState> walls() const { return {}; }
+  /// The cell in which bodies repeat along x and y; none: there is no such cell.
+  [[nodiscard]] virtual std::optional<CellState> cell() const { return {}; }
   /// Bytes of all arrays of the loop, per body.
   [[nodiscard]] virtual double bytes_per_body() const = 0;
 

@@ -38,6 +38,7 @@ constexpr ListedTerm all_terms[] = {
     {{"work_of_loads", "loads", work, &EnergyLedger::work_of_loads}, bonded},
     {{"work_of_supports", "supports", work, &EnergyLedger::work_of_supports}, bonded},
     {{"work_of_walls", "walls", work, &EnergyLedger::work_of_walls}, bonded | colliding},
+    {{"work_of_cell", "periodic cell", work, &EnergyLedger::work_of_cell}, colliding},
     {{"work_of_stages", "changes between stages", work, &EnergyLedger::work_of_stages}, colliding},
     {{"initial", "at the start", initial, &EnergyLedger::initial}, bonded | colliding},
 };

@@ -37,6 +37,7 @@ struct EnergyLedger {
   /// Released by bonds that broke: their springs, less what the contacts behind them store at once.
   double lost_breaking = 0;
   double work_of_loads = 0, work_of_supports = 0, work_of_walls = 0;
+  double work_of_cell = 0;  ///< of the deformation of a periodic cell: stress times rate times area
   /// Kinetic and elastic energy that changes of the scene have added where a stage began.
   double work_of_stages = 0;
   double initial = 0;  ///< kinetic + elastic at the start

@@ -53,6 +53,12 @@ std::string checksum_of(const GrainCase& resolved) {
     }
   };
   add_walls(resolved.scene.walls);
+  if (const auto& cell = resolved.scene.cell) {
+    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy}) add(sum, *rate);
+    if (cell->servo)
+      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
+        if (*stress) add(sum, **stress);
+  }
   for (const StageCase& stage : resolved.stages) add_walls(stage.scene.walls);
   return sum.text();
 }
@@ -65,6 +71,13 @@ void check_events(const GrainCase& resolved, double step) {
     for (const Wall& wall : resolved.stages[k].scene.walls)
       for (const Schedule* motion : {&wall.move_x, &wall.move_y})
         check_event(*motion, step, length_of(resolved.stages[k]), resolved.where(fmt::format("stage.{}", k)));
+  if (const auto& cell = resolved.scene.cell) {
+    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy})
+      check_event(*rate, step, resolved.duration, resolved.where("cell.motion"));
+    if (cell->servo)
+      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
+        if (*stress) check_event(**stress, step, resolved.duration, resolved.where("cell.servo"));
+  }
   if (!resolved.stages.empty()) return;
   for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
     for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
@@ -74,6 +87,7 @@ void check_events(const GrainCase& resolved, double step) {
 StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   const GrainScene scene = build_grain_scene(resolved, step);
   const GrainOptions options = grain_options(resolved, step);
+  if (scene.cell) casefile::with_place(resolved.where("cell"), [&] { check_cell(scene, options); });
   try {
     check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); });
   } catch (const Error& error) {
@@ -141,7 +155,7 @@ void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimul
   }
   constexpr double most = 4;
   const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential) +
-                       std::max(0.0, ledger.work_of_stages);
+                       std::max(0.0, ledger.work_of_stages) + std::max(0.0, ledger.work_of_cell);
   if (ledger.kinetic <= most * given) return;
   if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.grains()))) return;
   computation_failed(
@@ -202,6 +216,7 @@ RunPlan GrainRun::plan() {
           .probes = case_.probes,
           .walls = names_of(walls_),
           .milestone_name = [this] { return simulation_.reports().back().name; },
+          .cell = simulation_.cell().has_value(),
           .body = case_.body,
           .samples = draws_paths ? samples_of_few : energy_samples,
           .paths = draws_paths,

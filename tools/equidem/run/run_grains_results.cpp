@@ -8,6 +8,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/kinds.hpp"
+#include "equidem/output/run/cell_history.hpp"
 
 #include "run/break_files.hpp"
 #include "run/run_grains.hpp"
@@ -333,6 +334,7 @@ Results GrainRun::events() const {
   Results out = measures_ ? measures_->results() : Results();
   if (!case_.stages.empty()) add_stages(out, simulation_.reports(), step_.step);
   add_servos(out, simulation_.reports(), simulation_.present().servos(), !case_.stages.empty(), case_.body);
+  if (const auto cell = simulation_.cell()) out.append(cell_results(*cell));
   out.line("collisions")
       .add("contacts", "", counters.contacts, "contact", {Shown::count})
       .note(" begun")

@@ -80,6 +80,7 @@ const File<GrainTables>& grain_file() {
     File<GrainTables> made(case_schema, "case file of colliding bodies");
     bind_bodies(made);
     bind_bonds(made);
+    bind_cell(made);
     bind_collisions(made);
     bind_run(made);
     std::vector<Key<OutputCase>> output = output_keys();

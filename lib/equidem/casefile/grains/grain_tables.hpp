@@ -38,6 +38,11 @@ struct CollisionTable {
   std::optional<double> young_modulus, poisson_ratio, shear_wave_speed;  ///< Pa, -, m/s
 };
 
+/// [cell], without the tables in it.
+struct CellTable {
+  PeriodicCell cell;
+};
+
 /// [bonds].
 struct BondsTable {
   GrainBond common;
@@ -71,6 +76,7 @@ struct GrainTables : GrainCase, MotionTables {
   std::optional<SpringsTable> springs;
   BondsTable bonds;
   std::optional<StrengthOptions> strength;
+  std::optional<CellTable> cell_table;
   std::optional<ShakingTable> shaking_table;
   std::vector<StageTable> stage_tables;
 };
@@ -80,6 +86,7 @@ const File<GrainTables>& grain_file();
 
 void bind_collisions(File<GrainTables>& file);
 void bind_bonds(File<GrainTables>& file);
+void bind_cell(File<GrainTables>& file);
 void bind_shaking(File<GrainTables>& file);
 void bind_stages(File<GrainTables>& file);
 
@@ -110,6 +117,11 @@ std::vector<Key<StageBonds>> stage_bond_keys();
 /// \param stage its number: each draws its own strengths
 /// \throws Error (bad_input) with line and key
 StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage);
+
+/// Set the periodic cell of the scene.
+/// \throws Error (bad_input) with line and key: a height that is missing, stages, [measures], spheres in a cell along x
+///         and y, a deformation of one that repeats along x alone, a schedule that is not there
+void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls

@@ -52,9 +52,10 @@ void count_sums(GrainSystem& system) {
 }  // namespace
 
 void collide_near(GrainSystem& system, bool clear) {
+  if (!system.cell.images.empty()) place_images(system);
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();
   system.bodies.blocks.each([&](std::size_t block) { collide_block(system, block, clear); });
-  if (turning || system.bodies.blocks.count() > 1)
+  if (turning || system.bodies.blocks.count() > 1 || !system.cell.images.empty())
     system.bodies.blocks.each([&](std::size_t block) { complete_impulses(system, block, turning); });
   count_sums(system);
 }
@@ -65,7 +66,7 @@ void connect_blocks(GrainSystem& system) {
   for (std::vector<InwardImpulse>& inward : inwards) inward.clear();
   const auto connect = [&](const OutwardImpulses& outward) {
     for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-      const std::int32_t body = outward.bodies[k];
+      const std::int32_t body = system.body_of(outward.bodies[k]);
       inwards[blocks.of(static_cast<std::size_t>(body))].push_back({body, &outward.impulses[k]});
     }
   };

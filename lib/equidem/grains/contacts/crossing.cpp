@@ -19,7 +19,7 @@ constexpr double slow_way = 0.1;
   const auto i = static_cast<std::size_t>(candidate.i);
   std::string other;
   if (candidate.j >= 0) {
-    other = fmt::format("grain {}", system.bodies.grain_of[static_cast<std::size_t>(candidate.j)]);
+    other = fmt::format("grain {}", system.bodies.grain_of[static_cast<std::size_t>(system.body_of(candidate.j))]);
   } else {
     const Wall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
     other = wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[static_cast<std::size_t>(~candidate.j)])
@@ -94,10 +94,10 @@ void refuse_crossings(const GrainSystem& system, double reach) {
       Candidate pair;
       pair.i = block.first(p);
       pair.j = block.second(p);
-      const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+      const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(system.body_of(pair.j));
       check_discs(system, pair,
-                  {system.bodies.motions[j].position - system.bodies.motions[i].position,
-                   system.bodies.next[j].position - system.bodies.next[i].position, system.bodies.constants[i].radius,
+                  {system.position_of(pair.j) - system.bodies.motions[i].position,
+                   system.next_position_of(pair.j) - system.bodies.next[i].position, system.bodies.constants[i].radius,
                    system.bodies.constants[j].radius});
     }
   }

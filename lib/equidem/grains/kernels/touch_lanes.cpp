@@ -9,7 +9,7 @@ void count_instants(const GrainSystem& system, const TouchLanes& lanes, BlockSum
     if (lanes.begun[k] == 0 && lanes.ended[k] == 0) continue;
     TouchInstant contact;
     contact.i = lanes.i[k];
-    contact.j = lanes.j[k];
+    contact.j = system.body_of(lanes.j[k]);
     contact.normal = {lanes.nx[k], lanes.ny[k]};
     contact.arm_i = {lanes.arm_i_x[k], lanes.arm_i_y[k]};
     contact.arm_j = {lanes.arm_j_x[k], lanes.arm_j_y[k]};

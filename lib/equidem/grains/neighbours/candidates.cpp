@@ -76,6 +76,13 @@ void find_candidates(GrainSystem& system) {
   for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     circles.push_back({system.bodies.motions[i].position, system.bodies.constants[i].radius});
   }
+  if (system.cell.active && system.contacts.near.active) {
+    find_images(system);
+    for (const PeriodicImage& image : system.cell.images) {
+      const Circle& body = circles[static_cast<std::size_t>(image.body)];
+      circles.push_back({body.centre + system.cell.now.shift(image), body.radius});
+    }
+  }
   const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin);
   std::vector<Candidate> before;
   std::vector<ExactPair> pairs_before;
@@ -107,8 +114,9 @@ void find_candidates(GrainSystem& system) {
     if (exact) system.contacts.exact_pairs.push_back(exact_pair_of(system, candidate));
   };
   std::size_t next_bond = 0;
-  const bool all_near =
-      shapes ? system.contacts.near_parts.active && system.contacts.near.active : system.contacts.near.active;
+  const bool all_near = system.cell.active ? true
+                        : shapes           ? system.contacts.near_parts.active && system.contacts.near.active
+                                           : system.contacts.near.active;
   for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
       const std::int32_t j = list.partner[static_cast<std::size_t>(p)];

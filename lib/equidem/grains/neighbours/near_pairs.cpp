@@ -98,15 +98,15 @@ class PairLists {
   void add(std::int32_t i, std::int32_t j) {
     Candidate candidate;
     candidate.i = i;
-    candidate.j = j;
+    const std::int32_t other = candidate.j = system_.body_of(j);
     set_constants(system_, candidate);
     const std::size_t k = make_room(i, j);
     near_.groups.back().since[k] = PairGroup::apart;
     near_.groups.back().reach[k] = system_.bodies.constants[static_cast<std::size_t>(i)].radius +
-                                   system_.bodies.constants[static_cast<std::size_t>(j)].radius;
+                                   system_.bodies.constants[static_cast<std::size_t>(other)].radius;
     near_.groups.back().dashpot[k] = dashpot_of(system_, candidate);
     const GrainBody &bi = system_.bodies.constants[static_cast<std::size_t>(i)],
-                    &bj = system_.bodies.constants[static_cast<std::size_t>(j)];
+                    &bj = system_.bodies.constants[static_cast<std::size_t>(other)];
     near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
     near_.groups.back().impulse[k] = 0;
     if (system_.friction) {
@@ -205,9 +205,10 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
       const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
       if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner)) continue;
       if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
-      const auto j = static_cast<std::size_t>(partner);
-      const Vec2 branch = system.bodies.motions[j].position - centre;
-      const double far = own + system.bodies.constants[j].radius;
+      const std::int32_t other = system.body_of(partner);
+      if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself
+      const Vec2 branch = system.position_of(partner) - centre;
+      const double far = own + system.bodies.constants[static_cast<std::size_t>(other)].radius;
       lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
     }
   }
@@ -278,7 +279,7 @@ void refresh_near_pairs(GrainSystem& system, double reach) {
 }
 
 void load_pair_bodies(GrainSystem& system) {
-  for (std::size_t i = 0; i < system.contacts.near.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     const GrainBody& body = system.bodies.constants[i];
     const GrainMotion& motion = system.bodies.motions[i];
     const BodyImpulse& push = system.bodies.impulses[i];
@@ -291,8 +292,9 @@ void touch_near_pairs(GrainSystem& system) {
   const bool verlet = system.options.verlet();
   for (PairBlock& block : system.contacts.near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
-      const auto i = static_cast<std::size_t>(block.first(p)), j = static_cast<std::size_t>(block.second(p));
-      const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
+      const auto i = static_cast<std::size_t>(block.first(p));
+      const auto j = static_cast<std::size_t>(system.body_of(block.second(p)));
+      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
       if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
       block.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
       ++system.counters.contacts;
@@ -333,7 +335,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
         const double spring = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
         tangential += 0.5 * spring * block.slips[g].stretch[k] * block.slips[g].stretch[k];
       }
-      const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(block.second(p))].position -
+      const Vec2 branch = system.position_of(block.second(p)) -
                           system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
       const double overlap = block.groups[g].reach[k] - norm(branch);
       if (!(overlap > 0)) continue;

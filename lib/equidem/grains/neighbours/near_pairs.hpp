@@ -38,7 +38,7 @@ struct alignas(64) PairBody {
 /// Eight pairs i < j.
 struct alignas(64) PairGroup {
   static constexpr std::int64_t apart = -2, unused = -3;
-  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
+  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< j: a body, or an image (periodic_images.hpp)
   std::int64_t
       since[lanes_of_pairs];  ///< step before the first step of the contact; `apart`: no contact; `unused`: no pair
   PairLanes reach;            ///< r_i + r_j, m
@@ -130,7 +130,7 @@ void touch_near_pairs(GrainSystem& system);
 /// Set system.bodies.next as move_by_euler(), and the body data of the loop for the next step.
 void move_pair_bodies(GrainSystem& system);
 
-/// A pair with the state of its contact, without its constants.
+/// A pair with the state of its contact, without its constants; j may be an image.
 Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
 
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.

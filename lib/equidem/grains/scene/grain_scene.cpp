@@ -10,6 +10,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/grains/scene/shape_check.hpp"
@@ -132,23 +133,43 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
   bad_input_at(where ? where(grain) : "", std::move(problem), std::move(why), std::move(remedy));
 }
 
+/// Take bodies as their images inside a cell, and add the images that are near.
+void add_images(const PeriodicCell& cell, std::vector<Circle>& circles, std::vector<std::size_t>& grain_of) {
+  const Periods periods{{cell.width, 0}, {0, cell.height}};
+  const Vec2 centre = cell.corner + 0.5 * Vec2{cell.width, cell.height};
+  for (Circle& circle : circles) circle.centre += periods.shift(image_inside(periods, centre, circle.centre));
+  for (const PeriodicImage& image : images_near(circles, periods, 0)) {
+    const Circle& body = circles[static_cast<std::size_t>(image.body)];
+    circles.push_back({body.centre + periods.shift(image), body.radius});
+    grain_of.push_back(static_cast<std::size_t>(image.body));
+  }
+}
+
 /// Nothing may start inside something else.
 void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   std::vector<Circle> circles;
   for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
+  const std::size_t count = circles.size();
+  std::vector<std::size_t> grain_of(count);
+  std::iota(grain_of.begin(), grain_of.end(), std::size_t{0});
+  if (scene.cell) add_images(*scene.cell, circles, grain_of);
   const NeighbourList near = neighbours_within(circles, 0);
-  for (std::size_t i = 0; i < circles.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
-      const auto j = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
-      const double distance = norm(circles[j].centre - circles[i].centre);
-      if (!are_inside_one_another(scene, scene.grains[i], scene.grains[j])) continue;
+      const auto partner = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
+      const std::size_t j = grain_of[partner];
+      const double distance = norm(circles[partner].centre - circles[i].centre);
+      Grain grain = scene.grains[i], other = scene.grains[j];
+      grain.position = circles[i].centre;
+      other.position = circles[partner].centre;
+      if (!are_inside_one_another(scene, grain, other)) continue;
       refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
                    fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
                                circles[i].radius, circles[j].radius),
                    "Move them apart");
     }
   }
-  for (std::size_t i = 0; i < circles.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     for (const Wall& wall : scene.walls) {
       if (!is_behind(scene, scene.grains[i], wall)) continue;
       refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),
@@ -261,6 +282,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
               "a grain would meet both at once, twice as stiff", "Remove one, or let it end where the other begins");
   }
   check_table(scene, options);
+  if (scene.cell) check_cell(scene, options);
   check_places(scene, where);
   check_bonds(scene, options);
 }

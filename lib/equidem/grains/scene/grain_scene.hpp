@@ -15,6 +15,7 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/grains/cell/periodic_cell.hpp"
 #include "equidem/grains/scene/wall_shape.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_scene.hpp"
@@ -96,6 +97,7 @@ struct GrainScene : AnyScene {
   std::vector<Grain> grains;
   std::vector<Clump> clumps;  ///< shapes, each used by any number of grains
   std::vector<GrainBond> bonds;
+  std::optional<PeriodicCell> cell;           ///< none: nothing repeats
   std::optional<ContactStrengths> strengths;  ///< of the bonds, in their order; none: they never break
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row

@@ -92,6 +92,7 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override { return present_->body_contacts(); }
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] std::vector<WallState> walls() const override { return present_->walls(); }
+  [[nodiscard]] std::optional<CellState> cell() const override { return present_->cell(); }
   [[nodiscard]] double bytes_per_body() const override { return present_->bytes_per_body(); }
   /// Arrays of the present GrainSimulation; stages: first, last, over, ended and the values of StageReport, a row for
   /// each stage that has begun; stage_walls: places of the walls at the start of the present stage; stage_motions,

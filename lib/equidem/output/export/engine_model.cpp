@@ -332,6 +332,7 @@ EngineModel engine_model(const GrainScene& scene, const GrainOptions& options, B
   if (body == Body::sphere) add(model.found, spheres, "");
   if (!scene.bonds.empty()) add(model.found, grain_bonds, "");
   find_features_of_walls(scene.walls, model.found);
+  if (scene.cell) add(model.found, cell_of_grains, "");
   if (options.law != NormalLaw::linear_dashpot) {
     add(model.found, other_laws, describe(options.law).name);
     return model;

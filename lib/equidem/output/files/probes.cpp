@@ -2,6 +2,7 @@
 #include "equidem/output/files/probes.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"
+#include "equidem/output/run/cell_history.hpp"
 
 namespace equidem {
 namespace {
@@ -44,12 +46,16 @@ std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const P
     if (probe.box) columns.push_back(probe.name + "_inside");
   }
   const std::set<std::string> taken(columns.begin(), columns.end());
-  for (const std::string& name : wall_columns(options.walls, options.family, options.body)) {
-    columns.push_back(name);
-    if (!taken.contains(name)) continue;
-    bad_input(fmt::format("a probe and a wall both have the column '{}'", name), "columns are found by their names",
-              "Rename the probe");
-  }
+  const auto add = [&](const char* owner, const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
+      columns.push_back(name);
+      if (!taken.contains(name)) continue;
+      bad_input(fmt::format("a probe and {} both have the column '{}'", owner, name),
+                "columns are found by their names", "Rename the probe");
+    }
+  };
+  add("a wall", wall_columns(options.walls, options.family, options.body));
+  if (options.cell) add("the cell", cell_columns());
   for (const std::string& name : energy_columns(options.family, options.body)) columns.push_back(name);
   return columns;
 }
@@ -85,12 +91,14 @@ ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, 
     : probes_(checked(std::move(probes), bodies)),
       family_(options.family),
       walls_(options.walls),
+      cell_(options.cell),
       table_(std::move(path), probe_columns(probes_, options),
              {.interval = options.interval, .overwrite = options.overwrite, .continue_from = options.continue_from}) {}
 
 void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities, std::span<const WallState> walls,
-                         const EnergyLedger& ledger, bool regular) {
+                         const EnergyLedger& ledger, bool regular, const std::optional<CellState>& cell) {
+  assert(cell.has_value() == cell_);
   std::vector<double> cells = {time};
   for (const Probe& probe : probes_) {
     const DiscMotion motion = mean_of(probe.bodies, motions), velocity = mean_of(probe.bodies, velocities);
@@ -105,8 +113,10 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
     }
     if (probe.box) cells.push_back(count_inside(probe, motions));
   }
-  for (const double cell : wall_cells(walls_, family_, walls)) cells.push_back(cell);
-  for (const double cell : energy_cells(family_, ledger)) cells.push_back(cell);
+  for (const double value : wall_cells(walls_, family_, walls)) cells.push_back(value);
+  if (cell_)
+    for (const double value : cell_cells(*cell)) cells.push_back(value);
+  for (const double value : energy_cells(family_, ledger)) cells.push_back(value);
   table_.add(step, cells, regular);
 }
 

@@ -12,6 +12,7 @@
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/motion/cell_state.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/motion/wall.hpp"
@@ -24,13 +25,15 @@ struct ProbeOptions {
   Body body = Body::disc;                  ///< unit of energies: J per metre of depth, of spheres J
   double interval = 5;                  ///< s of wall-clock time between two writes; 64 KiB of rows are written at once
   std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
+  bool cell = false;                    ///< the rows have the periodic cell
   bool overwrite = false;               ///< a file of that name
   std::optional<FileMark> continue_from = {};  ///< continue the file of an earlier run behind this mark
 };
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
 /// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; NAME_inside of a probe with a box;
-/// those of every wall (wall_loads.hpp); then the columns of the energy ledger (energies.hpp).
+/// those of every wall (wall_loads.hpp) and of the periodic cell (cell_history.hpp); then the columns of the energy
+/// ledger (energies.hpp).
 class ProbeWriter {
  public:
   /// \param bodies of the scene
@@ -43,10 +46,11 @@ class ProbeWriter {
   /// \param step greater than last_step()
   /// \param motions displacements and rotations, or positions and angles, of all bodies
   /// \param regular as in GrowingCsv::add
+  /// \param cell given where ProbeOptions::cell is set
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities, std::span<const WallState> walls, const EnergyLedger& ledger,
-              bool regular = true);
+              bool regular = true, const std::optional<CellState>& cell = {});
   /// Write all rows to the operating system.
   void flush() { table_.flush(); }
   /// Sync all rows to disk, as required before a checkpoint refers to them.
@@ -60,6 +64,7 @@ class ProbeWriter {
   std::vector<Probe> probes_;
   BodyFamily family_;
   std::vector<std::string> walls_;
+  bool cell_;
   GrowingCsv table_;
 };
 

@@ -85,6 +85,7 @@ class RunLoop {
                        ProbeOptions{.family = simulation_.family(),
                                     .body = plan_.body,
                                     .walls = plan_.walls,
+                                    .cell = plan_.cell,
                                     .overwrite = files.overwrite,
                                     .continue_from = mark_of("history.csv")});
     }
@@ -184,7 +185,10 @@ class RunLoop {
       const auto contacts = plan_.frames.contacts ? simulation_.body_contacts() : std::vector<BodyContact>();
       frames_->append(step, time, motions, velocities, contacts, regular_frame);
     }
-    if (row) history_->record(step, time, motions, velocities, walls, ledger, regular_row);
+    if (row) {
+      const auto cell = plan_.cell ? simulation_.cell() : std::nullopt;
+      history_->record(step, time, motions, velocities, walls, ledger, regular_row, cell);
+    }
   }
 
   /// Everything that the checkpoint counts on is on the disk before it is.

@@ -43,6 +43,7 @@ struct RunPlan {
   std::vector<std::string> walls = {};  ///< names of all walls that the run has at some time
   /// Names what has ended at a milestone: run.NAME.checkpoint.h5 keeps the state there.
   std::function<std::string()> milestone_name = {};
+  bool cell = false;             ///< the history has the periodic cell
   Body body = Body::disc;        ///< unit of energies
   std::int64_t samples = 200;    ///< of the energies, at least; at most twice as many
   bool paths = false;            ///< record the positions of all bodies at each sample

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/cell/periodic_cell.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
+
+namespace equidem {
+namespace {
+
+void check_periods(const GrainScene& scene) {
+  const PeriodicCell& cell = *scene.cell;
+  const bool rows = cell.along == PeriodicCell::Along::xy;
+  if (!std::isfinite(cell.corner.x + cell.corner.y))
+    bad_input("the corner of the periodic cell is not a number", "it says where the cell lies", "Give finite numbers");
+  if (!rows && cell.height != 0)
+    bad_input(fmt::format("a cell that repeats along x alone has height = {} m", cell.height), "walls bound it along y",
+              "Leave the height out, or repeat along xy");
+  double largest = 0;
+  for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
+  const auto check_period = [&](const char* name, double period) {
+    if (!is_positive(period))
+      bad_input(fmt::format("the periodic cell has {} = {} m", name, period), "it must be > 0 and finite",
+                "Give the period");
+    if (period > 4 * largest) return;
+    bad_input(fmt::format("the periodic cell has {} = {:.6g} m, and the largest body a diameter of {:.6g} m", name,
+                          period, 2 * largest),
+              "a body would meet several images of another one", "Make it larger than two of these diameters");
+  };
+  check_period("width", cell.width);
+  if (rows) check_period("height", cell.height);
+}
+
+/// Walls repeat with a cell only where they are lines along x.
+void check_walls_of_cell(const GrainScene& scene) {
+  const bool rows = scene.cell->along == PeriodicCell::Along::xy;
+  for (const Wall& wall : scene.walls) {
+    if (rows)
+      bad_input(fmt::format("there is a wall '{}' in a cell that repeats along x and y", wall.name),
+                "it would cross the sides of the cell", "Remove it, or repeat along x alone");
+    if (wall.shape == Wall::Shape::line && wall.normal.x == 0) continue;
+    bad_input(fmt::format("the wall '{}' is no line along x, and the cell repeats along x", wall.name),
+              "it crosses the sides of the cell, or its images are missing beyond them",
+              "Give lines with the normal [0, 1] or [0, -1]");
+  }
+}
+
+void check_contents(const GrainScene& scene, const GrainOptions& options) {
+  constexpr const char* only_discs = "images are made of discs that collide";
+  for (const Grain& grain : scene.grains)
+    if (grain.shape() != GrainShape::disc)
+      bad_input(fmt::format("grain {} of a periodic cell is {}", &grain - scene.grains.data(),
+                            grain.shape() == GrainShape::ellipse ? "an ellipse" : "a clump"),
+                only_discs, "Give discs alone, or use walls in place of the cell");
+  if (!scene.bonds.empty())
+    bad_input("there are bonds in a periodic cell", only_discs, "Remove them, or use walls in place of the cell");
+  if (!gives_force(options.law))
+    bad_input(fmt::format("a periodic cell is stepped by the law {}", to_string(options.law)),
+              "images need a law that gives a force", "Use " + names_of_laws(LawKind::force));
+  const auto slides_only = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio == 0; };
+  const auto sticks = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; };
+  if (std::ranges::any_of(scene.pairs, slides_only) && std::ranges::any_of(scene.pairs, sticks))
+    bad_input("some pairs of a periodic cell have friction with a tangential spring and some without",
+              "images need one loop for all pairs", "Give all of them a tangential_ratio > 0, or none");
+  if (scene.weighs() && scene.cell->along == PeriodicCell::Along::xy)
+    bad_input("there is gravity in a cell that repeats along x and y",
+              "no floor carries the bodies: they would fall for ever",
+              "Remove it, or repeat along x alone and give walls");
+}
+
+void check_deformation(const GrainScene& scene, const GrainOptions& options) {
+  const PeriodicCell& cell = *scene.cell;
+  for (const Schedule* rate : {&cell.rate_xx, &cell.rate_yy, &cell.rate_xy}) check(*rate);
+  if (!cell.deforms()) return;
+  if (cell.along != PeriodicCell::Along::xy)
+    bad_input("a cell that repeats along x alone deforms", "walls bound it along y and would not follow",
+              "Let it repeat along xy, or move the walls");
+  if (options.integrator != GrainOptions::Integrator::velocity_verlet)
+    bad_input(fmt::format("a cell that deforms is stepped by {}", to_string(options.integrator)),
+              "its work is counted for velocity_verlet", "Set integrator = \"velocity_verlet\"");
+  if (!cell.servo) return;
+  const CellServo& servo = *cell.servo;
+  if (!servo.stress_xx && !servo.stress_yy)
+    bad_input("the servo of the periodic cell keeps no stress", "it has nothing to do", "Give stress_xx or stress_yy");
+  const auto check_one = [](const char* name, const std::optional<Schedule>& stress, const Schedule& rate) {
+    if (!stress) return;
+    check(*stress);
+    if (!rate.changes() && rate.value == 0) return;
+    bad_input(fmt::format("the periodic cell has both a rate_{} and a stress_{}", name, name),
+              "one of them determines the other", "Remove one");
+  };
+  check_one("xx", servo.stress_xx, cell.rate_xx);
+  check_one("yy", servo.stress_yy, cell.rate_yy);
+  check_positive(servo.max_rate, "max_rate of the periodic cell", "1/s");
+  if (!(servo.relaxation > 0) || !(servo.relaxation <= 1))
+    bad_input(fmt::format("the servo of the periodic cell has relaxation = {}", servo.relaxation),
+              "a step mends that share of the difference, and more than 1 overshoots", "Take 0.1");
+}
+
+}  // namespace
+
+void check_cell(const GrainScene& scene, const GrainOptions& options) {
+  check_periods(scene);
+  check_walls_of_cell(scene);
+  check_contents(scene, options);
+  check_deformation(scene, options);
+}
+
+}  // namespace equidem

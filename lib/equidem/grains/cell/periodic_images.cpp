@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/cell/periodic_images.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+namespace {
+
+using ImagedContact = std::pair<Candidate, PeriodicImage>;
+
+std::vector<ImagedContact> contacts_with_images(const GrainSystem& system) {
+  std::vector<ImagedContact> found;
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      auto& [contact, image] = found.emplace_back(candidate_of(system, block, p), PeriodicImage{});
+      image = system.is_image(contact.j) ? system.image(contact.j) : PeriodicImage{contact.j};
+      contact.j = image.body;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position) {
+  PeriodicImage image;
+  if (periods.b.y > 0) image.b = static_cast<std::int32_t>(-std::floor((position.y - centre.y) / periods.b.y + 0.5));
+  const double x = position.x + image.b * periods.b.x - centre.x;
+  image.a = static_cast<std::int32_t>(-std::floor(x / periods.a.x + 0.5));
+  return image;
+}
+
+std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin) {
+  std::vector<PeriodicImage> images;
+  if (circles.empty()) return images;
+  Vec2 low = circles[0].centre, high = low;
+  double largest = 0;
+  for (const Circle& circle : circles) {
+    low = {std::min(low.x, circle.centre.x), std::min(low.y, circle.centre.y)};
+    high = {std::max(high.x, circle.centre.x), std::max(high.y, circle.centre.y)};
+    largest = std::max(largest, circle.radius);
+  }
+  // a hundred roundings more than nothing, so that a body on the edge of the box has its image
+  const double more = largest + margin + 1e-13 * (norm(low) + norm(high));
+  const auto first = [](double from, double period) { return static_cast<std::int32_t>(std::ceil(from / period)); };
+  const auto last = [](double to, double period) { return static_cast<std::int32_t>(std::floor(to / period)); };
+  for (std::size_t k = 0; k < circles.size(); ++k) {
+    const auto [centre, radius] = circles[k];
+    const double reach = radius + more;
+    const bool rows = periods.b.y > 0;
+    const std::int32_t lowest = rows ? first(low.y - reach - centre.y, periods.b.y) : 0;
+    const std::int32_t highest = rows ? last(high.y + reach - centre.y, periods.b.y) : 0;
+    for (std::int32_t b = lowest; b <= highest; ++b) {
+      const double x = centre.x + b * periods.b.x;
+      const std::int32_t right = last(high.x + reach - x, periods.a.x);
+      for (std::int32_t a = first(low.x - reach - x, periods.a.x); a <= right; ++a)
+        if (a != 0 || b != 0) images.push_back({static_cast<std::int32_t>(k), b, a});
+    }
+  }
+  return images;
+}
+
+void list_contacts(GrainSystem& system, const std::vector<std::pair<Candidate, PeriodicImage>>& contacts) {
+  std::vector<Circle> circles;
+  for (std::size_t k = 0; k < system.bodies.constants.size(); ++k)
+    circles.push_back({system.bodies.motions[k].position, system.bodies.constants[k].radius});
+  MovingCell& cell = system.cell;
+  cell.images = images_near(circles, cell.now, system.contacts.margin);
+  system.contacts.near.bodies.resize(circles.size() + cell.images.size());
+  std::vector<Candidate> listed;
+  for (const auto& [contact, image] : contacts) {
+    Candidate& again = listed.emplace_back(contact);
+    if (image.a == 0 && image.b == 0) continue;
+    const auto place = std::ranges::lower_bound(cell.images, image);
+    if (place == cell.images.end() || *place != image)
+      bad_input("the state has a contact with an image that is far away", "it is of another scene, or damaged",
+                "Resume with the scene that the state was saved from");
+    again.j = static_cast<std::int32_t>(circles.size()) + static_cast<std::int32_t>(place - cell.images.begin());
+  }
+  std::ranges::sort(listed, {}, [](const Candidate& contact) { return std::pair(contact.i, contact.j); });
+  take_near_pairs(system, listed);
+}
+
+void find_images(GrainSystem& system) {
+  list_contacts(system, contacts_with_images(system));
+}
+
+void place_images(GrainSystem& system) {
+  const MovingCell& cell = system.cell;
+  LaneVector<PairBody>& bodies = system.contacts.near.bodies;
+  const std::size_t count = system.bodies.constants.size();
+  system.bodies.blocks.each_piece(cell.images.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const PeriodicImage& image = cell.images[k];
+      PairBody& seen = bodies[count + k];
+      seen = bodies[static_cast<std::size_t>(image.body)];
+      seen.position += cell.now.shift(image);
+      if (!cell.deforms) continue;
+      const Vec2 apart = cell.gradient * cell.before.shift(image);
+      seen.velocity += apart;
+      seen.middle_velocity += apart;
+    }
+  });
+}
+
+void wrap_bodies(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  std::vector<ImagedContact> contacts = contacts_with_images(system);
+  const auto columns = static_cast<std::int32_t>(std::nearbyint(cell.now.b.x / cell.now.a.x));
+  bool changed = columns != 0;
+  if (columns != 0) {
+    // the period b less some of a: a multiple of b is the same of the new one, and so many a more
+    cell.now.b.x -= columns * cell.now.a.x;
+    cell.before.b.x -= columns * cell.before.a.x;
+    for (auto& [contact, image] : contacts) image.a += columns * image.b;
+    for (PeriodicImage& crossed : cell.crossed) crossed.a += columns * crossed.b;
+  }
+  std::vector<PeriodicImage> moves(system.bodies.motions.size());
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    Vec2& position = system.bodies.motions[k].position;
+    const PeriodicImage move = moves[k] = image_inside(cell.now, cell.centre, position);
+    if (move.a == 0 && move.b == 0) continue;
+    changed = true;
+    position += cell.now.shift(move);
+    cell.crossed[k].a -= move.a;
+    cell.crossed[k].b -= move.b;
+    if (system.contacts.near.active) system.contacts.near.bodies[k].position = position;
+  }
+  cell.next = cell.now;
+  if (!changed) return;
+  if (!system.contacts.near.active) return find_candidates(system);
+  for (auto& [contact, image] : contacts) {
+    const PeriodicImage &i = moves[static_cast<std::size_t>(contact.i)],
+                        &j = moves[static_cast<std::size_t>(contact.j)];
+    image.a += i.a - j.a;
+    image.b += i.b - j.b;
+  }
+  list_contacts(system, contacts);
+  find_candidates(system);
+}
+
+}  // namespace equidem

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/grains/cell/periodic_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/grain_system.hpp"
+
+namespace equidem {
+namespace {
+
+/// Steps after which stiffness and viscosity of a cell under control are measured again.
+constexpr std::int64_t steps_between_measures = 16;
+
+double contraction(const Tensor2& a, const Tensor2& b) {
+  return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
+}
+
+Periods deformed(const Periods& periods, const Tensor2& gradient, double dt) {
+  return {periods.a + dt * (gradient * periods.a), periods.b + dt * (gradient * periods.b)};
+}
+
+/// C and D of CellServo, by the contacts of the last step.
+void measure_resistance(GrainSystem& system) {
+  const NearPairs& near = system.contacts.near;
+  const LawDescription& law = system.law();
+  Vec2 stiffness, viscosity;
+  for (const PairBlock& block : near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+      const auto i = static_cast<std::size_t>(block.first(p));
+      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
+      const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
+      if (!(distance > 0)) continue;
+      const double spring = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
+      const double k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1);
+      const double c = block.groups[g].dashpot[k], c_n = law.dashpot != nullptr ? law.dashpot(c, overlap) : c;
+      double k_t = 0, c_t = 0;
+      if (system.friction) {
+        k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
+        c_t = block.slips[g].dashpot[k];
+      }
+      // stretched along x, the ends of a branch part by l_x along x
+      const Vec2 normal = branch / distance;
+      const double xx = normal.x * normal.x, yy = normal.y * normal.y;
+      stiffness += Vec2{squared(branch.x) * (k_n * xx + k_t * yy), squared(branch.y) * (k_n * yy + k_t * xx)};
+      viscosity += Vec2{squared(branch.x) * (c_n * xx + c_t * yy), squared(branch.y) * (c_n * yy + c_t * xx)};
+    }
+  }
+  const double area = system.cell.area();
+  CellControl& x = system.cell.controls[0];
+  CellControl& y = system.cell.controls[1];
+  x.stiffness = stiffness.x / area;
+  y.stiffness = stiffness.y / area;
+  x.viscosity = viscosity.x / area;
+  y.viscosity = viscosity.y / area;
+}
+
+void count_cell_error(CellControl& control) {
+  control.largest_wanted = std::max(control.largest_wanted, std::abs(control.wanted));
+  const double error = control.wanted < 0 ? control.wanted - control.stress : control.stress - control.wanted;
+  if (control.stress != 0 && error >= -0.01 * std::abs(control.wanted)) control.reached = 1;
+  if (control.reached == 0 || control.largest_wanted == 0) return;
+  control.overshoot = std::max(control.overshoot, error / control.largest_wanted);
+  control.errors += std::abs(error) / control.largest_wanted;
+  control.steps += 1;
+}
+
+/// The rate at which the cell is stretched along one axis.
+double controlled_rate(const CellServo& servo, const Schedule& stress, double time, double dt, double present,
+                       CellControl& control) {
+  control.wanted = stress.at(time);
+  control.stress = present;
+  count_cell_error(control);
+  const double resistance = control.stiffness * dt + control.viscosity;
+  if (resistance > 0) {
+    const double missing = servo.relaxation * (control.wanted - present) + control.viscosity * control.rate;
+    control.rate = std::clamp(missing / resistance, -servo.max_rate, servo.max_rate);
+  } else {
+    control.rate = control.wanted < 0 ? -servo.max_rate : 0;
+  }
+  return control.rate;
+}
+
+/// Sum the works and moments of all blocks.
+CellSums summed(const MovingCell& cell) {
+  CellSums all;
+  for (const CellSums& sums : cell.sums) {
+    all.here += sums.here;
+    all.before += sums.before;
+    all.flux += sums.flux;
+    all.work += sums.work;
+  }
+  return all;
+}
+
+/// Work of the cell on a body whose peculiar velocity u turns to u - h L u.
+double turn_velocity(const Tensor2& gradient, double h, double inverse_mass, Vec2& velocity) {
+  const Vec2 turned = h * (gradient * velocity);
+  const double work = (0.5 * dot(turned, turned) - dot(velocity, turned)) / inverse_mass;
+  velocity -= turned;
+  return work;
+}
+
+/// Sum of impulse times branch over the contacts of a block: that of the impulses on its bodies times their places, and
+/// of those on images times their shifts.
+void add_moments(const GrainSystem& system, std::size_t block, bool places_before, CellSums& sums) {
+  const MovingCell& cell = system.cell;
+  const BodyBlocks& blocks = system.bodies.blocks;
+  for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
+    const Vec2 impulse = system.bodies.impulses[i].impulse;
+    sums.here += outer(impulse, system.bodies.motions[i].position - cell.centre);
+    if (places_before) sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
+  }
+  if (!system.contacts.near.active) return;
+  const OutwardImpulses& outward = system.contacts.near.blocks[block].outward;
+  for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
+    if (!system.is_image(outward.bodies[k])) continue;
+    const PeriodicImage& image = system.image(outward.bodies[k]);
+    sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
+    if (places_before) sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
+  }
+}
+
+void set_stress(GrainSystem& system, const CellSums& sums) {
+  MovingCell& cell = system.cell;
+  cell.moment = sums.here;
+  cell.stress = (-1 / cell.area()) * ((1 / system.dt()) * sums.here + sums.flux);
+}
+
+/// The members of a control that are saved.
+constexpr double CellControl::*control_saved[] = {
+    &CellControl::wanted,    &CellControl::stress,         &CellControl::rate,      &CellControl::stiffness,
+    &CellControl::viscosity, &CellControl::largest_wanted, &CellControl::overshoot, &CellControl::errors,
+    &CellControl::steps,     &CellControl::reached};
+
+/// All numbers of a cell that are saved, in their order.
+template <class Cell, class Visit>
+void visit_numbers(Cell& cell, const Visit& visit) {
+  for (auto* periods : {&cell.now, &cell.before})
+    for (auto* vector : {&periods->a, &periods->b}) visit(vector->x), visit(vector->y);
+  for (auto* tensor : {&cell.gradient, &cell.moment, &cell.stress})
+    visit(tensor->xx), visit(tensor->xy), visit(tensor->yx), visit(tensor->yy);
+  visit(cell.strain.xx), visit(cell.strain.yy), visit(cell.strain.xy);
+  for (auto& control : cell.controls)
+    for (const auto number : control_saved) visit(control.*number);
+}
+
+}  // namespace
+
+void set_cell(GrainSystem& system) {
+  if (!system.scene.cell) return;
+  const PeriodicCell& given = *system.scene.cell;
+  MovingCell& cell = system.cell;
+  cell.active = true;
+  cell.deforms = given.deforms();
+  const bool rows = given.along == PeriodicCell::Along::xy;
+  cell.now = {{given.width, 0}, {0, rows ? given.height : 0}};
+  cell.before = cell.next = cell.now;
+  cell.centre = given.corner + 0.5 * Vec2{given.width, cell.now.b.y};
+  cell.sums.resize(system.bodies.blocks.count());
+  for (const GrainBody& body : system.bodies.constants)
+    cell.largest_radius = std::max(cell.largest_radius, body.radius);
+  for (GrainMotion& motion : system.bodies.motions) {
+    PeriodicImage move = image_inside(cell.now, cell.centre, motion.position);
+    motion.position += cell.now.shift(move);
+    cell.crossed.push_back({0, -move.b, -move.a});
+  }
+}
+
+void steer_cell(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  const PeriodicCell& given = *system.scene.cell;
+  const double dt = system.dt(), middle = system.time() + 0.5 * dt;
+  if (const double least = std::min(cell.now.a.x, cell.now.b.y); !(least > 4 * cell.largest_radius)) {
+    computation_failed(fmt::format("step {}: the periodic cell has become {:.4g} m by {:.4g} m", system.step,
+                                   cell.now.a.x, cell.now.b.y),
+                       "a body would meet several images of another one",
+                       "Deform it less, or take more bodies: two of the largest diameters is the least");
+  }
+  double xx = given.rate_xx.at(middle), yy = given.rate_yy.at(middle);
+  if (given.servo) {
+    const CellServo& servo = *given.servo;
+    if (system.step % steps_between_measures == 0) measure_resistance(system);
+    if (servo.stress_xx)
+      xx = controlled_rate(servo, *servo.stress_xx, system.time(), dt, cell.stress.xx, cell.controls[0]);
+    if (servo.stress_yy)
+      yy = controlled_rate(servo, *servo.stress_yy, system.time(), dt, cell.stress.yy, cell.controls[1]);
+  }
+  const double shear = given.rate_xy.at(middle);
+  // so that a cell at a constant rate is stretched by exp(rate time)
+  cell.gradient = {std::expm1(xx * dt) / dt, shear, 0, std::expm1(yy * dt) / dt};
+  cell.next = deformed(cell.now, cell.gradient, dt);
+  cell.strain.xx += xx * dt;
+  cell.strain.yy += yy * dt;
+  cell.strain.xy += shear * dt;
+}
+
+void drift_in_cell(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  const double dt = system.dt();
+  const BodyBlocks& blocks = system.bodies.blocks;
+  const Tensor2& gradient = cell.gradient;
+  // two bodies that touch come nearer by their own ways and by that of the cell along their branch
+  const double stretch = std::sqrt(contraction(gradient, gradient));
+  const double by_cell = 0.5 * dt * stretch * (2 * cell.largest_radius + system.contacts.margin);
+  const bool near = system.contacts.near.active;
+  find_longest_way(system, [&](std::size_t block) {
+    CellSums& sums = cell.sums[block] = {};
+    double longest = 0;
+    for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
+      const GrainBody& body = system.bodies.constants[i];
+      GrainMotion motion = system.bodies.motions[i];
+      const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
+      const double turn = body.inverse_moment * system.bodies.impulses[i].torque;
+      motion.velocity += 0.5 * gain;
+      motion.spin += 0.5 * turn;
+      sums.work += turn_velocity(gradient, 0.5 * dt, body.inverse_mass, motion.velocity);
+      const Vec2 with_cell = gradient * (motion.position - cell.centre);
+      const double way = dt * norm(motion.velocity) + by_cell;
+      motion.position += dt * (motion.velocity + with_cell);
+      motion.angle += dt * motion.spin;
+      system.bodies.next[i] = motion;
+      longest = way * way > longest || way != way ? way * way : longest;
+      if (!near) continue;
+      GrainMotion seen = motion;
+      seen.velocity += with_cell;
+      system.contacts.near.bodies[i] = pair_body(body, seen, gain, turn);
+    }
+    return longest;
+  });
+}
+
+void advance_cell(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  cell.before = cell.now;
+  cell.now = cell.next;
+}
+
+void kick_in_cell(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  const BodyBlocks& blocks = system.bodies.blocks;
+  blocks.each([&](std::size_t block) {
+    CellSums& sums = cell.sums[block];  // with the work of the drift
+    add_moments(system, block, true, sums);
+    for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
+      GrainMotion& motion = system.bodies.motions[i];
+      const GrainBody& body = system.bodies.constants[i];
+      sums.work += turn_velocity(cell.gradient, 0.5 * system.dt(), body.inverse_mass, motion.velocity);
+      motion.velocity += 0.5 * body.inverse_mass * system.bodies.impulses[i].impulse;
+      motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+      sums.flux += (1 / body.inverse_mass) * outer(motion.velocity, motion.velocity);
+    }
+  });
+  const CellSums all = summed(cell);
+  // half of each of the kicks at its ends acts along the way of a drift
+  const double by_contacts = -0.5 * (contraction(cell.moment, cell.gradient) + contraction(all.before, cell.gradient));
+  system.lost.work_of_cell += by_contacts + all.work;
+  set_stress(system, all);
+}
+
+void begin_cell_stress(GrainSystem& system) {
+  MovingCell& cell = system.cell;
+  for (std::size_t block = 0; block < cell.sums.size(); ++block) {
+    CellSums& sums = cell.sums[block] = {};
+    add_moments(system, block, false, sums);
+    for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+      const Vec2 velocity = system.bodies.motions[i].velocity;
+      sums.flux += (1 / system.bodies.constants[i].inverse_mass) * outer(velocity, velocity);
+    }
+  }
+  set_stress(system, summed(cell));
+}
+
+CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts) {
+  const MovingCell& cell = system.cell;
+  CellState state;
+  state.width = cell.now.a.x;
+  state.height = cell.now.b.y;
+  state.shift = std::remainder(cell.now.b.x, cell.now.a.x);
+  state.strain = cell.strain;
+  Tensor2 sum;
+  for (const GrainContact& contact : contacts) {
+    const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
+    sum += outer(on_j, contact.arm_i - contact.arm_j);
+  }
+  double discs = 0;
+  for (std::size_t k = 0; k < system.bodies.constants.size(); ++k) {
+    const GrainBody& body = system.bodies.constants[k];
+    const Vec2 velocity = system.bodies.motions[k].velocity;
+    sum += (1 / body.inverse_mass) * outer(velocity, velocity);
+    discs += std::numbers::pi * squared(body.radius);
+  }
+  state.stress = (-1 / cell.area()) * sum;
+  state.void_ratio = cell.area() / discs - 1;
+  state.coordination_number =
+      2 * static_cast<double>(contacts.size()) / static_cast<double>(system.bodies.constants.size());
+  if (!system.scene.cell->servo) return state;
+  const CellServo& servo = *system.scene.cell->servo;
+  const auto add = [&](const char* component, const std::optional<Schedule>& stress, const CellControl& control) {
+    if (!stress) return;
+    state.servos.push_back({.component = component,
+                            .reached = control.reached != 0,
+                            .wanted = control.wanted,
+                            .stress = control.stress,
+                            .overshoot = control.overshoot,
+                            .mean_error = control.steps > 0 ? control.errors / control.steps : 0});
+  };
+  add("xx", servo.stress_xx, cell.controls[0]);
+  add("yy", servo.stress_yy, cell.controls[1]);
+  return state;
+}
+
+std::vector<double> numbers_of_cell(const MovingCell& cell) {
+  std::vector<double> numbers;
+  visit_numbers(cell, [&](double number) { numbers.push_back(number); });
+  return numbers;
+}
+
+bool take_numbers(const std::vector<double>& numbers, MovingCell& cell) {
+  if (numbers.size() != numbers_of_cell(cell).size()) return false;
+  auto from = numbers.begin();
+  visit_numbers(cell, [&](double& number) { number = *from++; });
+  cell.next = cell.now;
+  return true;
+}
+
+}  // namespace equidem

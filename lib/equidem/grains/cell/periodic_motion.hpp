@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Steps of a periodic cell that deforms, and its state.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "equidem/core/vector.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
+#include "equidem/motion/cell_state.hpp"
+
+namespace equidem {
+
+struct GrainContact;
+struct GrainSystem;
+
+/// The control of one component of the stress.
+struct CellControl {
+  double wanted = 0, stress = 0;                             ///< of the last step, Pa
+  double rate = 0;                                           ///< 1/s
+  double stiffness = 0;                                      ///< Pa, if all discs followed the stretch
+  double viscosity = 0;                                      ///< Pa s, likewise
+  double largest_wanted = 0;                                 ///< Pa
+  double overshoot = 0, errors = 0, steps = 0, reached = 0;  ///< as in ServoState
+};
+
+/// Sums over the bodies of a block and the images that they touch.
+struct CellSums {
+  Tensor2 here, before;  ///< of impulse times place, after the step and before it, N s m
+  Tensor2 flux;          ///< of m u u, J
+  double work = 0;       ///< J
+};
+
+/// The cell in the present step.
+struct MovingCell {
+  bool active = false, deforms = false;
+  Vec2 centre;                 ///< it stays in place, m
+  double largest_radius = 0;   ///< of the bodies, m
+  Periods now, before, next;   ///< at the start of this step, of the last one, at the end of this one
+  Tensor2 gradient;            ///< L in the step that is being made, 1/s
+  Voigt strain;                ///< as in CellState
+  Tensor2 moment;              ///< sum of impulse times branch of the last kick, N s m
+  Tensor2 stress;              ///< deforming cells: at the start of this step, Pa
+  CellControl controls[2];     ///< of xx and yy
+  std::vector<CellSums> sums;  ///< of each block
+  std::vector<PeriodicImage> images;
+  /// For each body the periods by which it has been moved into the cell, with the opposite sign: where it would be.
+  std::vector<PeriodicImage> crossed;
+
+  [[nodiscard]] double area() const { return now.a.x * now.b.y; }
+};
+
+/// Set the cell of the scene, and take bodies as their images inside it; before candidates are found for the first
+/// time.
+void set_cell(GrainSystem& system);
+
+/// Choose the velocity gradient of the step.
+/// \throws Error (computation_failed) if the cell has become thinner than two of the largest diameters
+void steer_cell(GrainSystem& system);
+/// As drift_of_verlet.
+void drift_in_cell(GrainSystem& system);
+/// The cell at the end of the step.
+void advance_cell(GrainSystem& system);
+/// As kick_of_verlet, and the work of the cell in the step.
+void kick_in_cell(GrainSystem& system);
+/// Set moment and stress from the impulses of the first kick.
+void begin_cell_stress(GrainSystem& system);
+
+/// The cell as it is, its stress by the contacts of the last step.
+CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts);
+
+/// The numbers of a cell besides places of bodies, to save and to restore.
+std::vector<double> numbers_of_cell(const MovingCell& cell);
+/// \return whether there are as many as a cell has
+bool take_numbers(const std::vector<double>& numbers, MovingCell& cell);
+
+}  // namespace equidem

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Bodies in periodic cells, and the plain search over all images.
+#pragma once
+
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "grains/scenes.hpp"
+
+namespace equidem::test {
+
+/// Discs of several sizes with friction that fly about in a cell.
+inline GrainScene busy_cell(NormalLaw law, int columns, int rows, std::uint64_t seed, double speed = 1) {
+  GrainScene scene = busy_box(law, columns, rows, seed);
+  scene.walls.clear();
+  scene.gravity = {};
+  scene.cell = PeriodicCell{.corner = {0, 0}, .width = 1.0 * columns, .height = 1.0 * rows};
+  Vec2 momentum;
+  double mass = 0;
+  for (Grain& grain : scene.grains) {
+    grain.velocity = speed * grain.velocity;
+    momentum += grain.inertia.mass * grain.velocity;
+    mass += grain.inertia.mass;
+  }
+  for (Grain& grain : scene.grains) grain.velocity -= momentum / mass;
+  return scene;
+}
+
+inline GrainOptions verlet_options(double step = 0.005) {
+  return options_of(Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, step);
+}
+
+inline Vec2 momentum_in_cell(const GrainSimulation& simulation) {
+  Vec2 sum;
+  for (const Grain& grain : simulation.grains()) sum += grain.inertia.mass * grain.velocity;
+  return sum;
+}
+
+/// Pairs of discs that overlap, and by how much, by comparison of all discs with all images.
+using Overlaps = std::vector<std::tuple<std::int32_t, std::int32_t, double>>;
+inline Overlaps overlaps_by_brute_force(const std::vector<Grain>& grains, const CellState& cell, double least) {
+  constexpr int images = 4;  // shear and places outside the cell move the nearest image by some periods
+  Overlaps found;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    for (std::size_t j = i + 1; j < grains.size(); ++j)
+      for (int a = -images; a <= images; ++a)
+        for (int b = -images; b <= images; ++b) {
+          const Vec2 shift{a * cell.width + b * cell.shift, b * cell.height};
+          const double distance = norm(grains[j].position + shift - grains[i].position);
+          const double overlap = grains[i].radius + grains[j].radius - distance;
+          if (overlap > least) found.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), overlap);
+        }
+  return found;
+}
+
+/// The least distance of two places over all images.
+inline double distance_in_cell(Vec2 a, Vec2 b, const CellState& cell) {
+  Vec2 apart = b - a;
+  const double rows = std::nearbyint(apart.y / cell.height);
+  apart -= rows * Vec2{cell.shift, cell.height};
+  apart.x -= cell.width * std::nearbyint(apart.x / cell.width);
+  return norm(apart);
+}
+
+}  // namespace equidem::test
