@@ -72,6 +72,8 @@ TEST_CASE("an_automatic_step_keeps_to_half_the_limit_of_explicit_bonds") {
   const GrainTimeStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
   CHECK(free.bond_limit == 0);
   CHECK(free.step > 10 * step.step);
+  CHECK(free.chain_limit == step.bond_limit);
+  CHECK(step.chain_limit == 0);
   CHECK_THROWS_WITH(
       choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"run.time_step=4e-6"})),
       Catch::Contains("run.time_step") && Catch::Contains("the limit of") && Catch::Contains("that the bonds impose"));

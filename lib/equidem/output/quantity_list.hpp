@@ -335,6 +335,7 @@ inline constexpr Quantity quantities[] = {
     {"breaks/first/time", "s", "time of the first break of a bond"},
     {"breaks/first/bond", "", "number of the bond that broke first"},
     {"breaks/first/mode", "", "how the first bond broke"},
+    {"bonds/accurate_time_step", "s", "time step below which exact bonds that share discs lose the right energy"},
     {"bonds/critical_time_step", "s", "critical time step of the bonds"},
     {"bonds/distance_drift", "", "drift of the bonds in distance, of the sum of the radii"},
     {"bonds/slip_drift", "", "drift of the bonds in slip, of the sum of the radii"},

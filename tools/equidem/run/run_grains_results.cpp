@@ -151,6 +151,12 @@ void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& ste
   out.line("bonds")
       .add("bonds/number", "", resolved.scene.bonds.size(), "", {Shown::count})
       .add("", "", exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step");
+  if (step.chain_limit > 0) {
+    out.line("",
+             "their dashpots are faster than the step: where a disc has several bonds, they lose too little energy; ")
+        .add("bonds/accurate_time_step", "right below", step.chain_limit, "s")
+        .note(" (give time_step, or step = \"explicit\" in [bonds])");
+  }
   if (step.bond_limit == 0) {
     out.line("", "they do not limit the step").set("bonds/critical_time_step", nullptr);
     return;

@@ -32,6 +32,10 @@ struct GrainTimeStep {
   double omega_step = 0;
   double limit = 0;       ///< LawDescription::stable_step, the largest omega dt; 0: none
   double bond_limit = 0;  ///< step limit of bonds, s; 0: none
+  /// Step, s, up to which exact bonds that share discs lose what their dashpots should: the limit of explicit ones.
+  /// Each bond is exact with the others as they are, so that a longer step passes motion along a chain too slowly. 0:
+  /// the step is shorter.
+  double chain_limit = 0;
   bool automatic = false;
 
   [[nodiscard]] double steps_in_contact() const { return contact / step; }
