@@ -37,8 +37,8 @@ std::vector<ContactStrength> strengths_of(const BreakableNetwork& network) {
   return strengths;
 }
 
-/// Share of a force: lambda is to have nine digits, and this is an estimate.
-constexpr double allowed_force_error = 1e-10;
+/// Share of lambda, which is to have nine digits: an estimate needs one more.
+constexpr double allowed_error = 1e-10;
 
 class UpdatedSystem final : public SolvedStates {
  public:
@@ -64,7 +64,7 @@ class UpdatedSystem final : public SolvedStates {
     measured(equilibrium_.estimated_residual());
   }
 
-  /// One after another, so that a computation that is resumed has the bits of one that was never stopped.
+  /// One after another, as where a computation is resumed.
   std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
     if (alone_) {
       const std::vector<std::int32_t> loosened = alone_->remove(contacts);
@@ -91,7 +91,7 @@ class UpdatedSystem final : public SolvedStates {
     if (alone_) return alone_->next_break(strengths, search);
     if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
     CriticalContact found = sought(search);
-    if (!alone_ && found.contact >= 0 && states_[0].carried && force_error(found, search) > allowed_force_error) {
+    if (!alone_ && found.contact >= 0 && states_[0].carried && lambda_error(found, search) > allowed_error) {
       static_cast<void>(equilibrium_.refine());
       taken_ = false;
       found = sought(search);
@@ -172,20 +172,27 @@ class UpdatedSystem final : public SolvedStates {
     return !(softer < very_soft && softer * softer * equilibrium_.estimated_residual() < allowed);
   }
 
-  /// The share of its force by which that of the critical contact may be wrong, and with it lambda. A residual r leaves
-  /// the motion K^-1 r of the energy r.K^-1 r/2, and no contact has more of it than all have together. r is rho |f|,
-  /// and taken as no more aligned with what is soft than the forces f that drive the motion are: r.K^-1 r <= rho²
-  /// f.K^-1 f. This is an estimate; rounding, which has no direction, is less aligned. f.K^-1 f is twice the energy
-  /// where loads act. Prescribed motions and mean strains drive the free components by forces whose f.K^-1 f is the
-  /// energy that the rest at its first place would take less that which is left.
-  [[nodiscard]] double force_error(const CriticalContact& found, const LoadFactorSearch& search) const {
+  /// The share of lambda by which that of the critical contact may be wrong. A residual r leaves the motion K^-1 r of
+  /// the energy r.K^-1 r/2, and no contact takes more than the whole of it. r is rho |f|, and taken as no more aligned
+  /// with what is soft than the forces f that drive the motion are: r.K^-1 r <= rho² f.K^-1 f. This is an estimate;
+  /// rounding, which has no direction, is less aligned. f.K^-1 f is twice the energy where loads act. Prescribed
+  /// motions and mean strains drive the free components by forces whose f.K^-1 f is at most twice the sum of the energy
+  /// that the rest at its first place would take and that which is left. With E that energy, the criterion g.F = N, or
+  /// sign(T) T + mu N, is then wrong by rho sqrt(E) sqrt(2 (kN gN² + kT gT²)) at most, and lambda by that over its
+  /// rate.
+  [[nodiscard]] double lambda_error(const CriticalContact& found, const LoadFactorSearch& search) const {
     const double lambda = search.from + search.direction * found.moment.t;
     const ContactForce &live = found.force.live, &dead = found.force.dead;
-    const ContactForce at{dead.normal + lambda * live.normal, dead.tangential + lambda * live.tangential};
-    const double own = linear_spring_energy_of(network_.springs[static_cast<std::size_t>(found.contact)], at);
+    const bool sheared = found.moment.in_shear;
+    const double sign = dead.tangential + lambda * live.tangential < 0 ? -1 : 1;
+    const double normal = sheared ? network_.strengths->friction : 1, tangential = sheared ? sign : 0;
+    const SpringConstants k = network_.springs[static_cast<std::size_t>(found.contact)];
     double driving = std::abs(lambda) * std::sqrt(energies_[0].now + energies_[0].of_driving);
     if (energies_.size() > 1) driving += std::sqrt(energies_[1].now + energies_[1].of_driving);
-    return own > 0 ? equilibrium_.estimated_residual() * driving / std::sqrt(own) : 0;
+    const double wrong = equilibrium_.estimated_residual() * driving *
+                         std::sqrt(2 * (k.kN * normal * normal + k.kT * tangential * tangential));
+    const double grows = std::abs(lambda * (normal * live.normal + tangential * live.tangential));
+    return wrong > 0 ? wrong / grows : 0;
   }
 
   /// Loads that move a part which nothing holds show as forces of the components that are held in place of it.
