@@ -146,16 +146,20 @@ void add_law(Results& out, const GrainCase& resolved) {
 
 /// Number of bonds, their integration over a step, the step limit.
 void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& step) {
-  if (resolved.scene.bonds.empty()) return;
+  const bool later =
+      std::ranges::any_of(resolved.stages, [](const StageCase& stage) { return stage.bonds.has_value(); });
+  if (resolved.scene.bonds.empty() && !later) return;
   const bool exact = resolved.options.bond_step == GrainOptions::BondStep::exact;
   out.line("bonds")
       .add("bonds/number", "", resolved.scene.bonds.size(), "", {Shown::count})
+      .note(later ? " at the start" : "")
       .add("", "", exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step");
   if (step.chain_limit > 0) {
-    out.line("",
-             "their dashpots are faster than the step: where a disc has several bonds, they lose too little energy; ")
-        .add("bonds/accurate_time_step", "right below", step.chain_limit, "s")
-        .note(" (give time_step, or step = \"explicit\" in [bonds])");
+    out.line("", "where a disc has several bonds, their dashpots lose too little energy: some per cent at ")
+        .add("bonds/explicit_time_step", "", step.chain_limit, "s")
+        .note(
+            fmt::format(", in proportion to the step, which is {:.3g} of that; step = \"explicit\" in [bonds] is right",
+                        step.step / step.chain_limit));
   }
   if (step.bond_limit == 0) {
     out.line("", "they do not limit the step").set("bonds/critical_time_step", nullptr);

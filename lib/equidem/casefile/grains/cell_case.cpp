@@ -54,18 +54,16 @@ void refuse_cell_key(const TomlValue& cell, const char* name, const std::string&
 
 void bind_cell(File<GrainTables>& file) {
   using C = CellTable;
-  file.table(
-          "cell", &GrainTables::cell_table,
-          "a rectangular cell whose content repeats; discs under laws that give a force. Bodies outside are taken as "
-          "their images inside")
+  file.table("cell", &GrainTables::cell_table,
+             "a rectangular cell whose content repeats: discs under laws that give a force")
       .keys({key("periodic", &C::cell, &PeriodicCell::along,
                  "xy: along x and y, without walls and gravity; x: along x, between walls that are lines along x"),
-             key("corner", &C::cell, &PeriodicCell::corner, unit("m"), "lower left corner; it tells where bodies are"),
+             key("corner", &C::cell, &PeriodicCell::corner, unit("m"),
+                 "lower left corner; bodies outside are taken as their images inside"),
              key("width", &C::cell, &PeriodicCell::width, required, unit("m"), positive,
                  "period along x; more than two of the largest diameters, as the height"),
              key("height", &C::cell, &PeriodicCell::height, optional, unit("m"), positive, "period along y")});
-  file.table("cell.motion",
-             "rates at which the cell deforms, the bodies in it along with it; integrator = \"velocity_verlet\"")
+  file.table("cell.motion", "rates at which the cell and its bodies deform; with integrator = \"velocity_verlet\"")
       .described(cell_motion_keys());
   file.table("cell.servo", "the cell deforms so that its mean stress is the wanted one").described(cell_servo_keys());
 }

@@ -2,6 +2,7 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
@@ -150,9 +151,10 @@ GrainTimeStep choose_grain_step(const GrainCase& resolved) {
     for (const StageCase& stage : resolved.stages) {
       const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, resolved.options, resolved.step);
       if (other.step < chosen.step) chosen = other;
-      if (chosen.automatic && stage.bonds)
-        chosen.step = std::min(chosen.step,
-                               0.5 * likely_step_limit(stage.scene.grains, *stage.bonds, resolved.options.bond_step));
+      if (!stage.bonds) continue;
+      const double limit = likely_step_limit(stage.scene.grains, *stage.bonds, resolved.options.bond_step);
+      if (chosen.bond_limit == 0 || limit < chosen.bond_limit) chosen.bond_limit = std::isfinite(limit) ? limit : 0;
+      if (chosen.automatic) chosen.step = std::min(chosen.step, 0.5 * limit);
     }
     return chosen;
   } catch (const Error& error) {

@@ -64,7 +64,10 @@ void measure_resistance(GrainSystem& system) {
 void count_cell_error(CellControl& control) {
   control.largest_wanted = std::max(control.largest_wanted, std::abs(control.wanted));
   const double error = control.wanted < 0 ? control.wanted - control.stress : control.stress - control.wanted;
-  if (control.stress != 0 && error >= -0.01 * std::abs(control.wanted)) control.reached = 1;
+  if (control.stress != 0 && control.reached == 0) {
+    if (control.side == 0) control.side = error < 0 ? -1 : 1;
+    if (std::abs(error) <= 0.01 * std::abs(control.wanted) || error * control.side < 0) control.reached = 1;
+  }
   if (control.reached == 0 || control.largest_wanted == 0) return;
   control.overshoot = std::max(control.overshoot, error / control.largest_wanted);
   control.errors += std::abs(error) / control.largest_wanted;
@@ -137,7 +140,7 @@ void set_stress(GrainSystem& system, const CellSums& sums) {
 constexpr double CellControl::*control_saved[] = {
     &CellControl::wanted,    &CellControl::stress,         &CellControl::rate,      &CellControl::stiffness,
     &CellControl::viscosity, &CellControl::largest_wanted, &CellControl::overshoot, &CellControl::errors,
-    &CellControl::steps,     &CellControl::reached};
+    &CellControl::steps,     &CellControl::reached,        &CellControl::side};
 
 /// All numbers of a cell that are saved, in their order.
 template <class Cell, class Visit>

@@ -17,12 +17,12 @@ struct GrainSystem;
 
 /// The control of one component of the stress.
 struct CellControl {
-  double wanted = 0, stress = 0;                             ///< of the last step, Pa
-  double rate = 0;                                           ///< 1/s
-  double stiffness = 0;                                      ///< Pa, if all discs followed the stretch
-  double viscosity = 0;                                      ///< Pa s, likewise
-  double largest_wanted = 0;                                 ///< Pa
-  double overshoot = 0, errors = 0, steps = 0, reached = 0;  ///< as in ServoState
+  double wanted = 0, stress = 0;                                       ///< of the last step, Pa
+  double rate = 0;                                                     ///< 1/s
+  double stiffness = 0;                                                ///< Pa, if all discs followed the stretch
+  double viscosity = 0;                                                ///< Pa s, likewise
+  double largest_wanted = 0;                                           ///< Pa
+  double overshoot = 0, errors = 0, steps = 0, reached = 0, side = 0;  ///< as in ServoState
 };
 
 /// Sums over the bodies of a block and the images that they touch.

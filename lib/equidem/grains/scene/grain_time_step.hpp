@@ -32,9 +32,9 @@ struct GrainTimeStep {
   double omega_step = 0;
   double limit = 0;       ///< LawDescription::stable_step, the largest omega dt; 0: none
   double bond_limit = 0;  ///< step limit of bonds, s; 0: none
-  /// Step, s, up to which exact bonds that share discs lose what their dashpots should: the limit of explicit ones.
-  /// Each bond is exact with the others as they are, so that a longer step passes motion along a chain too slowly. 0:
-  /// the step is shorter.
+  /// Limit of explicit dashpots, s, where bonds are exact and the step is more than a tenth of it, else 0. Each bond is
+  /// exact with the others as they are; those that share discs lose too little energy, in proportion to the step: in
+  /// bending 7 % at this limit.
   double chain_limit = 0;
   bool automatic = false;
 

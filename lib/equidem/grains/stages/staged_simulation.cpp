@@ -56,6 +56,9 @@ void check_start(const Wall& wall) {
 StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOptions& options)
     : AnySimulation(BodyFamily::colliding, options.time_step), stages_(std::move(stages)), options_(options) {
   for (std::size_t k = 0; k < stages_.size(); ++k) {
+    if (stages_.size() > 1 && stages_[k].scene.cell)
+      bad_input(fmt::format("stage '{}' has a periodic cell", stages_[k].name),
+                "a stage does not take over the cell of the one before", "Run one scene, with schedules in the cell");
     check_walls_of(stages_[k]);
     const bool breaks = stages_.front().scene.strengths.has_value();
     if (const auto& made = stages_[k].bonds;

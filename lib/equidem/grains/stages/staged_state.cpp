@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -53,6 +54,9 @@ void take_servos(const std::vector<double>& numbers, const std::vector<GrainStag
                  std::vector<StageReport>& reports) {
   for (std::size_t at = 0; at + numbers_of_servo_report <= numbers.size(); at += numbers_of_servo_report) {
     const double* n = numbers.data() + at;
+    const auto is_count = [](double number) { return number >= 0 && number <= 1e15 && number == std::floor(number); };
+    if (!is_count(n[0]) || !is_count(n[1]) || !is_count(n[2]))
+      refuse_state("the saved state has a bond without a stage or a disc", "its file may be damaged");
     const auto stage = static_cast<std::size_t>(n[0]);
     if (stage >= reports.size())
       refuse_state("the saved state reports servo walls of a stage to come", "it is damaged");
@@ -161,7 +165,10 @@ void StagedSimulation::restore(const SavedState& state) {
   initial_ = sums[0], potential_ = sums[1], changes_ = sums[2];
   // a length or limit that was raised after the stage had reached it
   StageReport& last = reports_.back();
-  if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) last.over = false;
+  if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) {
+    last.over = false;
+    last.servos.clear();
+  }
 }
 
 }  // namespace equidem
