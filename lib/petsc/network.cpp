@@ -24,7 +24,7 @@ constexpr double negligible = 1e-12;
 }  // namespace
 
 Effects effects_of(const Ranks& ranks, const Part& part, const ContactSprings& springs, Rotation rotation) {
-  if (springs.bends()) {
+  if (ranks.any(springs.bends())) {
     bad_input("the contacts have bending springs", "the matrix of PETSc is that of contacts without moments",
               "Take the factorizations of the serial library, or leave the bending springs out");
   }

@@ -76,9 +76,9 @@ class Heaps(Laboratory):
         self.assertTrue((numpy.diff(counted) >= 0).all())
         below = int((readings.columns_without_text(out / "grains.csv", ("y_m",))["y_m"] <= 0).sum())
         self.assertEqual(counted[-1], below)
-        # Beverloo in two dimensions with C = 0.9 and k = 1.8: 1240 a second; the start is slower
+        # 0.12 s at the steady rate of data/laboratory.md, 1269 a second, would be 152; the start is slower
         self.assertGreater(below, 60)
-        self.assertLess(below, 180)
+        self.assertLess(below, 152)
 
     def test_a_slope_of_a_known_angle_is_read(self):
         with open(self.folder / "grains.csv", "w", encoding="utf-8") as file:

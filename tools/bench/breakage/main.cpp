@@ -203,8 +203,8 @@ void compare(const Request& request, const std::string& kind, double discs, int 
     anew.push_back(factorize_anew(scene, graph, symbolic));
     times = follow(scene, request.breaks, true);
     lazy.push_back((times.remove + times.search) / times.breaks);
-    const PathPart path = follow_path(scene, request.breaks, request.breaks).front();
-    whole.push_back(path.seconds / static_cast<double>(path.end));
+    for (const PathPart& path : follow_path(scene, request.breaks, request.breaks))
+      whole.push_back(path.seconds / static_cast<double>(path.end));
   }
   const int some = std::min(request.breaks, 200);
   all = follow(scene, some, false);
@@ -231,6 +231,7 @@ void follow_in_parts(const Request& request, const std::string& kind, double dis
   Seconds anew{factorize_anew(scene, graph, symbolic)};
   std::vector<PathPart> parts = follow_path(scene, request.breaks, request.part);
   anew.push_back(factorize_anew(scene, graph, symbolic));
+  if (parts.empty()) return;  // nothing broke
   PathPart whole = parts.front();
   whole.counters = {}, whole.seconds = 0, whole.loosened = 0;
   for (const PathPart& part : parts) {

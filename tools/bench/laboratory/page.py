@@ -24,6 +24,7 @@ CASES, SCRIPT = ROOT / "data" / "cases", ROOT / "tools" / "bench" / "peers" / "l
 TITLE, HEADINGS = "# The laboratory\n", ("## The tests beside what is expected\n", "## Beside YADE\n")
 OPENINGS, FRICTIONS = (0.032, 0.040, 0.048, 0.056, 0.064), (0.1, 0.2, 0.3, 0.5, 0.8)
 HEAP_DIAMETER = 0.004  # m, mean of lab_heap.csv
+HEAP_SOLID_FRACTION = 0.846  # area of discs in the middle of the column of lab_heap.csv, over that of the part
 
 
 class Laboratory:
@@ -77,7 +78,7 @@ def rock(lab):
             ["the same, nu", number(plain["poisson_ratio"]), number(nu), "likewise"],
             ["unconfined strength, Pa", number(plain["strength"], 4), "", f"at a strain of {100 * plain['strain']:.2f} %"],
             ["the same, plates with friction 0.5", number(rubbing["strength"], 4), "", "held ends"],
-            ["Brazilian strength 2P/(pi D), Pa", number(split["strength"], 4), "", f"{number(plain['strength'] / split['strength'])} times less than "
+            ["Brazilian strength 2P/(pi D), Pa", number(split["strength"], 4), "", f"1/{number(plain['strength'] / split['strength'])} of "
              f"the unconfined one; {result['breaks']['number']} bonds broke in all"],
             ["share of the breaks within 5 mm of the loaded diameter", number(crack["near"]), "", f"of {crack['breaks']} up to 0.2 ms "
              "behind the peak; 25 % of the area lie there"]]
@@ -121,16 +122,16 @@ def tests(lab, command):
     rows = sand(lab) + rock(lab) + beam(lab)
     slopes, openings, powers, law = heap(lab)
     area = math.pi * HEAP_DIAMETER**2 / 4
-    factor = law["factor"] * area / 0.846 / math.sqrt(9.81)
+    factor = law["factor"] * area / HEAP_SOLID_FRACTION / math.sqrt(9.81)
     return (f"{HEADINGS[0]}\n    {command}\n\nEach row is read from the histories of a case of `data/cases` by `tools/bench/laboratory/readings.py`; "
             "an empty cell\nhas no theory. One sample each.\n\n"
             + table(["test", "read", "expected", "from"], rows)
             + "\n\nAngle of repose over friction, `grains_repose.toml`: a line by least squares through the highest disc in each of eleven columns\n"
-            "of 10 mm, with its standard error.\n\n" + table(["friction", "slope"], slopes)
+            "of 10 mm, with its standard error\nin one sample; samples differ by more.\n\n" + table(["friction", "slope"], slopes)
             + "\n\nDischarge over the opening W, `grains_hopper.toml`, bodies in a second between the 100th and the 900th that leave, standard errors\n"
             f"from four parts of the time; Beverloo's law in two dimensions, C (W - k d)^(3/2), with k = {number(law['closed'] / HEAP_DIAMETER)} and, the "
-            f"solid fraction in the silo\nbeing 0.846, C = {number(factor)} sqrt(g). The fit of other powers p with a k of their own misses the rates by "
-            "these multiples of their\nvariances (chi squared over its degrees of freedom).\n\n"
+            f"solid fraction in the silo\nbeing {HEAP_SOLID_FRACTION}, C = {number(factor)} sqrt(g). The fit of other powers p with a k of their own has "
+            "this chi squared per\ndegree of freedom.\n\n"
             + table(["W, mm", "W/d", "bodies a second", "3/2 power"], openings) + "\n\n" + table(["p", "chi squared", "k"], powers) + "\n")
 
 
@@ -173,7 +174,7 @@ def peers(lab, command):
     return (f"{HEADINGS[1]}\n    {command}\n\nThe same discs, springs, friction and time step on one core each; local damping 0.2 in YADE in place of "
             "restitution, in the hopper\nviscous dashpots of the mean mass. The last column is the time of a step of YADE over that of ours.\n\n"
             + table(["test", "", "equidem", "YADE", "equidem, s", "YADE, s", "ratio of a step"], rows) + "\n"
-            "\nYADE wins where the test itself is to be programmed: its scripts stop, change and measure anything in Python between steps, its servo\n"
+            "\nYADE is the better choice for tests that you program: its scripts stop, change and measure anything in Python between steps, its servo\n"
             "walls work in three dimensions, and its package brings tests of this kind in 3D. Its bonds break in tension and shear; the moments "
             "of\nCohFrictMat yield. Ours have no rolling resistance between bodies that are not bonded.\n")
 
