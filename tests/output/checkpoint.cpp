@@ -161,11 +161,11 @@ TEST_CASE("a_checkpoint_of_another_version_is_refused") {
   const auto path = folder / "run.checkpoint.h5";
   CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
   std::string text = read_file(path);
-  text.replace(text.find("/6\n"), 3, "/5\n");
+  text.replace(text.find("/7\n"), 3, "/6\n");
   write_file(path, text, true);
   const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
   INFO(refusal.message);
-  CHECK(refusal.says("its format has version '5', and this library reads version 6"));
+  CHECK(refusal.says("its format has version '6', and this library reads version 7"));
 }
 
 TEST_CASE("what_is_no_checkpoint_is_refused") {
