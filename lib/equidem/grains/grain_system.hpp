@@ -199,7 +199,7 @@ struct GrainSystem {
     const Vec2 own = bodies.motions[static_cast<std::size_t>(body_of(j))].position;
     return is_image(j) ? own + cell.now.shift(image(j)) : own;
   }
-  /// The same in bodies.next.
+  /// Likewise of bodies.next.
   [[nodiscard]] Vec2 next_position_of(std::int32_t j) const {
     const Vec2 own = bodies.next[static_cast<std::size_t>(body_of(j))].position;
     return is_image(j) ? own + cell.next.shift(image(j)) : own;

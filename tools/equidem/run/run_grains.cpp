@@ -118,7 +118,7 @@ std::vector<Wall> all_walls(const GrainCase& resolved) {
   return walls;
 }
 
-/// Of the bonds that have not broken, in their order. \param strengths null: none
+/// Strengths of the bonds that have not broken, in their order. \param strengths null: none
 ContactStrengths strengths_left(const ContactStrengths* strengths, std::span<const BondBreak> breaks) {
   ContactStrengths left;
   if (strengths == nullptr) return left;

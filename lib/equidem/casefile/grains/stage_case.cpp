@@ -81,7 +81,7 @@ void check_removal(const TomlValue& table, const std::vector<Wall>& walls, const
   }
 }
 
-/// Of all keys of a wall that have a default the shape alone stands in every table.
+/// The shape is the only key with a default that stands in every table of a wall.
 bool is_default(const TomlEntry& entry) {
   return entry.name == "shape" && entry.value.text == to_string(Wall::Shape::line);
 }

@@ -25,7 +25,7 @@ std::span<const BondProperty> bond_properties();
 struct BondRows {
   std::vector<GrainBond> bonds;
   std::vector<std::string> places;  ///< "bonds.csv:3" of each, for messages
-  /// Of one bond, N/m; none: the file has no such column, or an empty cell.
+  /// Strength of one bond, N/m; none: the file has no such column, or an empty cell.
   struct Strength {
     std::optional<double> tension, shear;
     [[nodiscard]] bool given() const { return tension || shear; }

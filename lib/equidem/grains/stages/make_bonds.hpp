@@ -16,7 +16,7 @@ namespace equidem {
 struct StageBonds {
   double gap_tolerance = 0;  ///< largest gap over the sum of the radii, as in touching_discs
   GrainBond like = {};       ///< with the springs and dashpots of all; i, j and rest are not read
-  /// Of the new bonds in their order; where the bonds of a run break, and only there.
+  /// Strengths of the new bonds, in their order; where the bonds of a run break, and only there.
   std::optional<StrengthOptions> strengths = {};
 };
 

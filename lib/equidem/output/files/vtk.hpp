@@ -20,7 +20,7 @@ struct PlacedBodies {
   std::span<const DiscMotion> motions = {};  ///< displacement of each from its place; empty: not written
 };
 
-/// What contacts carry, as far as it is known.
+/// Forces and moments of contacts, as far as they are known.
 struct ContactLoads {
   bool forces = false, moments = false;
 };

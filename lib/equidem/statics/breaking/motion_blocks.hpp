@@ -65,10 +65,10 @@ class MotionBlocks {
 
   /// A rigid motion near that of a boundary (its discs one after another) that no contact of the interior resists.
   [[nodiscard]] RigidBlockMotion rigid_motion(std::size_t block, std::span<const double> motion) const;
-  /// Of the disc at a place of the order of elimination, m.
+  /// Motion of the disc at a place of the order of elimination, m.
   [[nodiscard]] std::array<double, 3> motion_at(const RigidBlockMotion& rigid, std::size_t block,
                                                 std::int32_t place) const;
-  /// Of the sample, m: larger than the distance of any two centres.
+  /// Extent of the sample, m: larger than the distance of any two centres.
   [[nodiscard]] double extent() const { return extent_; }
 
   /// A spring that holds one component, beside the contacts.
@@ -83,7 +83,7 @@ class MotionBlocks {
 
  private:
   struct Hold {
-    std::int32_t position;  // of the disc in the order of elimination
+    std::int32_t position;  // place of the disc in the order of elimination
     int component;
     double stiffness;
   };
