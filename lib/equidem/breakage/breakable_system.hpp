@@ -68,6 +68,8 @@ class BreakableSystem {
   /// The contact that the last removal took out, where it was one alone and the state followed from the one before it;
   /// else null.
   [[nodiscard]] virtual const OpenedContact* opened() const { return nullptr; }
+  /// Works and sums of the network as it is, where the last removal left them; else null.
+  [[nodiscard]] virtual const EquilibriumSums* sums() const { return nullptr; }
 
   /// Per contact, N/m; 0 of those that are removed or carry nothing.
   [[nodiscard]] virtual std::span<const ContactForce> forces(std::size_t of_case) const = 0;

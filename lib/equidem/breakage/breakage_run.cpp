@@ -187,6 +187,8 @@ void BreakageRun::break_contact(const NextBreak& next) {
   const OpenedContact* const opened = system_.opened();
   if (opened != nullptr) {
     follow(response_, *opened, scene_.path);
+  } else if (const EquilibriumSums* const sums = system_.sums()) {
+    response_ = response_of(*sums, scene_.path, area_of_stress(scene_.assembly));
   } else {
     response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
   }

@@ -32,8 +32,16 @@ void add_tensor(const Tensor2& t, double* sum) {
   for (std::size_t e = 0; e < 4; ++e) sum[e] += entries[e];
 }
 
-Tensor2 tensor_of(const double* sum, double area) {
-  return (1 / area) * Tensor2{sum[0], sum[1], sum[2], sum[3]};
+Tensor2 tensor_of(const double* sum) {
+  return {sum[0], sum[1], sum[2], sum[3]};
+}
+
+/// Energies from works (Clapeyron).
+void halve_works(NetworkResponse& r) {
+  r.loads_by_motions[1] = r.dead_by_pattern + r.pattern_by_dead;
+  r.loads_by_motions[2] = r.pattern_by_pattern;
+  r.energy = {0.5 * r.loads_by_motions[0], r.dead_by_pattern + r.imposed[0],
+              0.5 * (r.pattern_by_pattern + r.imposed[1])};
 }
 
 /// Load and motion from the sums of work.
@@ -73,10 +81,7 @@ void follow(NetworkResponse& r, const OpenedContact& contact, const LoadPath& pa
     r.imposed[0] -= pattern_dead;
     r.imposed[1] -= pattern_pattern;
   }
-  r.loads_by_motions[1] = r.dead_by_pattern + r.pattern_by_dead;
-  r.loads_by_motions[2] = r.pattern_by_pattern;
-  r.energy = {0.5 * r.loads_by_motions[0], r.dead_by_pattern + r.imposed[0],
-              0.5 * (r.pattern_by_pattern + r.imposed[1])};
+  halve_works(r);
   if (r.area > 0) {
     r.stress[0] += 1 / r.area * moment[1];
     r.stress[1] += 1 / r.area * moment[0];
@@ -104,21 +109,30 @@ NetworkResponse response_of(const BreakableSystem& system, const Assembly& assem
     sum[imposed_0] += a.normal * d.normal + a.tangential * d.tangential;
     sum[imposed_1] += b.normal * d.normal + b.tangential * d.tangential;
   });
-  NetworkResponse r;
-  r.energy = {total[energy_0], total[energy_1], total[energy_2]};
-  r.imposed = {total[imposed_0], total[imposed_1]};
-  r.area = area_of_stress(assembly);
-  if (r.area > 0) r.stress = {tensor_of(&total[stress_0], r.area), tensor_of(&total[stress_1], r.area)};
-
+  EquilibriumSums all;
+  all.imposed = {total[imposed_1], total[imposed_0]};
+  all.moment = {tensor_of(&total[stress_1]), tensor_of(&total[stress_0])};
   const std::span<const double> u1 = system.motion(0), u0 = dead ? system.motion(1) : u1.first(0);
   const std::vector<double>& p1 = path.pattern.force;
-  r.pattern_by_dead = product(p1, u0);
-  r.pattern_by_pattern = product(p1, u1);
-  r.dead_by_pattern = dead ? product(path.dead->force, u1) : 0;
-  r.loads_by_motions = {dead ? product(path.dead->force, u0) : 0, r.dead_by_pattern + r.pattern_by_dead,
-                        r.pattern_by_pattern};
-  r.imposed[0] += dead ? product(path.pattern.prescribed, system.reactions(1)) : 0;
-  r.imposed[1] += product(path.pattern.prescribed, system.reactions(0));
+  all.load_work[0] = {product(p1, u1), product(p1, u0)};
+  if (dead) all.load_work[1] = {product(path.dead->force, u1), product(path.dead->force, u0)};
+  all.imposed[0] += product(path.pattern.prescribed, system.reactions(0));
+  if (dead) all.imposed[1] += product(path.pattern.prescribed, system.reactions(1));
+  NetworkResponse r = response_of(all, path, area_of_stress(assembly));
+  r.energy = {total[energy_0], total[energy_1], total[energy_2]};
+  return r;
+}
+
+NetworkResponse response_of(const EquilibriumSums& sums, const LoadPath& path, double area) {
+  NetworkResponse r;
+  r.imposed = {sums.imposed[1], sums.imposed[0]};
+  r.area = area;
+  if (area > 0) r.stress = {1 / area * sums.moment[1], 1 / area * sums.moment[0]};
+  r.pattern_by_dead = sums.load_work[0][1];
+  r.pattern_by_pattern = sums.load_work[0][0];
+  r.dead_by_pattern = sums.load_work[1][0];
+  r.loads_by_motions[0] = sums.load_work[1][1];
+  halve_works(r);
   relate(r, path);
   return r;
 }

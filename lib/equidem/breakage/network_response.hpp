@@ -53,6 +53,9 @@ inline double work_of(const ContactForce& f, const ContactDeformation& d) {
 /// N/m, the largest component of any contact.
 double largest_force(std::span<const ContactForce> forces);
 
+/// \param area as area_of_stress
+NetworkResponse response_of(const EquilibriumSums& sums, const LoadPath& path, double area);
+
 /// \param system with the right-hand sides of the path, the pattern first
 NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,
                             const LoadPath& path);

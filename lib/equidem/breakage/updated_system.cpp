@@ -18,7 +18,6 @@
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
-#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
@@ -91,15 +90,16 @@ class UpdatedSystem final : public SolvedStates {
     if (alone_) return alone_->next_break(strengths, search);
     if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
     CriticalContact found = sought(search);
-    if (!alone_ && found.contact >= 0 && states_[0].carried && lambda_error(found, search) > allowed_error) {
+    if (!alone_ && found.contact >= 0 && lambda_error(found, search) > allowed_error) {
       static_cast<void>(equilibrium_.refine());
       taken_ = false;
       found = sought(search);
     }
-    judge_residual();
+    static_cast<void>(judge_residual());
     return alone_ ? alone_->next_break(strengths, search) : next_break_of(found, search);
   }
   [[nodiscard]] const OpenedContact* opened() const override { return opened_; }
+  [[nodiscard]] const EquilibriumSums* sums() const override { return alone_ ? nullptr : equilibrium_.sums(); }
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
     if (alone_) return alone_->forces(k);
@@ -140,19 +140,21 @@ class UpdatedSystem final : public SolvedStates {
       loose = true;
       judge(mechanism);
     }
+    if (driven_) return solve_alone();
     std::vector<std::int32_t> gone;
     if (loose) gone = leave();
     opened_ = equilibrium_.opened();
     for (std::size_t p = 0; opened_ != nullptr && p < states_.size(); ++p)
       energies_[p].now += (moved_[p] ? -0.5 : 0.5) * work_of(opened_->force[p], opened_->opening[p]);
     if (opened_ == nullptr) sum_energies();
-    if (states_[0].carried && digits_lost()) {
+    if (digits_lost()) {
       static_cast<void>(equilibrium_.refine());
       taken_ = false;
       opened_ = nullptr;
       sum_energies();
     }
-    judge_residual();
+    const std::vector<std::int32_t> others = judge_residual();
+    gone.insert(gone.end(), others.begin(), others.end());
     return gone;
   }
 
@@ -209,12 +211,16 @@ class UpdatedSystem final : public SolvedStates {
     }
   }
 
-  /// Refinement with a new factor may not serve where hardly anything is left: from there on every network is solved
-  /// alone, with the refusals of its solver.
-  void judge_residual() {
-    if (!why_not_.empty()) return;
-    if (equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual)
-      return measured(equilibrium_.estimated_residual());
+  /// Refinement with a new factor may not serve where hardly anything is left, and round-off of many changes may look
+  /// like a mechanism that a load drives. \return discs that leave the network
+  std::vector<std::int32_t> judge_residual() {
+    if (driven_ || !(equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual))
+      return solve_alone();
+    measured(equilibrium_.estimated_residual());
+    return {};
+  }
+  /// From here on every network is solved alone, with the refusals of its solver.
+  std::vector<std::int32_t> solve_alone() {
     std::vector<std::size_t> contacts;
     for (std::size_t c = 0; c < broken_.size(); ++c) {
       if (broken_[c] != 0) contacts.push_back(c);
@@ -222,7 +228,13 @@ class UpdatedSystem final : public SolvedStates {
     alone_ = make_refactorized_system(network_);
     static_cast<void>(alone_->remove(contacts));
     opened_ = nullptr;
+    const std::vector<std::uint8_t> before = left_;
     copy_alone();
+    std::vector<std::int32_t> gone;
+    for (std::size_t d = 0; d < left_.size(); ++d) {
+      if (left_[d] != 0 && before[d] == 0) gone.push_back(static_cast<std::int32_t>(d));
+    }
+    return gone;
   }
   void copy_alone() {
     for (std::size_t p = 0; p < states_.size(); ++p) states_[p].carried = alone_->carries(p);
@@ -233,17 +245,16 @@ class UpdatedSystem final : public SolvedStates {
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
   void judge(const HeldMechanism& mechanism) {
-    for (std::size_t p = 0; p < states_.size(); ++p) {
-      if (!mechanism.driven[p]) continue;
-      const auto disc = static_cast<std::size_t>(mechanism.component / unknowns_.per_disc);
-      why_not_ =
-          fmt::format("a load moves the part around {}, which nothing holds", describe_disc(network_.assembly, disc));
-      states_[p].carried = false;
-    }
+    driven_ = driven_ || std::ranges::any_of(mechanism.driven, [](std::uint8_t driven) { return driven != 0; });
   }
 
   /// The elastic energy under each right-hand side.
   void sum_energies() {
+    if (const EquilibriumSums* all = equilibrium_.sums()) {
+      energies_[0].now = 0.5 * (all->load_work[0][0] + all->imposed[0]);
+      if (energies_.size() > 1) energies_[1].now = 0.5 * all->load_work[1][1];
+      return;
+    }
     for (std::size_t p = 0; p < states_.size(); ++p) {
       const std::span<const ContactForce> all = forces(p);
       energies_[p].now = contact_sums<1>(all.size(), [&](std::size_t c, std::array<double, 1>& s) {
@@ -347,6 +358,7 @@ class UpdatedSystem final : public SolvedStates {
   std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
   const OpenedContact* opened_ = nullptr;
   bool found_late_ = false;  // mechanisms by the last search
+  bool driven_ = false;      // a load seems to work on a mechanism
   struct Energies {
     double now = 0, first = 0;
     double of_driving = 0;  // energy_of_driving

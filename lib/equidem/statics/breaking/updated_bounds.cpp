@@ -45,8 +45,12 @@ void UpdatedState::evaluate_block(std::size_t number) {
   BlockState& state = states_[number];
   const auto begin = static_cast<std::size_t>(block.contacts_begin);
   const std::size_t count = static_cast<std::size_t>(block.contacts_end) - begin;
-  state.own = utilization_of(std::span(contacts_).subspan(begin, count), std::span(classes_).subspan(begin, count),
-                             options.friction, search_.direction);
+  const auto forces = [&](std::size_t p) {
+    return p < forces_.size() ? std::span<const ContactForce>(forces_[p]).subspan(begin, count)
+                              : std::span<const ContactForce>{};
+  };
+  state.own = utilization_of(std::span(contacts_).subspan(begin, count), forces(0), forces(1),
+                             std::span(classes_).subspan(begin, count), options.friction, search_.direction);
   // A compression that counts as 0 adds nothing to the strength in shear.
   const double dead = state.pressed * std::max(search_.no_dead, 0.0);
   const double live = state.pressed * std::max(search_.no_live, 0.0);
@@ -57,6 +61,10 @@ void UpdatedState::evaluate_blocks() {
   parallel_ranges(states_.size(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) evaluate_block(k);
   });
+  include_subtrees();
+}
+
+void UpdatedState::include_subtrees() {
   for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
     states_[k].subtree = states_[k].own;
     for (const std::int32_t child : (*blocks_)[k].children) states_[k].subtree.include(states_[child].subtree);
@@ -98,7 +106,8 @@ void UpdatedState::bound_children(std::size_t number, const LoadFactorSearch& se
   for (const std::int32_t child : (*blocks_)[number].children) {
     BlockState& state = states_[child];
     state.at_worst = options.skip ? state.subtree : ClassedUtilization::unknown();
-    if (!options.skip || !boundary_motion(child, motion)) continue;
+    const bool moved = boundary_motion(child, motion);
+    if (!options.skip || !(moved || state.to_correct)) continue;
     const auto worsen = [&](const std::array<double, 2>& change) {
       double rate = largest_rate_;
       for (std::size_t c = 0; c < rate_classes; ++c, rate *= 0.5) {
@@ -112,7 +121,8 @@ void UpdatedState::bound_children(std::size_t number, const LoadFactorSearch& se
     std::array<double, 2> change = state.reached;
     const std::size_t size = motion.size() / cases.size();
     for (std::size_t p = 0; p < cases.size(); ++p)
-      change[p] = std::min(change[p], blocks_->force_bound(child, std::span(motion).subspan(p * size, size)));
+      change[p] = std::min(change[p],
+                           blocks_->force_bound(child, std::span(motion).subspan(p * size, size)) + state.corrected[p]);
     worsen(change);
   }
 }

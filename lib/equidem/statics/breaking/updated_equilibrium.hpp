@@ -32,6 +32,14 @@ struct UpdatedEquilibriumOptions {
   bool force_moments = false;        ///< follow the sums of OpenedContact::moment
 };
 
+/// Works and sums over all contacts of the states of rest, N. Energies are works halved (Clapeyron).
+struct EquilibriumSums {
+  std::array<std::array<double, 2>, 2> load_work{};  ///< of the loads of one right-hand side on the motions of another
+  /// Under each right-hand side, of what the prescribed motions and the mean strain of the first one need, on these.
+  std::array<double, 2> imposed{};
+  std::array<Tensor2, 2> moment{};  ///< sum F_i l_j, per right-hand side; 0 where it is not followed
+};
+
 /// A contact that was removed, with the numbers from which work, energy and stress of the network behind the removal
 /// follow (breakage/network_response.hpp, follow).
 struct OpenedContact {
@@ -46,7 +54,7 @@ struct UpdateCounters {
   std::int64_t mended = 0;          ///< of these, because round-off of updates had grown
   std::int64_t refinements = 0;     ///< times that the residual was evaluated and the motion refined
   std::int64_t held = 0;            ///< components held because a removal left a mechanism
-  std::int64_t fronts = 0;          ///< swept back through, by all searches
+  std::int64_t fronts = 0;          ///< swept back through, by changes and searches
   std::int64_t all_fronts = 0;      ///< that there are, at every search
   double largest_residual = 0;      ///< relative, claimed of the states behind changes
   double most_over_claimed = 0;     ///< residual found when motions were refined, over that claimed before; the largest
@@ -100,6 +108,9 @@ class UpdatedEquilibrium {
   /// The contact that the last call of remove() took out, where the state has followed from that before it alone: null
   /// where motions were refined with it.
   [[nodiscard]] const OpenedContact* opened() const;
+  /// Null but where motions were refined by the last call of remove() or refine(), nothing was changed since then, and
+  /// loads drive no mechanism.
+  [[nodiscard]] const EquilibriumSums* sums() const;
   /// Takes contacts out of all later searches, such as those of discs that have left the network.
   void spare(std::span<const std::size_t> contacts);
 
@@ -111,10 +122,9 @@ class UpdatedEquilibrium {
   /// does not serve.
   /// \return the largest relative residual before
   double refine();
-  /// Residual of the motions as they are, the largest of all right-hand sides.
-  [[nodiscard]] double relative_residual();
-  /// An upper estimate of it: measured when motions were last refined, and what rounding may have added since. Where
-  /// a load drives a mechanism there is no state to claim anything of.
+  /// An upper estimate of the relative residual, the largest of all right-hand sides: measured when motions were last
+  /// refined, and what rounding may have added since. Where a load drives a mechanism there is no state to claim
+  /// anything of.
   [[nodiscard]] double estimated_residual() const;
   [[nodiscard]] const ContactSprings& springs() const;
   [[nodiscard]] const UpdateCounters& counters() const;

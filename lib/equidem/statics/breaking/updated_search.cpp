@@ -78,6 +78,7 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
     });
     for (std::size_t k = 0; k < round.size(); ++k) {
       account(visits[k]);
+      counters.fronts += visits[k].fronts;
       states_[round[k]].open = true;
       open_.push_back(round[k]);
       for (const double key : found[k]) keys.include(key);

@@ -8,25 +8,11 @@
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
 
 namespace equidem {
-namespace {
-
-constexpr std::size_t entries_at_once = 1 << 13;
-
-double length_of(std::span<const double> x) {
-  return std::sqrt(sums_over<1>(x.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (const double value : x.subspan(begin, end - begin)) sum += value * value;
-    return std::array{sum};
-  })[0]);
-}
-
-}  // namespace
 
 UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& springs_in, DegreesOfFreedom unknowns_in,
                            std::vector<RightHandSide> cases_in, std::vector<ContactStrength> strengths,
@@ -49,41 +35,38 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
   slot_.resize(assembly.contacts.size());
   contacts_.resize(assembly.contacts.size());
   classes_.assign(assembly.contacts.size(), never_breaks);
-  const bool turns = unknowns.per_disc == 3;
+  remainders_.resize(assembly.contacts.size());
+  forces_.assign(cases.size(), std::vector<ContactForce>(assembly.contacts.size()));
+  if (!assembly.contact_arms.empty()) offsets_.resize(assembly.contacts.size());
+  const double turns = unknowns.per_disc == 3 ? 1 : 0;
   for (std::size_t slot = 0; slot < contacts_.size(); ++slot) {
     const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
     slot_[number] = static_cast<std::int32_t>(slot);
     const Contact& contact = assembly.contacts[number];
     const ContactFrame frame = frame_of(assembly, number);
-    const auto scaled = [&](double arm) { return turns ? arm / unknowns.rotation_scale : 0.0; };
     contacts_[slot] = {symbolic_->position[contact.i],
                        symbolic_->position[contact.j],
                        frame.normal,
-                       scaled(frame.lever_i),
-                       scaled(frame.lever_j),
-                       scaled(frame.offset_i),
-                       scaled(frame.offset_j),
+                       turns * frame.lever_i,
+                       turns * frame.lever_j,
                        springs[number],
-                       strengths[number],
-                       {}};
+                       strengths[number]};
+    if (!offsets_.empty()) offsets_[slot] = {turns * frame.offset_i, turns * frame.offset_j};
   }
   states_.resize(blocks_->all().size());
   class_contacts();
-  for (const RightHandSide& given : cases) {
-    base.emplace_back(components());
+  left_.resize(moved_.size());
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    const RightHandSide& given = cases[p];
+    base_.emplace_back(components());
+    permute_to_elimination<double>(*symbolic_, driving_motion(p).high, base_.back().high);
     double affine = 0;
-    for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
-      if (unknowns.held[k] != 0) base.back().high[k] = given.prescribed[k];
-    }
     for (std::size_t c = 0; given.gradient && c < assembly.contacts.size(); ++c) {
-      const ContactFrame frame = frame_of(assembly, c);
-      const ContactForce f = linear_spring_force(
-          springs[c], affine_deformation(frame, assembly.branch(assembly.contacts[c]), *given.gradient));
+      const ContactForce f = linear_spring_force(springs[c], affine_deformation_of(c, p));
       affine += f.normal * f.normal + f.tangential * f.tangential;
     }
-    std::vector<double> residual(components());
-    residual_force(network(), base.back(), given.gradient, given.force, residual);
-    scales.push_back(std::max(length_of(residual), std::sqrt(affine)));
+    evaluate_forces(p);
+    scales.push_back(std::max(balance(p), std::sqrt(affine)));
   }
 }
 
@@ -117,11 +100,12 @@ bool UpdatedState::boundary_motion(std::size_t number, std::vector<double>& moti
   return any;
 }
 
-UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* path, int worker) {
+UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* path, int worker, Forces forces) {
   thread_local std::vector<double> motion;
   Visit done;
   const std::array<double, 2> reached = std::exchange(states_[number].reached, {});
-  if (!boundary_motion(number, motion) && path == nullptr) return done;  // nothing in it has moved in all
+  const bool to_correct = std::exchange(states_[number].to_correct, false);
+  if (!boundary_motion(number, motion) && path == nullptr && !to_correct) return done;  // nothing in it has moved
   for (const std::int32_t child : (*blocks_)[number].children) {
     for (std::size_t p = 0; p < cases.size(); ++p) states_[child].reached[p] += reached[p];
   }
@@ -152,6 +136,8 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
       double* to = x.data() + p * n + own;
       if (path != nullptr && path_offset_[t] >= 0) {
         std::copy_n(path->values.data() + path_offset_[t] + p * pivots, pivots, to);
+      } else if (to_correct) {
+        std::copy_n(left_.data() + p * n + own, pivots, to);
       } else {
         std::fill_n(to, pivots, 0.0);
       }
@@ -172,16 +158,20 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
       }
     }
   }
-  const auto contacts = std::span(contacts_).subspan(block.contacts_begin, block.contacts_end - block.contacts_begin);
-  add_forces(contacts, symbolic_->block, x.data(), cases.size() > 1 ? x.data() + n : nullptr);
-  evaluate_block(number);
-  states_[number].subtree = ClassedUtilization::unknown();  // until its children are looked at
+  if (forces == Forces::follow) {
+    const auto begin = static_cast<std::size_t>(block.contacts_begin);
+    const std::size_t count = static_cast<std::size_t>(block.contacts_end) - begin;
+    for (std::size_t p = 0; p < cases.size(); ++p)
+      add_forces(std::span(contacts_).subspan(begin, count), offsets(begin, count), layout(), x.data() + p * n,
+                 std::span(forces_[p]).subspan(begin, count));
+    evaluate_block(number);
+    states_[number].subtree = ClassedUtilization::unknown();  // until its children are looked at
+  }
   done.fronts = block.root - block.first + 1;
   return done;
 }
 
 void UpdatedState::account(const Visit& visit) {
-  counters.fronts += visit.fronts;
   visits_.fronts += visit.fronts;
   for (std::size_t p = 0; p < cases.size(); ++p) {
     visits_.moved[p] += visit.moved[p];
@@ -210,25 +200,35 @@ void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> 
     Visit done = visit(*block, &path, 0);
     for (double& moved : done.moved) moved *= lost;
     account(done);
+    counters.fronts += done.fronts;
   }
   for (const std::int32_t t : path.fronts) path_offset_[t] = -1;
 }
 
 ContactDeformation UpdatedState::deformation(std::size_t number, std::size_t of_case) const {
   // The base is the larger part; the rest is a difference of single doubles.
-  ContactDeformation d = deformation_of(network(), base[of_case], cases[of_case].gradient, number);
-  const BreakingContact& c = contacts_[slot_[number]];
-  const ContactDeformation since = opening_of(c, symbolic_->block, moved_.data() + of_case * components());
-  return {d.normal + since.normal, d.tangential + since.tangential};
+  const std::int32_t slot = slot_[number];
+  const BreakingContact& c = contacts_[slot];
+  const ContactOffsets beside = offsets_of(slot);
+  const ContactDeformation first = opening_of(c, beside, layout(), base(of_case));
+  const ContactDeformation since = opening_of(c, beside, layout(), moved_.data() + of_case * components());
+  const ContactDeformation affine = affine_deformation_of(number, of_case);
+  return {affine.normal + first.normal + since.normal, affine.tangential + first.tangential + since.tangential};
 }
 
-void UpdatedState::bring_all_up_to_date() {
+void UpdatedState::bring_all_up_to_date(Forces forces) {
+  scratch_.resize(thread_count());
+  for (auto& x : scratch_) x.resize(moved_.size());
   std::vector<std::int32_t> level, next;
+  std::vector<Visit> visits;
   for (std::size_t k = 0; k < states_.size(); ++k) {
     if ((*blocks_)[k].parent < 0) level.push_back(static_cast<std::int32_t>(k));
   }
   while (!level.empty()) {
-    bring_up_to_date(level, nullptr);
+    visits.assign(level.size(), {});
+    parallel_tasks(level.size(),
+                   [&](std::size_t k, int worker) { visits[k] = visit(level[k], nullptr, worker, forces); });
+    for (const Visit& visit : visits) account(visit);
     next.clear();
     for (const std::int32_t k : level) {
       next.insert(next.end(), (*blocks_)[k].children.begin(), (*blocks_)[k].children.end());
@@ -257,16 +257,14 @@ double UpdatedState::rounding() const {
 
 void UpdatedState::set_contact(std::size_t contact, SpringConstants k, std::span<const ContactForce> forces) {
   springs.set(contact, k, assembly.contacts.size());
-  BreakingContact& c = contacts_[slot_[contact]];
-  c.springs = k;
+  const std::int32_t slot = slot_[contact];
+  contacts_[slot].springs = k;
   if (k.kN == 0 && k.kT == 0) spare(contact);
-  c.force.live = forces[0];
-  if (forces.size() > 1) c.force.dead = forces[1];
+  for (std::size_t p = 0; p < forces.size(); ++p) forces_[p][slot] = forces[p];
 }
 
 ContactForce UpdatedState::force_of(std::size_t contact, std::size_t of_case) const {
-  const ProportionalForce& force = contacts_[slot_[contact]].force;
-  return of_case == 0 ? force.live : force.dead;
+  return forces_[of_case][slot_[contact]];
 }
 
 double UpdatedState::hold(std::int64_t component) {
@@ -300,7 +298,7 @@ bool UpdatedState::factorize() {
     growth_ = 1;
     const bool first = counters.factorizations == 1;
     if (factor->factorize({matrix, assembly, graph})) {
-      solve_moments();
+      solve_followed();
       return true;
     }
     if (first || factor->report().smallest_component < 0) return false;
@@ -309,57 +307,14 @@ bool UpdatedState::factorize() {
   return false;
 }
 
-void UpdatedState::fold_motions() {
-  for (std::size_t p = 0; p < cases.size(); ++p) base[p].add(moved(p));
-  std::fill(moved_.begin(), moved_.end(), 0.0);
-  std::fill(boundary_.begin(), boundary_.end(), 0.0);
-  visits_ = {};
-}
-
-double UpdatedState::residual(LargeVector<double>& left) const {
-  left.resize(components() * cases.size());
-  double largest = 0;
-  for (std::size_t p = 0; p < cases.size(); ++p) {
-    residual_force(network(), base[p], cases[p].gradient, cases[p].force, column(left, p));
-    if (scales[p] > 0) largest = std::max(largest, length_of(column(left, p)) / scales[p]);
-  }
-  return largest;
-}
-
-void UpdatedState::correct_motions(LargeVector<double>& left) {
-  factor->solve(left, static_cast<int>(cases.size()));
-  for (std::size_t p = 0; p < cases.size(); ++p) {
-    const std::span<double> x = column(left, p);
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      if (unknowns.held[k] != 0) x[k] = 0;
-    }
-    base[p].add(x);
-  }
-}
-
-void UpdatedState::evaluate_contacts() {
-  parallel_ranges(contacts_.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t slot = begin; slot < end; ++slot) {
-      const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
-      const auto force = [&](std::size_t p) {
-        return linear_spring_force(contacts_[slot].springs,
-                                   deformation_of(network(), base[p], cases[p].gradient, number));
-      };
-      contacts_[slot].force.live = force(0);
-      if (cases.size() > 1) contacts_[slot].force.dead = force(1);
-    }
-  });
-  scratch_.resize(thread_count());
-  for (auto& x : scratch_) x.resize(moved_.size());
-  evaluate_blocks();
-}
-
 double UpdatedState::bytes() const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-  double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(classes_) + of(slot_) +
-                 of(moved_) + of(boundary_) + of(path_offset_) + of(moments_);
+  double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(offsets_) + of(classes_) +
+                 of(slot_) + of(moved_) + of(boundary_) + of(left_) + of(remainders_) + of(path_offset_) +
+                 of(followed_);
   for (const auto& x : scratch_) bytes += of(x);
-  for (const PreciseMotion& motion : base) bytes += of(motion.high) + of(motion.low);
+  for (const auto& forces : forces_) bytes += of(forces);
+  for (const PreciseMotion& motion : base_) bytes += of(motion.high) + of(motion.low);
   return bytes;
 }
 

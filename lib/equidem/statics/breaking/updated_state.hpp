@@ -12,7 +12,7 @@
 
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multifrontal/updated_cholesky.hpp"
-#include "equidem/statics/breaking/kernels/breaking_contacts.hpp"
+#include "equidem/statics/breaking/kernels/precise_forces.hpp"
 #include "equidem/statics/breaking/motion_blocks.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
 #include "equidem/statics/internal_force.hpp"
@@ -40,7 +40,9 @@ class UpdatedState {
   void bring_up_to_date(std::span<const std::int32_t> blocks, const FactorPath* path);
   /// The motions that follow from a change. \param blocks above its contact, all up to date before it
   void follow(const FactorPath& path, std::span<const std::int32_t> blocks);
-  void bring_all_up_to_date();
+  void bring_all_up_to_date() { bring_all_up_to_date(Forces::follow); }
+  /// Likewise, but forces of contacts are as before: evaluate() has to follow.
+  void bring_motions_up_to_date() { bring_all_up_to_date(Forces::stay); }
   /// Bound on the relative residual that rounding has left since the motions were last refined, as of the last visits
   /// (updated_state.cpp says how it is found).
   [[nodiscard]] double rounding() const;
@@ -74,15 +76,20 @@ class UpdatedState {
 
   /// A factor of the network as it is; components are held where it is singular. \return whether one was found
   bool factorize();
-  /// Everything must be up to date: motions become those since the last refinement and those before it.
-  void fold_motions();
-  /// The part of the loads that the contact law does not balance at the motions of the last refinement, N/m.
-  /// \return the largest over `scales`
-  double residual(LargeVector<double>& left) const;
-  /// Add the motions that balance what is left, which is lost.
-  void correct_motions(LargeVector<double>& left);
-  /// Forces of all contacts from their motions.
-  void evaluate_contacts();
+  /// Behind bring_motions_up_to_date(): evaluate the forces of all contacts by the contact law in extended precision,
+  /// and what part of the loads they do not balance. Motions from here on are kept apart.
+  /// \return the relative residual, the largest of all right-hand sides
+  double evaluate();
+  /// Behind evaluate(): the part of the load on a component that is not balanced, N/m.
+  [[nodiscard]] double unbalanced(std::int64_t component, std::size_t of_case) const;
+  /// Behind evaluate(), once: solve L y = r for what is not balanced. Blocks get the motions that balance it when they
+  /// are next brought up to date.
+  /// \return the energy of the correction over that of the state, the root of it, the largest of all right-hand sides
+  double correct();
+  /// Directly behind evaluate() or correct(): of the motions, with their correction where there is one.
+  [[nodiscard]] EquilibriumSums sums() const;
+  /// Motions of all components, everything brought up to date.
+  [[nodiscard]] PreciseMotion motion(std::size_t of_case);
   [[nodiscard]] double bytes() const;
 
   const Assembly& assembly;
@@ -93,8 +100,7 @@ class UpdatedState {
   std::vector<RightHandSide> cases;
   UpdatedEquilibriumOptions options;
   UpdateCounters counters;
-  std::vector<double> scales;       ///< per right-hand side, N/m: reference of relative residuals
-  std::vector<PreciseMotion> base;  ///< per right-hand side, when motions were last refined
+  std::vector<double> scales;  ///< per right-hand side, N/m: reference of relative residuals
   std::unique_ptr<UpdatedCholesky> factor;
 
  private:
@@ -113,49 +119,91 @@ class UpdatedState {
     /// Per right-hand side, square root of N: at most the root of sum N²/kN + T²/kT over the changes of forces in its
     /// subtree since its last visit, by breaks outside it.
     std::array<double, 2> reached{};
-    bool open = false;  ///< of the search at hand: its children are looked at one by one
+    /// Likewise for the correction of its interior with the boundary at rest, as of the last refinement.
+    std::array<double, 2> corrected{};
+    bool to_correct = false;  ///< since the last refinement it was not visited
+    bool open = false;        ///< of the search at hand: its children are looked at one by one
   };
+  /// What becomes of the forces of contacts as motions are brought up to date.
+  enum class Forces : std::uint8_t { follow, stay };
 
   [[nodiscard]] std::span<double> column(LargeVector<double>& of, std::size_t of_case) const {
     return std::span(of).subspan(of_case * components(), components());
   }
+  [[nodiscard]] std::span<const double> column(const LargeVector<double>& of, std::size_t of_case) const {
+    return std::span(of).subspan(of_case * components(), components());
+  }
   /// Motion of the boundary of a block since its last visit, of each right-hand side. \return whether there was any
   bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
-  Visit visit(std::size_t block, const FactorPath* path, int worker);
+  Visit visit(std::size_t block, const FactorPath* path, int worker, Forces forces = Forces::follow);
+  void bring_all_up_to_date(Forces forces);
+  /// K u - f of a component that is held, N/m, behind evaluate().
+  [[nodiscard]] double reaction(std::size_t component, std::size_t of_case) const;
   void account(const Visit& visit);
   /// Adds to what has reached the subtrees beside the path of a change.
   void reach_beside(const FactorPath& path);
-  /// The right-hand sides whose products with a motion are sum F_i l_j, solved for with L.
-  void solve_moments();
+  /// Right-hand sides whose products with a motion are works and the sums F_i l_j, solved for with L.
+  void solve_followed();
+  /// Prescribed motions, all free components at rest.
+  [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
+  /// Of a contact by these and the mean strain.
+  [[nodiscard]] ContactDeformation driving_deformation(std::size_t contact, std::size_t of_case) const;
+  [[nodiscard]] MotionLayout layout() const { return {symbolic_->block, unknowns.rotation_scale}; }
+  [[nodiscard]] PreciseColumn base(std::size_t of_case) const {
+    const PreciseMotion& motion = base_[of_case];
+    return {motion.high.data(), motion.low.empty() ? nullptr : motion.low.data()};
+  }
+  [[nodiscard]] ContactOffsets offsets_of(std::int32_t slot) const {
+    return offsets_.empty() ? ContactOffsets{} : offsets_[slot];
+  }
+  [[nodiscard]] std::span<const ContactOffsets> offsets(std::size_t begin, std::size_t count) const {
+    return offsets_.empty() ? std::span<const ContactOffsets>{} : std::span(offsets_).subspan(begin, count);
+  }
+  [[nodiscard]] ContactDeformation affine_deformation_of(std::size_t contact, std::size_t of_case) const;
   [[nodiscard]] double rate_of(const BreakingContact& contact) const;
   void class_contacts();
   void evaluate_block(std::size_t block);
   void evaluate_blocks();
+  void include_subtrees();
+  /// Everything is up to date: motions since the last refinement are added to those before it.
+  void fold_motions();
+  /// \return sum N²/kN + T²/kT, N
+  double evaluate_forces(std::size_t of_case);
+  /// Residual of the forces of a right-hand side, into left_. \return its length, N/m
+  double balance(std::size_t of_case);
   /// Utilizations at worst of the children of a block that is up to date, sharper where keys up to `limit` may be among
   /// them.
   void bound_children(std::size_t block, const LoadFactorSearch& search, double limit);
   /// The least key of the contacts of a block, and the least that does not tie with it.
   [[nodiscard]] std::array<double, 2> keys_of(std::size_t block, const LoadFactorSearch& search) const;
   [[nodiscard]] BreakingMoment moment_of(std::int64_t slot, const LoadFactorSearch& search) const {
-    return breaking_moment(contacts_[slot].force, contacts_[slot].strength, options.friction, search);
+    const ProportionalForce force{forces_.size() > 1 ? forces_[1][slot] : ContactForce{}, forces_[0][slot]};
+    return breaking_moment(force, contacts_[slot].strength, options.friction, search);
   }
   /// The first to break among the contacts of open blocks with keys up to `limit`.
   [[nodiscard]] FirstToBreak first_of_open(const LoadFactorSearch& search, double limit) const;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;
   std::unique_ptr<MotionBlocks> blocks_;
-  std::vector<BlockState> states_;            // per block
-  std::vector<BreakingContact> contacts_;     // in the order of blocks
-  std::vector<std::uint8_t> classes_;         // of contacts_, rate_class or never_breaks
-  double largest_rate_ = 0;                   // utilization_rate
-  std::vector<std::int32_t> slot_;            // of each contact in contacts_
-  LargeVector<double> moved_;                 // since the last refinement, in the order of elimination, case by case
-  LargeVector<double> moments_;               // z of L z = q, xx, xy, yx, yy, in the order of elimination
-  std::vector<double> boundary_;              // moved_ of the boundary of each block at its last visit
-  std::vector<std::int32_t> path_offset_;     // into FactorPath::values, per front; -1: not on the path
-  std::vector<LargeVector<double>> scratch_;  // per worker: motion since the last visit
-  std::vector<std::int32_t> open_;            // blocks, parents first
-  LoadFactorSearch search_;                   // of which the utilizations of blocks are
+  std::vector<BlockState> states_;                 // per block
+  std::vector<BreakingContact> contacts_;          // in the order of blocks
+  std::vector<ContactOffsets> offsets_;            // of contacts_; empty where all contacts are on the lines of centres
+  std::vector<std::vector<ContactForce>> forces_;  // of contacts_, per right-hand side
+  std::vector<std::uint8_t> classes_;              // of contacts_, rate_class or never_breaks
+  double largest_rate_ = 0;                        // utilization_rate
+  std::vector<std::int32_t> slot_;                 // of each contact in contacts_
+  LargeVector<double> moved_;        // since the last refinement, in the order of elimination, case by case
+  LargeVector<double> followed_;     // solutions with L of the right-hand sides of updated_sums.cpp; likewise
+  std::vector<double> boundary_;     // moved_ of the boundary of each block at its last visit
+  std::vector<PreciseMotion> base_;  // when motions were last refined, in the order of elimination
+  LargeVector<double> left_;         // loads that were not balanced then, r, or y of L y = r; likewise
+  std::array<double, most_right_sides> twice_energy_{};  // behind evaluate(), N
+  bool corrected_ = false;                               // since evaluate()
+  std::vector<ForceRemainder> remainders_;               // of the forces of contacts_
+  std::vector<std::int32_t> path_offset_;                // into FactorPath::values, per front; -1: not on the path
+  std::vector<LargeVector<double>> scratch_;             // per worker: motion since the last visit
+  std::vector<std::int32_t> open_;                       // blocks, parents first
+  LoadFactorSearch search_;                              // of which the utilizations of blocks are
   std::vector<Held> holds_;
   Visit visits_;       // all since the last refinement
   double growth_ = 1;  // of the squares of errors of the factor since it was made

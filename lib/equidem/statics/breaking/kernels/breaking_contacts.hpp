@@ -13,29 +13,41 @@
 
 namespace equidem {
 
-/// A contact with what its forces follow from. Discs are named by their position in the order of elimination.
+/// What the forces of a contact follow from. Discs are named by their position in the order of elimination.
 struct BreakingContact {
   std::int32_t i = 0, j = 0;
   Vec2 normal;
-  /// Levers and offsets over the length a by which rotations are scaled; 0 where rotations are no unknowns.
-  double turn_i = 0, turn_j = 0, open_i = 0, open_j = 0;
+  double lever_i = 0, lever_j = 0;  ///< m; 0 where rotations are no unknowns
   SpringConstants springs;
   ContactStrength strength;
-  ProportionalForce force;
 };
 
-/// Stretch and slip by the motions of its discs. \param motion per component, `block` of a disc, m
-ContactDeformation opening_of(const BreakingContact& contact, int block, const double* motion);
+/// Offsets of a contact point from the line of centres (ContactArms), m.
+struct ContactOffsets {
+  double i = 0, j = 0;
+};
 
-/// Add to the forces of contacts what motions of their discs do. \param live of the load that grows, `dead` of the
-/// other one, null where there is none: per component, `block` of a disc, m
-void add_forces(std::span<BreakingContact> contacts, int block, const double* live, const double* dead);
+/// How the motions of discs are given: `block` components of each, m, rotations times `rotation_scale`, m.
+struct MotionLayout {
+  int block = 3;
+  double rotation_scale = 1;
+};
+
+/// Stretch and slip by the motions of its discs.
+ContactDeformation opening_of(const BreakingContact& contact, const ContactOffsets& offsets, const MotionLayout& layout,
+                              const double* motion);
+
+/// Add to the forces of contacts what motions of their discs do. \param offsets one for each contact; empty: 0
+void add_forces(std::span<const BreakingContact> contacts, std::span<const ContactOffsets> offsets,
+                const MotionLayout& layout, const double* motion, std::span<ContactForce> forces);
 
 constexpr std::uint8_t never_breaks = 255;  ///< in place of the rate_class of a contact
 
 /// The least load factor in a direction of lambda, to round-off, and the largest utilization under the dead load; 0 and
-/// infinite where a contact has no strength. \param classes rate_class of each contact
-ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std::span<const std::uint8_t> classes,
+/// infinite where a contact has no strength. \param dead forces, empty where there are none
+/// \param classes rate_class of each contact
+ClassedUtilization utilization_of(std::span<const BreakingContact> contacts, std::span<const ContactForce> live,
+                                  std::span<const ContactForce> dead, std::span<const std::uint8_t> classes,
                                   double friction, double direction);
 
 }  // namespace equidem
