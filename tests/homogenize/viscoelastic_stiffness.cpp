@@ -84,7 +84,7 @@ DenseStiffness dense_stiffness(const Assembly& assembly, const ContactSprings& s
         row(3 * contact.j + r) += of_j[r];
       }
       Eigen::RowVector3cd affine;
-      for (int a = 0; a < 3; ++a) affine(a) = dot(strains[a] * assembly.branch(contact), direction);
+      for (int e = 0; e < 3; ++e) affine(e) = dot(strains[e] * assembly.branch(contact), direction);
       k += spring * row * row.transpose();
       f += spring * row * affine;
       stiffness += spring * affine.transpose() * affine;

@@ -81,5 +81,6 @@ TEST_CASE("preparation_is_not_timed") {
         return [] {};
       },
       0);
-  CHECK(sample.seconds < 2e-3);
+  CAPTURE(sample.seconds, sample.processor_seconds);
+  CHECK(sample.processor_seconds < 2e-3);  // a busy machine makes others wait, which no processor time counts
 }

@@ -10,7 +10,7 @@
 namespace equidem {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Facets shorter than this share of the distance of the centres are round-off.
 constexpr double smallest_facet = 1e-9;
 
@@ -39,8 +39,8 @@ class DualGeometry {
     Facet facet;
     facet.distance = norm(l);
     facet.lever = 0.5 * (facet.distance + (wa - wb) / facet.distance);
-    facet.high = edge.left < 0 ? infinity : radical_centre(edge, edge.left, l, facet.distance);
-    facet.low = edge.right < 0 ? -infinity : radical_centre(edge, edge.right, l, facet.distance);
+    facet.high = edge.left < 0 ? unbounded : radical_centre(edge, edge.left, l, facet.distance);
+    facet.low = edge.right < 0 ? -unbounded : radical_centre(edge, edge.right, l, facet.distance);
     if (domain_) clip(facet, edge.a, l);
     if (!domain_ || (strips_.count() > 1 && facet.length() > 0))
       facet.certain = certain(facet, facet.high, edge.a, l) && certain(facet, facet.low, edge.a, l);
@@ -76,7 +76,7 @@ class DualGeometry {
     const double high = facet.high;
     const auto slab = [&](double from, double along, double lowest, double highest) {
       if (along == 0) {
-        if (from < lowest || from > highest) facet.high = -infinity;
+        if (from < lowest || from > highest) facet.high = -unbounded;
         return;
       }
       const double t0 = (lowest - from) / along;

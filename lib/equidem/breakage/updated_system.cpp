@@ -200,12 +200,12 @@ class UpdatedSystem final : public SolvedStates {
   /// Loads that move a part which nothing holds show as forces of the components that are held in place of it.
   void check_held_free() const {
     take();
-    constexpr double balanced = 1e-8;  // over the largest force: what rounding leaves where loads balance
+    constexpr double in_balance = 1e-8;  // over the largest force: what rounding leaves where loads balance
     for (std::size_t p = 0; p < states_.size(); ++p) {
       double largest = largest_force(states_[p].forces);
       for (const double f : network_.cases[p].force) largest = std::max(largest, std::abs(f));
       for (const std::size_t k : held_free_) {
-        if (std::abs(states_[p].reactions[k]) <= balanced * largest) continue;
+        if (std::abs(states_[p].reactions[k]) <= in_balance * largest) continue;
         computation_failed("a load moves a part that nothing holds", "the updated factor holds it", "Factorize anew");
       }
     }

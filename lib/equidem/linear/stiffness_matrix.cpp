@@ -19,7 +19,7 @@ template <int B, typename Visit>
 std::array<double, B * B> visit_row(const SpringNetwork& network, double held_stiffness, std::size_t d,
                                     const Visit& visit) {
   const auto& [assembly, graph, springs, unknowns] = network;
-  const auto held = [&](std::size_t disc, int k) { return unknowns.held[disc * B + k] != 0; };
+  const auto held = [&](std::size_t disc, int k) { return network.unknowns.held[disc * B + k] != 0; };
   std::array<double, B * B> diagonal{};
   for (const auto& edge : graph.of(d)) {
     const Contact& contact = assembly.contacts[edge.contact];

@@ -39,7 +39,7 @@ struct EnumNames<SizeDistribution::Kind> {
 };
 
 /// \throws Error (bad_input) on numbers out of range, sieves that do not ascend or do not run from 0 to 1
-void check(const SizeDistribution& distribution);
+void check(const SizeDistribution& sizes);
 
 /// A curve of two columns, diameter in m and share passing by mass in [0, 1], ascending, the first share 0, the last 1.
 /// A first row of names, empty lines and lines that begin with # are passed over.
@@ -49,12 +49,12 @@ std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path);
 /// Radii in random order, one from each of `count` parts of equal probability, so that even a few follow the
 /// distribution. Only operations that IEEE 754 rounds alike everywhere: a seed gives the same bits on every machine.
 /// \return m
-std::vector<double> draw_radii(const SizeDistribution& distribution, std::int64_t count, Random& random);
+std::vector<double> draw_radii(const SizeDistribution& sizes, std::int64_t count, Random& random);
 
 /// Mean of r and of r² over the distribution, m and m²: how many grains cover an area.
 struct RadiusMoments {
   double mean = 0, mean_square = 0;
 };
-RadiusMoments moments_of(const SizeDistribution& distribution);
+RadiusMoments moments_of(const SizeDistribution& sizes);
 
 }  // namespace equidem

@@ -49,20 +49,20 @@ struct Count {
   std::int64_t BreakEvent::*member;
 };
 
-const std::vector<Count> counts = {{"leg", &BreakEvent::leg},
-                                   {"contact", &BreakEvent::contact},
-                                   {"ties", &BreakEvent::ties},
-                                   {"unstable_modes", &BreakEvent::unstable_modes}};
+const std::vector<Count> count_columns = {{"leg", &BreakEvent::leg},
+                                          {"contact", &BreakEvent::contact},
+                                          {"ties", &BreakEvent::ties},
+                                          {"unstable_modes", &BreakEvent::unstable_modes}};
 
-struct Component {
+struct StressColumn {
   std::string name;
   double Tensor2::*member;
 };
 
-const std::vector<Component> components = {{"stress_xx_Pa", &Tensor2::xx},
-                                           {"stress_yx_Pa", &Tensor2::yx},
-                                           {"stress_xy_Pa", &Tensor2::xy},
-                                           {"stress_yy_Pa", &Tensor2::yy}};
+const std::vector<StressColumn> stress_columns = {{"stress_xx_Pa", &Tensor2::xx},
+                                                  {"stress_yx_Pa", &Tensor2::yx},
+                                                  {"stress_xy_Pa", &Tensor2::xy},
+                                                  {"stress_yy_Pa", &Tensor2::yy}};
 
 }  // namespace
 
@@ -80,14 +80,14 @@ Table event_table(const EventPath& run, const BreakageScene& scene) {
   std::vector<std::int64_t> number;
   for (std::int64_t k = 0; k < std::ssize(events); ++k) number.push_back(k);
   table.add("event", std::move(number));
-  for (const Count& count : counts) table.add(count.name, events, count.member);
+  for (const Count& count : count_columns) table.add(count.name, events, count.member);
   const auto& contacts = scene.assembly.contacts;
   const auto contact = [&](const BreakEvent& event) { return contacts[static_cast<std::size_t>(event.contact)]; };
   table.add("i", events, [&](const BreakEvent& event) { return contact(event).i; });
   table.add("j", events, [&](const BreakEvent& event) { return contact(event).j; });
   table.add("mode", events, [](const BreakEvent& event) { return to_string(event.mode); });
   for (const Number& n : numbers(scene.path.driven_by)) table.add(n.name, events, n.member);
-  for (const Component& c : components)
+  for (const StressColumn& c : stress_columns)
     table.add(c.name, events, [&](const BreakEvent& event) { return event.stress.*c.member; });
   table.add("avalanche_of_load", avalanches_by(run, &BreakEvent::load).number);
   table.add("avalanche_of_motion", avalanches_by(run, &BreakEvent::motion).number);
@@ -109,9 +109,9 @@ std::vector<BreakEvent> read_events(const std::filesystem::path& path, const Eve
   std::vector<BreakEvent> events(table.rows());
   for (std::size_t row = 0; row < events.size(); ++row) {
     BreakEvent& event = events[row];
-    for (const Count& count : counts) event.*count.member = table.integer(row, column.at(count.name));
+    for (const Count& count : count_columns) event.*count.member = table.integer(row, column.at(count.name));
     for (const Number& n : numbers(scene.path.driven_by)) event.*n.member = table.number(row, column.at(n.name));
-    for (const Component& c : components) event.stress.*c.member = table.number(row, column.at(c.name));
+    for (const StressColumn& c : stress_columns) event.stress.*c.member = table.number(row, column.at(c.name));
     event.mode = enum_from<BreakMode>(table.text(row, column.at("mode")));
     event.loosened = discs_of(table.text(row, column.at("loosened")));
   }

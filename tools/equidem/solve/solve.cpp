@@ -28,7 +28,7 @@ std::string suffix_of(const std::string& load_case) {
 }
 
 /// Every file that will be written, checked before the computation.
-void check_outputs(const CommonOptions& options, const Case& resolved) {
+void check_solution_files(const CommonOptions& options, const Case& resolved) {
   const OutputPlan plan(options);
   plan.expect_results();
   expect_assembly(plan, resolved.output);
@@ -123,7 +123,7 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
 int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   refuse_dry_run_with_accuracy(options, accuracy.has_value());
   Case resolved = read_case(options);
-  check_outputs(options, resolved);
+  check_solution_files(options, resolved);
   const auto lock = lock_out(options);
   if (accuracy && BlockSearch::serves(resolved)) {
     BlockSearch search(options, resolved, *accuracy);

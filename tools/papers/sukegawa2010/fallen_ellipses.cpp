@@ -68,9 +68,8 @@ FallenEllipses drop(const Fill& fill) {
 
 std::vector<FallenEllipses> drop_ellipses(bool quick) {
   std::vector<FallenEllipses> boxes;
-  using enum EllipseLaw;
   const StartGrid grid = quick ? StartGrid{.columns = 6, .rows = 8} : StartGrid{.columns = 10, .rows = 20};
-  for (const EllipseLaw law : {exact, enlarged_mended, enlarged_as_printed})
+  for (const EllipseLaw law : {EllipseLaw::exact, EllipseLaw::enlarged_mended, EllipseLaw::enlarged_as_printed})
     boxes.push_back(drop({.shape = Shape::ellipse, .grid = grid, .softness = 25, .ellipse_law = law}));
   return boxes;
 }

@@ -200,9 +200,9 @@ Findings disc_moduli(bool quick) {
                                      {"G_over_uniform_strain", &ModuliPoint::shear_share},
                                      {"slip_by_displacements", &ModuliPoint::displacement},
                                      {"slip_by_rotations", &ModuliPoint::rotation}}) {
-    table.add(name, points, [&](const ModuliPoint& p) { return (p.*member).mean; });
+    table.add(name, points, [member = member](const ModuliPoint& p) { return (p.*member).mean; });
     table.add(std::string(name) + "_standard_error", points,
-              [&](const ModuliPoint& p) { return (p.*member).standard_error; });
+              [member = member](const ModuliPoint& p) { return (p.*member).standard_error; });
   }
   findings.tables = {{"disc_moduli", std::move(table)}};
   findings.plots = {{"disc_moduli_K", share_plot(points, ratios, "K", &ModuliPoint::bulk_share)},

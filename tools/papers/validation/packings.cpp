@@ -282,9 +282,9 @@ Findings jamming(bool quick) {
                                      {"z_without_rattlers", &JammedSize::coordination},
                                      {"contacts_beyond_isostatic", &JammedSize::surplus},
                                      {"share_of_rattlers", &JammedSize::rattlers}}) {
-    table.add(name, all, [&](const JammedSize& s) { return (s.*member).mean; });
+    table.add(name, all, [member = member](const JammedSize& s) { return (s.*member).mean; });
     table.add(std::string(name) + "_standard_error", all,
-              [&](const JammedSize& s) { return (s.*member).standard_error; });
+              [member = member](const JammedSize& s) { return (s.*member).standard_error; });
   }
   Plot plot{.title = "Bidisperse discs (1 : 1.4) at jamming",
             .x = {.label = "N^{-1/(2ν)}, ν = 0.71", .min = -0.001},

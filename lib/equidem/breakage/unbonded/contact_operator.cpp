@@ -53,7 +53,7 @@ void ContactOperator::lay_out() {
   pattern_.first.push_back(0);
   for (auto& rows : rows_of) {
     std::ranges::sort(rows);
-    rows.erase(std::ranges::unique(rows).begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
     pattern_.rows.insert(pattern_.rows.end(), rows.begin(), rows.end());
     pattern_.first.push_back(static_cast<std::int64_t>(pattern_.rows.size()));
   }

@@ -28,7 +28,6 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -39,18 +38,14 @@
 
 namespace equidem::casefile {
 
-/// The member at the end of a chain; an empty std::optional in the chain is given a value.
-template <class S>
-S& member(S& object) {
-  return object;
-}
-template <class S, class M, class C, class... Links>
-auto& member(S& object, M C::*first, Links... rest) {
+/// A member of an object, or of the value of a std::optional, which is given one if it is empty.
+template <class S, class M, class C>
+auto& member(S& object, M C::*link) {
   if constexpr (is_optional<S>) {
     if (!object) object.emplace();
-    return member((*object).*first, rest...);
+    return (*object).*link;
   } else {
-    return member(object.*first, rest...);
+    return object.*link;
   }
 }
 
@@ -144,30 +139,46 @@ inline auto only_with(std::vector<std::string> others, std::string why) {
 }
 
 template <class Spec, class Attribute>
-void apply(Spec& spec, const Attribute& attribute) {
-  if constexpr (std::is_convertible_v<Attribute, std::string>) {
-    spec.help = attribute;
-  } else if constexpr (!std::is_member_object_pointer_v<Attribute>) {
-    attribute(spec);
-  }
+void attach(Spec& spec, const Attribute& attribute) {
+  attribute(spec);
 }
+template <class Spec>
+void attach(Spec& spec, const std::string& help) {
+  spec.help = help;
+}
+template <class Spec>
+void attach(Spec& spec, const char* help) {
+  spec.help = help;
+}
+template <class Spec, class M, class C>
+void attach(Spec& /*spec*/, M C::*const& /*link*/) {}
 
-/// The pointers to members among the arguments.
-template <class M, class C>
-std::tuple<M C::*> link_in(M C::*link, int) {
-  return {link};
+/// The function from an object to its member at the end of a chain. Its type tells the types of the members, not which
+/// they are: keys of one type in one struct share their code.
+struct Itself {
+  template <class S>
+  S& operator()(S& object) const {
+    return object;
+  }
+};
+template <class Before, class M, class C>
+struct MemberOf {
+  Before before;
+  M C::*link;
+
+  template <class S>
+  auto& operator()(S& object) const {
+    return member(before(object), link);
+  }
+};
+/// The chain is at the head of the arguments.
+template <class Before, class... Arguments>
+Before follower(Before before, const Arguments&... /*attributes*/) {
+  return before;
 }
-template <class Attribute>
-std::tuple<> link_in(const Attribute&, long) {
-  return {};
-}
-/// The function from an object to its member at the end of the chain among the arguments.
-template <class... Arguments>
-auto follower(const Arguments&... arguments) {
-  return [links = std::tuple_cat(link_in(arguments, 0)...)](auto& object) -> auto& {
-    return std::apply(
-        [&]([[maybe_unused]] auto... link) -> auto& { return member(object, link...); }, links);
-  };
+template <class Before, class M, class C, class... Arguments>
+auto follower(Before before, M C::*const& next, const Arguments&... arguments) {
+  return follower(MemberOf<Before, M, C>{before, next}, arguments...);
 }
 
 /// One key of a table that is bound to an S.
@@ -179,15 +190,15 @@ struct Key {
 
 /// A key that is checked and described, and read elsewhere.
 template <class S, class... Attributes>
-Key<S> unbound_key(std::string name, KeyType type, const Attributes&... attributes) {
+Key<S> unbound_key(std::string name, KeyType type, Attributes... attributes) {
   Key<S> key{.spec = {.table = {}, .name = std::move(name), .type = type, .fallback = KeySpec::none}};
-  (apply(key.spec, attributes), ...);
+  (attach(key.spec, attributes), ...);
   return key;
 }
 
 /// A key bound to a function that takes a T; it has no default.
 template <class S, class T, class... Attributes>
-Key<S> key_with(std::string name, void (*set)(S&, const T&), const Attributes&... attributes) {
+Key<S> key_with(std::string name, void (*set)(S&, const T&), Attributes... attributes) {
   Key<S> key = unbound_key<S>(std::move(name), type_of_key<T>());
   key.spec.choices = choices_of<T>();
   key.read = [set](S& object, TomlValue& value, const std::filesystem::path& folder) {
@@ -195,14 +206,12 @@ Key<S> key_with(std::string name, void (*set)(S&, const T&), const Attributes&..
     assign(given, value, folder);
     set(object, given);
   };
-  (apply(key.spec, attributes), ...);
+  (attach(key.spec, attributes), ...);
   return key;
 }
 
-/// A key bound to the member of an S at the end of a chain; then its attributes.
-template <class S, class... Arguments>
-Key<S> key_in(std::string name, const Arguments&... arguments) {
-  const auto target = follower(arguments...);
+template <class S, class Target>
+Key<S> key_of_member(std::string name, const Target& target) {
   S defaults{};
   using T = std::remove_cvref_t<decltype(target(defaults))>;
   Key<S> key = unbound_key<S>(std::move(name), type_of_key<T>());
@@ -211,12 +220,19 @@ Key<S> key_in(std::string name, const Arguments&... arguments) {
   key.read = [target](S& object, TomlValue& value, const std::filesystem::path& folder) {
     assign(target(object), value, folder);
   };
-  (apply(key.spec, arguments), ...);
+  return key;
+}
+
+/// A key bound to the member of an S at the end of a chain; then its attributes.
+template <class S, class... Arguments>
+Key<S> key_in(std::string name, Arguments... arguments) {
+  Key<S> key = key_of_member<S>(std::move(name), follower(Itself(), arguments...));
+  (attach(key.spec, arguments), ...);
   return key;
 }
 
 template <class S, class M, class... Arguments>
-Key<S> key(std::string name, M S::*first, const Arguments&... arguments) {
+Key<S> key(std::string name, M S::*first, Arguments... arguments) {
   return key_in<S>(std::move(name), first, arguments...);
 }
 
@@ -255,10 +271,10 @@ class File {
   /// A table, bound to the member at the end of a chain, without one to the F itself; then its attributes. Its keys are
   /// given to the result.
   template <class... Arguments>
-  auto table(std::string name, const Arguments&... arguments) {
-    const auto target = follower(arguments...);
+  auto table(std::string name, Arguments... arguments) {
+    const auto target = follower(Itself(), arguments...);
     TableSpec spec{.name = std::move(name)};
-    (apply(spec, arguments), ...);
+    (attach(spec, arguments), ...);
     return Binder<decltype(target)>(*this, std::move(spec), target);
   }
   [[nodiscard]] const FileSpec& spec() const { return spec_; }

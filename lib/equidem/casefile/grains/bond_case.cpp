@@ -13,7 +13,7 @@ namespace equidem::casefile {
 namespace {
 
 /// The dashpots and springs of a bond. In [bonds] they have help, elsewhere they override those.
-std::vector<Key<GrainBond>> bond_keys(bool base) {
+std::vector<Key<GrainBond>> keys_of_bonds(bool base) {
   std::vector<Key<GrainBond>> keys;
   for (const BondProperty& property : bond_properties())
     keys.push_back(key(property.name, property.value, optional, unit(property.unit), not_negative,
@@ -47,11 +47,11 @@ void bind_bonds(File<GrainTables>& file) {
       "exact (default): each bond decays as it should in whatever step, bonds that share discs in short steps alone; "
       "explicit: dashpots by the velocities at the "
       "start of the step, as in Sukegawa (2010), with the limit dt < 2 m/C_n, 2 m/(3 C_s) of equal discs")});
-  file.table("bonds", &GrainTables::bonds, &BondsTable::common).keys(bond_keys(true));
+  file.table("bonds", &GrainTables::bonds, &BondsTable::common).keys(keys_of_bonds(true));
   std::vector<Key<GrainBond>> keys{
       unbound_key<GrainBond>("grains", KeyType::discs, required,
                              "[i, j]: two discs, counted from 0, those of the file first; they do not collide")};
-  for (Key<GrainBond>& key : bond_keys(false)) keys.push_back(std::move(key));
+  for (Key<GrainBond>& key : keys_of_bonds(false)) keys.push_back(std::move(key));
   file.table("bond", repeated_table, "two discs tied by dashpots").described(std::move(keys));
   file.table("strength", &GrainTables::strength, "strengths of the bonds; left out: they never break")
       .keys(strength_keys_of_bonds());
@@ -76,7 +76,7 @@ StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, s
 }
 
 void complete_bonds(const TomlValue& root, GrainTables& tables) {
-  static const auto keys = bond_keys(false);
+  static const auto keys = keys_of_bonds(false);
   const bool bonds_later = std::ranges::any_of(repeated(root, "stage"),
                                                [](const TomlValue& stage) { return stage.find("bonds") != nullptr; });
   BondRows read;

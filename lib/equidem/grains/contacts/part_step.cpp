@@ -16,13 +16,13 @@ namespace {
 // Functions of a contact are inlined, or its numbers would go through memory: a twentieth of the time.
 
 /// A contact with its two bodies; a wall has none.
-struct Contact {
+struct PartContact {
   const Candidate& candidate;
   const PartGeometry& geometry;
   const GrainBody& body_i;
   const GrainBody* body_j;
 
-  Contact(const GrainSystem& system, const Candidate& of, const PartGeometry& met)
+  PartContact(const GrainSystem& system, const Candidate& of, const PartGeometry& met)
       : candidate(of),
         geometry(met),
         body_i(system.bodies.constants[i()]),
@@ -34,7 +34,7 @@ struct Contact {
 };
 
 /// Velocity of the contact point of j, or of the wall, relative to that of i.
-[[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const Contact& contact) {
+[[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const PartContact& contact) {
   const GrainMotion& motion = system.bodies.motions[contact.i()];
   const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.geometry.arm_i);
   if (!contact.body_j)
@@ -45,7 +45,7 @@ struct Contact {
 
 /// 1/(1/m_i + 1/m_j + (arm_i x s)²/I_i + (arm_j x s)²/I_j).
 /// \param share of what the arms lack to the surface that is added
-[[gnu::always_inline]] inline double tangential_mass(const Contact& contact, double share) {
+[[gnu::always_inline]] inline double tangential_mass(const PartContact& contact, double share) {
   const PartGeometry& geometry = contact.geometry;
   const double lever_i = cross(geometry.arm_i, contact.tangent()) + share * geometry.sunk_i;
   double inverse = contact.body_i.inverse_mass + lever_i * lever_i * contact.body_i.inverse_moment;
@@ -57,7 +57,7 @@ struct Contact {
 }
 
 /// (1/m' of the contact points along the normal)/(1/m of the centres); see collide_parts_function.
-[[gnu::always_inline]] inline double eccentricity(const Contact& contact) {
+[[gnu::always_inline]] inline double eccentricity(const PartContact& contact) {
   const PartGeometry& geometry = contact.geometry;
   const double lever_i = cross(geometry.arm_i, geometry.normal);
   double inverse = lever_i * lever_i * contact.body_i.inverse_moment;
@@ -70,7 +70,7 @@ struct Contact {
 
 /// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
 /// aside.
-[[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const Contact& contact, double mass) {
+[[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const PartContact& contact, double mass) {
   const PartGeometry& geometry = contact.geometry;
   const auto gain_of = [&](const GrainBody& body, const BodyImpulse& push, Vec2 arm) {
     return body.inverse_mass * push.impulse + (body.inverse_moment * push.torque) * perpendicular(arm);
@@ -85,7 +85,7 @@ struct Contact {
 }
 
 [[gnu::always_inline]] inline Sliding sliding_of(const Candidate& candidate, const PartPair& pair,
-                                                 const Contact& contact) {
+                                                 const PartContact& contact) {
   Sliding law = candidate.sliding;
   if (pair.tangential_damping > 0) law.dashpot = pair.tangential_damping * std::sqrt(tangential_mass(contact, 1));
   return law;
@@ -93,7 +93,7 @@ struct Contact {
 
 /// Tangential impulse on j over the step, as of discs (force_step.cpp).
 [[gnu::always_inline]] inline double slide(const GrainSystem& system, Candidate& candidate, const PartPair& pair,
-                                           const Contact& contact, double velocity, double normal_force,
+                                           const PartContact& contact, double velocity, double normal_force,
                                            EnergyLedger& lost) {
   const double dt = system.dt();
   const double mass = tangential_mass(contact, 0);
@@ -127,7 +127,7 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
 }
 
 /// Give an impulse to j, its opposite to i.
-[[gnu::always_inline]] inline void push(std::vector<BodyImpulse>& impulses, const Contact& contact, Vec2 impulse) {
+[[gnu::always_inline]] inline void push(std::vector<BodyImpulse>& impulses, const PartContact& contact, Vec2 impulse) {
   BodyImpulse& on_i = impulses[contact.i()];
   on_i.impulse -= impulse;
   on_i.torque -= cross(contact.geometry.arm_i, impulse);
@@ -166,7 +166,7 @@ void collide_parts(GrainSystem& system) {
     system.free_flight = false;
     if (!candidate.touching) ++system.counters.contacts;
     ++system.counters.evaluations;
-    const Contact contact(system, candidate, geometry);
+    const PartContact contact(system, candidate, geometry);
     const Vec2 relative = relative_velocity(system, contact);
     if (verlet) {
       const TouchPlace place{geometry.overlap, geometry.normal, geometry.arm_i, geometry.arm_j};

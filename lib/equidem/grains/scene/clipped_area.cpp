@@ -10,7 +10,7 @@
 namespace equidem {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double full_turn = 2 * std::numbers::pi;
 
 /// Signed area that the circle around the origin shares with the triangle (0, a, b).
 double sector_or_triangle(Vec2 a, Vec2 b, double radius) {
@@ -96,8 +96,8 @@ void for_arcs(std::span<const Clump::Disc> discs, const Region* region, const Bo
     angles = {0};
     for (const Clump::Disc& other : discs) add_crossings(circle, other, angles);
     if (region != nullptr) add_crossings(circle, *region, angles);
-    for (double& angle : angles) angle -= turn * std::floor(angle / turn);
-    angles.push_back(turn);
+    for (double& angle : angles) angle -= full_turn * std::floor(angle / full_turn);
+    angles.push_back(full_turn);
     std::sort(angles.begin(), angles.end());
     for (std::size_t a = 0; a + 1 < angles.size(); ++a) {
       const double middle = 0.5 * (angles[a] + angles[a + 1]);

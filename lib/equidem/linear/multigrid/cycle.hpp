@@ -56,7 +56,7 @@ class Cycle {
     QuadVector b{}, x{}, other{}, cells{};
   };
   void build_grids(const SpringNetwork& network, const CycleOptions& options);
-  void correct(std::size_t level);
+  void correct(std::size_t number);
 
   double unit_;
   std::vector<std::int32_t> order_;

@@ -104,9 +104,9 @@ class GroupedRows {
   [[nodiscard]] Groups groups_of(RowRange rows) const;
   template <typename Slots, typename Held>
   void lay_out(std::span<const std::int32_t> first_row, const Slots& slots_of, const Held& any_held);
-  void clear(std::size_t group);
+  void clear(std::size_t number);
   template <typename Entry>
-  void set_inverse(std::size_t group, std::size_t lane, const Entry& entry);
+  void set_inverse(std::size_t number, std::size_t lane, const Entry& entry);
   void fill(const SpringNetwork& network, std::span<const std::int32_t> order, const std::vector<std::int32_t>& row_of,
             std::size_t group, double unit);
   void fill_slot(const ContactFrame& frame, const SpringConstants& k, double kM, double scale, bool from_i,

@@ -64,7 +64,7 @@ std::uint64_t checksum_of(const OpenFile& file, const Header& header) {
 std::string next_value(std::string_view& text, std::string_view key) {
   const std::size_t end = text.find('\n');
   if (end == std::string_view::npos || !text.starts_with(key)) return {};
-  const std::string value(text.substr(key.size(), end - key.size()));
+  std::string value(text.substr(key.size(), end - key.size()));
   text.remove_prefix(end + 1);
   return value;
 }

@@ -50,8 +50,8 @@ void replace_file(const std::filesystem::path& path, std::string_view text) {
 struct MovingDiscs {
   std::vector<DiscMotion> motions, velocities;
 };
-MovingDiscs parts_of(std::span<const FramePart> parts, std::span<const DiscMotion> motions,
-                     std::span<const DiscMotion> velocities) {
+MovingDiscs moving_parts(std::span<const FramePart> parts, std::span<const DiscMotion> motions,
+                         std::span<const DiscMotion> velocities) {
   MovingDiscs discs;
   for (const FramePart& part : parts) {
     const DiscMotion &body = motions[part.body], &rate = velocities[part.body];
@@ -129,7 +129,7 @@ void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMot
   if (options_.parts.empty()) {
     write(file_name(discs_stem, step), frame_discs_text(assembly_, options_, time, motions, velocities));
   } else {
-    const MovingDiscs discs = parts_of(options_.parts, motions, velocities);
+    const MovingDiscs discs = moving_parts(options_.parts, motions, velocities);
     write(file_name(discs_stem, step), frame_discs_text(assembly_, options_, time, discs.motions, discs.velocities));
   }
   if (options_.contacts)

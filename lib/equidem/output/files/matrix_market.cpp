@@ -18,7 +18,7 @@ std::string banner(std::string_view kind, const std::string& comment, std::int64
   std::string text;
   text.reserve(static_cast<std::size_t>(bytes));
   text += fmt::format("%%MatrixMarket matrix {}\n", kind);
-  for (const std::string_view line : equidem::parts_of(comment, '\n')) text += fmt::format("% {}\n", line);
+  for (const std::string_view line : parts_of(comment, '\n')) text += fmt::format("% {}\n", line);
   return text;
 }
 

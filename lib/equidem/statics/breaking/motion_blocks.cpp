@@ -134,7 +134,7 @@ void MotionBlocks::find_rigid_motions(const SpringNetwork& network) {
   const double round_off = 2 * std::numeric_limits<double>::epsilon() * extent_;
   const auto is_held = [&](std::int32_t disc) {
     bool held = false;
-    for (std::size_t r = 0; r < b; ++r) held = held || unknowns.held[disc * b + r] != DegreesOfFreedom::free;
+    for (std::size_t r = 0; r < b; ++r) held = held || network.unknowns.held[disc * b + r] != DegreesOfFreedom::free;
     return held;
   };
   for (MotionBlock& block : blocks_) {  // children before their parents

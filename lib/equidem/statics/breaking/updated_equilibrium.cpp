@@ -44,7 +44,7 @@ struct UpdatedEquilibrium::Implementation {
 
 namespace {
 
-constexpr double negligible = 1e-8;  // over the size of the load: what round-off leaves of a reaction
+constexpr double left_of_reactions = 1e-8;  // over the size of the load: what round-off leaves of a reaction
 
 /// Derivatives of stretch and slip by the motions of two discs, 0 for components that are held.
 struct MaskedGradient {
@@ -145,7 +145,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
     for (std::size_t p = 0; p < cases; ++p) {
       double& reaction = mechanisms[m].reaction[p];
       reaction = mechanisms[m].stiffness * (anchors[m * cases + p] - state.moved_by(mechanisms[m].component, p));
-      mechanisms[m].driven.push_back(std::abs(reaction) > negligible * state.scales[p] ? 1 : 0);
+      mechanisms[m].driven.push_back(std::abs(reaction) > left_of_reactions * state.scales[p] ? 1 : 0);
       if (mechanisms[m].driven[p] != 0) {
         carried = false;
       } else if (state.scales[p] > 0) {
@@ -213,7 +213,7 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
       HeldMechanism mechanism{component, stiffness, {}, {}};
       for (std::size_t p = 0; p < state.cases.size(); ++p) {
         mechanism.reaction.push_back(state.unbalanced(component, p));
-        mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > negligible * state.scales[p] ? 1 : 0);
+        mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > left_of_reactions * state.scales[p] ? 1 : 0);
         if (mechanism.driven[p] != 0) carried = false;
       }
       if (found != nullptr) found->push_back(std::move(mechanism));
