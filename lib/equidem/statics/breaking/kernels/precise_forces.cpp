@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "equidem/core/twofold.hpp"
+#include "equidem/statics/breaking/kernels/twofold.hpp"
 
 #define EQUIDEM_INLINE inline __attribute__((always_inline))
 
