@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""tools/bench/laboratory/page.py --build FOLDER [--peers] [--page FILE]
+"""tools/bench/laboratory/page.py --build FOLDER [--samples | --peers] [--page FILE]
 
-Runs the cases of the laboratory and writes what they give beside what is expected; with --peers the same tests in YADE, one core each,
-with their times. Each section of the page is made anew by its own call."""
+Runs the cases of the laboratory and writes what they give beside what is expected; with --samples the same on several samples each, and
+over their size; with --peers the tests in YADE, one core each, with their times. Each section of the page is made anew by its own call."""
 
 import argparse
 import json
@@ -17,12 +17,15 @@ sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools" / "bench" / "peers"))
 
+import ensembles  # noqa: E402
 import readings  # noqa: E402
+import samples  # noqa: E402
 from common import Failure, call, number, result_of, table, tell  # noqa: E402
 
 CASES, SCRIPT = ROOT / "data" / "cases", ROOT / "tools" / "bench" / "peers" / "laboratory_yade.py"
-TITLE, HEADINGS = "# The laboratory\n", ("## The tests beside what is expected\n", "## Beside YADE\n")
-OPENINGS, FRICTIONS = (0.032, 0.040, 0.048, 0.056, 0.064), (0.1, 0.2, 0.3, 0.5, 0.8)
+TITLE = "# The laboratory\n"
+HEADINGS = ("## The tests beside what is expected\n", "## Several samples\n", "## Beside YADE\n")
+OPENINGS = (0.032, 0.040, 0.048, 0.056, 0.064)
 HEAP_DIAMETER = 0.004  # m, mean of lab_heap.csv
 HEAP_SOLID_FRACTION = 0.846  # area of discs in the middle of the column of lab_heap.csv, over that of the part
 
@@ -73,11 +76,16 @@ def rock(lab):
     rubbing = readings.unconfined(out, 0.04)
     out, result, _ = lab.run("brazilian")
     split = readings.brazilian(out, 0.05)
+    across, along = readings.stress_at_the_centre(out, 0.05, float(readings.rows_of_breaks(out)[0]["time_s"]))
+    theory = readings.hondros(samples.HALF_ANGLE, ensembles.PROBE)
     crack = readings.breaks_near_the_diameter(out, split["time"] + 2e-4)
     return [["unconfined compression, E, Pa", number(plain["young_modulus"], 4), number(young, 4), "homogenize lab_rock.toml, uniform displacements"],
             ["the same, nu", number(plain["poisson_ratio"]), number(nu), "likewise"],
             ["unconfined strength, Pa", number(plain["strength"], 4), "", f"at a strain of {100 * plain['strain']:.2f} %"],
             ["the same, plates with friction 0.5", number(rubbing["strength"], 4), "", "held ends"],
+            ["stress across the loaded diameter at the centre, before the first break, over 2P/(pi D)", number(across), number(theory[0]),
+             "Hondros (1959), arcs of 20°, in a square of 0.48 radii"],
+            ["the same, along it", number(along), number(theory[1]), "likewise"],
             ["Brazilian strength 2P/(pi D), Pa", number(split["strength"], 4), "", f"1/{number(plain['strength'] / split['strength'])} of "
              f"the unconfined one; {result['breaks']['number']} bonds broke in all"],
             ["share of the breaks within 5 mm of the loaded diameter", number(crack["near"]), "", f"of {crack['breaks']} up to 0.2 ms "
@@ -98,12 +106,7 @@ def beam(lab):
             ["load at which it breaks, N/m", number(broken, 4), number(2 / 0.095 * 4e3 * 0.01 / 6, 4), "6 M/w = tension at the bonds beside the middle"]]
 
 
-def heap(lab):
-    slopes = []
-    for friction in FRICTIONS:
-        out, _, _ = lab.run("repose", f"collisions.friction={friction}")
-        read = readings.slope(out)
-        slopes.append([friction, f"{read['angle']:.1f}° ± {read['error']:.1f}°"])
+def hopper(lab):
     rates = []
     for opening in OPENINGS:
         out, _, _ = lab.run("hopper", f"stage.1.wall.1.end=[{0.075 - opening / 2:.4f},0.0]",
@@ -115,24 +118,71 @@ def heap(lab):
                  f"{law['factor'] * (opening - law['closed']) ** 1.5:.0f}"] for opening, one in zip(OPENINGS, rates)]
     powers = [[power, number(one["misfit"]), number(one["closed"] / HEAP_DIAMETER)]
               for power in (1, 1.5, 2, 2.5) for one in [readings.power_law(OPENINGS, *measured, power)]]
-    return slopes, openings, powers, law
+    return openings, powers, law
 
 
 def tests(lab, command):
     rows = sand(lab) + rock(lab) + beam(lab)
-    slopes, openings, powers, law = heap(lab)
+    openings, powers, law = hopper(lab)
     area = math.pi * HEAP_DIAMETER**2 / 4
     factor = law["factor"] * area / HEAP_SOLID_FRACTION / math.sqrt(9.81)
     return (f"{HEADINGS[0]}\n    {command}\n\nEach row is read from the histories of a case of `data/cases` by `tools/bench/laboratory/readings.py`; "
             "an empty cell\nhas no theory. One sample each.\n\n"
             + table(["test", "read", "expected", "from"], rows)
-            + "\n\nAngle of repose over friction, `grains_repose.toml`: a line by least squares through the highest disc in each of eleven columns\n"
-            "of 10 mm, with its standard error\nin one sample; samples differ by more.\n\n" + table(["friction", "slope"], slopes)
             + "\n\nDischarge over the opening W, `grains_hopper.toml`, bodies in a second between the 100th and the 900th that leave, standard errors\n"
             f"from four parts of the time; Beverloo's law in two dimensions, C (W - k d)^(3/2), with k = {number(law['closed'] / HEAP_DIAMETER)} and, the "
             f"solid fraction in the silo\nbeing {HEAP_SOLID_FRACTION}, C = {number(factor)} sqrt(g). The fit of other powers p with a k of their own has "
             "this chi squared per\ndegree of freedom.\n\n"
             + table(["W, mm", "W/d", "bodies a second", "3/2 power"], openings) + "\n\n" + table(["p", "chi squared", "k"], powers) + "\n")
+
+
+def both(values, digits=3):
+    mean, error = ensembles.mean_and_error(values)
+    return f"{number(mean, digits)} ± {number(error, 1)}"
+
+
+def several(lab, command):
+    """The section of several samples."""
+    presses, boxes = ensembles.sand(lab)
+    plain, mean = [readings.biaxial(out) for out in presses], readings.stress_dilatancy(presses)
+    sheared = [readings.shear_box(out) for out in boxes]
+    soft = ensembles.small_strain(lab)
+    rows = [["biaxial, angle of friction at the peak", both([one["peak"] for one in plain]) + "°", "", f"{len(plain)} loose samples of 445 discs"],
+            ["the same, beyond 8 % of strain", both([one["late"] for one in plain]) + "°", "", "likewise"],
+            ["peak of the mean of their curves", degrees(mean["peak"]), degrees(mean["rowe"]), f"Rowe: K (1 + D), D = {number(mean['dilation'])}, K = "
+             f"R/(1 + D) = {number(mean['factor'])} beyond 8 %"],
+            ["R against D over the mean curves", f"{number(mean['offset'])} + {number(mean['slope'])} D", f"{number(mean['factor'])} (1 + D)",
+             f"R = s1/s2; correlation {number(mean['correlation'], 2)}"],
+            ["shear box, angle at the peak", both([one["peak"] for one in sheared]) + "°", both([one["taylor"] for one in sheared]) + "°", "Taylor, of each sample"],
+            ["the same, over the last quarter", both([one["late"] for one in sheared]) + "°", "", ""]]
+    stiffness = [[seed, *(number(one[0] / 1e6, 4) + ", " + number(one[1]) for one in ((read["young_modulus"], read["poisson_ratio"]), read["statics"], read["homogenize"]))]
+                 for seed, read in zip(ensembles.STIFFNESS_SEEDS, soft)]
+    sizes, cells = ensembles.rock(lab)
+    limit, limit_error, edge = ensembles.line_in_inverse(list(sizes), *zip(*(ensembles.mean_and_error(read[:, 0]) for read in sizes.values())))
+    own = ensembles.line_in_inverse(list(sizes), *zip(*(ensembles.mean_and_error(read[:, 2]) for read in sizes.values())))
+    diameter = 1.94e-3
+    rock = [[f"{1e3 * width:.0f}", both(read[:, 0] / 1e9), both(read[:, 2] / 1e9), both(read[:, 0] / read[:, 2]), both(read[:, 1]), both(read[:, 3])]
+            for width, read in sizes.items()]
+    discs = [[f"{1e3 * width:.0f}", *(both(column) for column in read.T)] for width, read in ensembles.brazilian(lab).items()]
+    theory, slopes = readings.hondros(samples.HALF_ANGLE, ensembles.PROBE), ensembles.repose(lab)
+    return (f"{HEADINGS[1]}\n    {command}\n\nMeans and their standard errors.\n\n" + table(["test", "read", "expected", "from"], rows)
+            + "\n\nStiffness of the biaxial test: slope of the axial stress (MPa) and of the strain across over that along between strains of 1e-5 and\n"
+            "1e-4, the sides at 100 kPa, the plates at 1e-4 m/s; by statics of the same packing at rest, with the forces that it carries, between the\n"
+            "same plates; and by `homogenize`, which moves its boundary as a whole. Discs that bear nothing are left out.\n\n"
+            + table(["sample", "run", "statics between plates", "homogenize"], stiffness)
+            + f"\n\nRock of several sizes, {len(ensembles.ROCK_SEEDS)} samples each: E (GPa) and nu of the gauges of `grains_unconfined.toml` and of `homogenize` of the\n"
+            "sample (its boundary moved as a whole).\n\n"
+            + table(["width, mm", "E, gauges", "E, homogenize", "ratio", "nu, gauges", "nu, homogenize"], rock)
+            + f"\n\nE (1 - b/W) fits both: gauges {number(limit / 1e9)} ± {number(limit_error / 1e9, 1)} GPa with b = {number(edge / diameter, 2)} diameters, `homogenize` "
+            f"{number(own[0] / 1e9)} ± {number(own[1] / 1e9, 1)} GPa\nwith b = {number(own[2] / diameter, 2)} diameters. Periodic cells of 800 discs, which have no edge, have "
+            f"E = {both(cells[:, 0] / 1e9)} GPa, nu = {both(cells[:, 1])}.\n"
+            "\nBrazilian discs of several sizes, four samples each, without strength: stresses across and along the loaded diameter in a square of\n"
+            f"0.48 radii at the centre, over 2P/(pi D). Hondros (1959) with arcs of 20° and uniform pressure: {number(theory[0])} and {number(theory[1])}; finite elements of\n"
+            "the disc with flat ends between rigid plates without friction, whose pressure is larger at the edges: 0.864 and -2.86.\n\n"
+            + table(["diameter, mm", "across", "along"], discs)
+            + f"\n\nAngle of repose over friction, {len(ensembles.HEAP_SEEDS)} samples each: a line by least squares through the highest disc in each of eleven columns\n"
+            "of 10 mm.\n\n" + table(["friction", "slope", "of the samples"], [[friction, both(angles) + "°", ", ".join(f"{one:.1f}" for one in angles)]
+                                                              for friction, angles in slopes.items()]) + "\n")
 
 
 def peer(test, sample, step, *more):
@@ -182,22 +232,22 @@ def peers(lab, command):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, required=True, help="a build folder of the release preset")
-    parser.add_argument("--peers", action="store_true", help="the section beside YADE; left out: the other")
+    sections = parser.add_mutually_exclusive_group()
+    sections.add_argument("--samples", action="store_true", help="the section of several samples")
+    sections.add_argument("--peers", action="store_true", help="the section beside YADE; both left out: the first")
     parser.add_argument("--page", type=Path, help="its section is made anew")
     request = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         lab = Laboratory(request.build.resolve() / "tools" / "equidem", Path(name))
-        command = "tools/bench/laboratory/page.py --build build/release" + " --peers" * request.peers
-        text = peers(lab, command) if request.peers else tests(lab, command)
+        chosen = 2 if request.peers else 1 if request.samples else 0
+        command = "tools/bench/laboratory/page.py --build build/release" + ("", " --samples", " --peers")[chosen]
+        text = (tests, several, peers)[chosen](lab, command)
     print(text)
     if request.page:
-        old = request.page.read_text(encoding="utf-8") if request.page.exists() else TITLE
-        parts = {heading: "" for heading in HEADINGS}
-        for heading, after in zip(HEADINGS, (HEADINGS[1], None)):
-            if heading in old:
-                parts[heading] = heading + old.split(heading)[1].split(after)[0] if after else heading + old.split(heading)[1]
-        parts[HEADINGS[request.peers]] = text
-        request.page.write_text(TITLE + "".join("\n" + part.strip("\n") + "\n" for part in parts.values() if part), encoding="utf-8")
+        old = request.page.read_text(encoding="utf-8") if request.page.exists() else ""
+        parts = {"## " + part.split("\n", 1)[0] + "\n": "## " + part for part in old.split("\n## ")[1:]}
+        parts[HEADINGS[chosen]] = text
+        request.page.write_text(TITLE + "".join("\n" + parts[heading].strip("\n") + "\n" for heading in HEADINGS if heading in parts), encoding="utf-8")
 
 
 if __name__ == "__main__":

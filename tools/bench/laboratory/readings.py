@@ -42,17 +42,21 @@ def smooth(values, rows):
     return numpy.convolve(values, numpy.full(rows, 1 / rows), "valid")
 
 
-def biaxial(folder):
-    """Angles of friction (degrees) at the peak and beyond 8 per cent of strain, and that which Rowe's relation gives at the peak:
-    s1/s2 = (1 + sin phi_cv)/(1 - sin phi_cv) (1 + D), D = -(volume strain rate)/(axial strain rate), compression positive."""
-    read = history(folder, "shear")
+def plates(folder, stage="shear"):
+    """Of a biaxial test, between the rows: axial and side stress, logarithmic strain along and volume strain, compression positive."""
+    read = history(folder, stage)
     width = read["wall_right_x_m"] - read["wall_left_x_m"]
     height = read["wall_top_y_m"] - read["wall_bottom_y_m"]
     side = (mean_force(read, "right", "x") - mean_force(read, "left", "x")) / 2 / middle(height)
     axial = (mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2 / middle(width)
-    strain, volume = numpy.log(height[0] / middle(height)), numpy.log(width[0] * height[0] / middle(width) / middle(height))
+    return axial, side, numpy.log(height[0] / middle(height)), numpy.log(width[0] * height[0] / middle(width) / middle(height))
+
+
+def biaxial(folder):
+    """Angles of friction (degrees) at the peak and beyond 8 per cent of strain, and that which Rowe's relation gives at the peak:
+    s1/s2 = (1 + sin phi_cv)/(1 - sin phi_cv) (1 + D), D = -(volume strain rate)/(axial strain rate), compression positive."""
     rows = 15
-    axial, side, strain, volume = (smooth(values, rows) for values in (axial, side, strain, volume))
+    axial, side, strain, volume = (smooth(values, rows) for values in plates(folder))
     sine = (axial - side) / (axial + side)
     peak = int(numpy.argmax(sine[rows:-rows])) + rows
     late = float(numpy.mean(sine[strain > 0.08]))
@@ -62,6 +66,39 @@ def biaxial(folder):
     return {"peak": math.degrees(math.asin(sine[peak])), "late": math.degrees(math.asin(late)), "strain": float(strain[peak]),
             "dilation": float(dilation), "rowe": math.degrees(math.asin((rowe - 1) / (rowe + 1))),
             "volume": float(-volume[-1]), "side": (float(side.min()), float(side.max()))}
+
+
+def stress_dilatancy(folders, window=0.005):
+    """Of the mean curves of several biaxial tests: the angle at their peak, its strain and dilation D, the angle by Rowe's relation with
+    K = R/(1 + D) beyond 8 per cent of strain, and the line R = a + b D through all windows beyond 0.3 per cent with its correlation."""
+    grid = numpy.linspace(5e-4, 0.099, 395)
+    curves = [plates(folder) for folder in folders]
+    ratio = numpy.mean([numpy.interp(grid, strain, axial / side) for axial, side, strain, _ in curves], axis=0)
+    volume = numpy.mean([numpy.interp(grid, strain, volume) for _, _, strain, volume in curves], axis=0)
+    rows = round(window / (grid[1] - grid[0]))
+    parts = [slice(k, k + rows) for k in range(len(grid) - rows + 1)]
+    strain, ratio = smooth(grid, rows), smooth(ratio, rows)
+    dilation = numpy.array([-numpy.polyfit(grid[part], volume[part], 1)[0] for part in parts])
+    peak, late, flowing = int(numpy.argmax(ratio)), strain > 0.08, strain > 0.003
+    factor = float(numpy.mean(ratio[late] / (1 + dilation[late])))
+    slope_of, offset = numpy.polyfit(dilation[flowing], ratio[flowing], 1)
+    return {"peak": angle_of(ratio[peak]), "strain": float(strain[peak]), "dilation": float(dilation[peak]), "factor": factor,
+            "late": angle_of(float(numpy.mean(ratio[late]))), "rowe": angle_of(factor * (1 + dilation[peak])), "slope": float(slope_of),
+            "offset": float(offset), "correlation": float(numpy.corrcoef(dilation[flowing], ratio[flowing])[0, 1])}
+
+
+def angle_of(ratio):
+    """Angle of friction (degrees) of a ratio of the principal stresses."""
+    return math.degrees(math.asin((ratio - 1) / (ratio + 1)))
+
+
+def small_strain(folder, low=1e-5, high=1e-4):
+    """Slopes of the axial stress over the strain and of the strain across over that along, between two strains, while the sides keep
+    their stress; with the plates slow enough that waves have died out below `low`."""
+    axial, side, strain, volume = plates(folder)
+    chosen = (strain > low) & (strain < high)
+    return {"young_modulus": float(numpy.polyfit(strain[chosen], (axial - side)[chosen], 1)[0]),
+            "poisson_ratio": float(numpy.polyfit(strain[chosen], (strain - volume)[chosen], 1)[0])}
 
 
 def shear_box(folder):
@@ -95,6 +132,15 @@ def unconfined(folder, width):
     return {"strength": float(stress[peak]), "strain": float(shorter[peak]), **elastic(stress[chosen], shorter[chosen], wider[chosen])}
 
 
+def elastic_gauges(folder, width):
+    """Young's modulus and Poisson's ratio by the gauges of a run that ends before bonds break, from a third of its stress on."""
+    read = history(folder)
+    stress = (mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2 / width
+    along, across = read["upper_y_m"] - read["lower_y_m"], read["right_x_m"] - read["left_x_m"]
+    late = stress > 0.3 * stress.max()
+    return elastic(stress[late], middle(1 - along / along[0])[late], middle(across / across[0] - 1)[late])
+
+
 def elastic(stress, shorter, wider):
     return {"young_modulus": float(numpy.polyfit(shorter, stress, 1)[0]), "poisson_ratio": float(numpy.polyfit(shorter, wider, 1)[0])}
 
@@ -105,6 +151,26 @@ def brazilian(folder, diameter):
     force = smooth((mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2, 5)
     peak = int(numpy.argmax(force))
     return {"strength": 2 * float(force[peak]) / (math.pi * diameter), "time": float(read["time_s"][peak + 2])}
+
+
+def stress_at_the_centre(folder, diameter, until=math.inf):
+    """Stresses across and along the loaded diameter in the box of the probe, over 2 P/(pi D), by their slopes against the force up to a
+    time; the force on plates is the mean between rows and the stress that of a step, so that both are taken at the rows."""
+    read = history(folder)
+    force = (mean_force(read, "top", "y") - mean_force(read, "bottom", "y")) / 2
+    unit = middle(force) * 2 / (math.pi * diameter)
+    chosen = (unit > 0.1 * unit.max()) & (read["time_s"][1:-1] < until)
+    return [float(numpy.polyfit(unit[chosen], read[f"centre_stress_{axes}_Pa"][1:-1][chosen], 1)[0]) for axes in ("xx", "yy")]
+
+
+def hondros(half_angle, half_side):
+    """Mean stresses across and along the loaded diameter of a disc under uniform radial pressure on two opposite arcs of 2 half_angle (rad;
+    Hondros 1959), in a square of 2 half_side about its centre (in radii), over 2 P/(pi D). With the terms 1 and cos 2 theta of
+    the pressure, q0 and q2 (those beyond add 0.3 q4 half_side^4 at most), s_xx = -q0 + q2 (1 - r^2/R^2), s_yy = -q0 - q2 (1 - r^2/R^2)
+    on average over the directions; r^2 has the mean 2/3 half_side^2. The pressure is P/(D sin half_angle)."""
+    q0, q2 = half_angle / math.sin(half_angle), math.sin(2 * half_angle) / math.sin(half_angle)
+    share = 1 - 2 / 3 * half_side**2
+    return -q0 + q2 * share, -q0 - q2 * share
 
 
 def breaks_near_the_diameter(folder, until):
