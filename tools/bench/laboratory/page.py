@@ -13,6 +13,8 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy
+
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools" / "bench" / "peers"))
@@ -20,6 +22,7 @@ sys.path.insert(0, str(ROOT / "tools" / "bench" / "peers"))
 import ensembles  # noqa: E402
 import readings  # noqa: E402
 import samples  # noqa: E402
+import several  # noqa: E402
 from common import Failure, call, number, result_of, table, tell  # noqa: E402
 
 CASES, SCRIPT = ROOT / "data" / "cases", ROOT / "tools" / "bench" / "peers" / "laboratory_yade.py"
@@ -28,6 +31,17 @@ HEADINGS = ("## The tests beside what is expected\n", "## Several samples\n", "#
 OPENINGS = (0.032, 0.040, 0.048, 0.056, 0.064)
 HEAP_DIAMETER = 0.004  # m, mean of lab_heap.csv
 HEAP_SOLID_FRACTION = 0.846  # area of discs in the middle of the column of lab_heap.csv, over that of the part
+
+
+REMARKS = """
+The biaxial test and the shear box start from one packing at rest. From loose sand the two programs find other packings: without friction
+it is the paths of the discs that decide where they jam, and these diverge. The angle at the peak then differs as between two
+samples, by some degrees with 445 discs.
+
+YADE is the better choice for tests that you program: its scripts stop, change and measure anything in Python between steps, its servo
+walls work in three dimensions, and its package brings tests of this kind in 3D. Its bonds break in tension and shear; the moments of
+CohFrictMat yield. Ours have no rolling resistance between bodies that are not bonded.
+"""
 
 
 class Laboratory:
@@ -84,7 +98,7 @@ def rock(lab):
             ["unconfined strength, Pa", number(plain["strength"], 4), "", f"at a strain of {100 * plain['strain']:.2f} %"],
             ["the same, plates with friction 0.5", number(rubbing["strength"], 4), "", "held ends"],
             ["stress across the loaded diameter at the centre, before the first break, over 2P/(pi D)", number(across), number(theory[0]),
-             "Hondros (1959), arcs of 20°, in a square of 0.48 radii"],
+             "Hondros (1959), uniform pressure on arcs of 20°, in a square of 0.48 radii"],
             ["the same, along it", number(along), number(theory[1]), "likewise"],
             ["Brazilian strength 2P/(pi D), Pa", number(split["strength"], 4), "", f"1/{number(plain['strength'] / split['strength'])} of "
              f"the unconfined one; {result['breaks']['number']} bonds broke in all"],
@@ -136,57 +150,12 @@ def tests(lab, command):
             + table(["W, mm", "W/d", "bodies a second", "3/2 power"], openings) + "\n\n" + table(["p", "chi squared", "k"], powers) + "\n")
 
 
-def both(values, digits=3):
-    mean, error = ensembles.mean_and_error(values)
-    return f"{number(mean, digits)} ± {number(error, 1)}"
-
-
-def several(lab, command):
-    """The section of several samples."""
-    presses, boxes = ensembles.sand(lab)
-    plain, mean = [readings.biaxial(out) for out in presses], readings.stress_dilatancy(presses)
-    sheared = [readings.shear_box(out) for out in boxes]
-    soft = ensembles.small_strain(lab)
-    rows = [["biaxial, angle of friction at the peak", both([one["peak"] for one in plain]) + "°", "", f"{len(plain)} loose samples of 445 discs"],
-            ["the same, beyond 8 % of strain", both([one["late"] for one in plain]) + "°", "", "likewise"],
-            ["peak of the mean of their curves", degrees(mean["peak"]), degrees(mean["rowe"]), f"Rowe: K (1 + D), D = {number(mean['dilation'])}, K = "
-             f"R/(1 + D) = {number(mean['factor'])} beyond 8 %"],
-            ["R against D over the mean curves", f"{number(mean['offset'])} + {number(mean['slope'])} D", f"{number(mean['factor'])} (1 + D)",
-             f"R = s1/s2; correlation {number(mean['correlation'], 2)}"],
-            ["shear box, angle at the peak", both([one["peak"] for one in sheared]) + "°", both([one["taylor"] for one in sheared]) + "°", "Taylor, of each sample"],
-            ["the same, over the last quarter", both([one["late"] for one in sheared]) + "°", "", ""]]
-    stiffness = [[seed, *(number(one[0] / 1e6, 4) + ", " + number(one[1]) for one in ((read["young_modulus"], read["poisson_ratio"]), read["statics"], read["homogenize"]))]
-                 for seed, read in zip(ensembles.STIFFNESS_SEEDS, soft)]
-    sizes, cells = ensembles.rock(lab)
-    limit, limit_error, edge = ensembles.line_in_inverse(list(sizes), *zip(*(ensembles.mean_and_error(read[:, 0]) for read in sizes.values())))
-    own = ensembles.line_in_inverse(list(sizes), *zip(*(ensembles.mean_and_error(read[:, 2]) for read in sizes.values())))
-    diameter = 1.94e-3
-    rock = [[f"{1e3 * width:.0f}", both(read[:, 0] / 1e9), both(read[:, 2] / 1e9), both(read[:, 0] / read[:, 2]), both(read[:, 1]), both(read[:, 3])]
-            for width, read in sizes.items()]
-    discs = [[f"{1e3 * width:.0f}", *(both(column) for column in read.T)] for width, read in ensembles.brazilian(lab).items()]
-    theory, slopes = readings.hondros(samples.HALF_ANGLE, ensembles.PROBE), ensembles.repose(lab)
-    return (f"{HEADINGS[1]}\n    {command}\n\nMeans and their standard errors.\n\n" + table(["test", "read", "expected", "from"], rows)
-            + "\n\nStiffness of the biaxial test: slope of the axial stress (MPa) and of the strain across over that along between strains of 1e-5 and\n"
-            "1e-4, the sides at 100 kPa, the plates at 1e-4 m/s; by statics of the same packing at rest, with the forces that it carries, between the\n"
-            "same plates; and by `homogenize`, which moves its boundary as a whole. Discs that bear nothing are left out.\n\n"
-            + table(["sample", "run", "statics between plates", "homogenize"], stiffness)
-            + f"\n\nRock of several sizes, {len(ensembles.ROCK_SEEDS)} samples each: E (GPa) and nu of the gauges of `grains_unconfined.toml` and of `homogenize` of the\n"
-            "sample (its boundary moved as a whole).\n\n"
-            + table(["width, mm", "E, gauges", "E, homogenize", "ratio", "nu, gauges", "nu, homogenize"], rock)
-            + f"\n\nE (1 - b/W) fits both: gauges {number(limit / 1e9)} ± {number(limit_error / 1e9, 1)} GPa with b = {number(edge / diameter, 2)} diameters, `homogenize` "
-            f"{number(own[0] / 1e9)} ± {number(own[1] / 1e9, 1)} GPa\nwith b = {number(own[2] / diameter, 2)} diameters. Periodic cells of 800 discs, which have no edge, have "
-            f"E = {both(cells[:, 0] / 1e9)} GPa, nu = {both(cells[:, 1])}.\n"
-            "\nBrazilian discs of several sizes, four samples each, without strength: stresses across and along the loaded diameter in a square of\n"
-            f"0.48 radii at the centre, over 2P/(pi D). Hondros (1959) with arcs of 20° and uniform pressure: {number(theory[0])} and {number(theory[1])}; finite elements of\n"
-            "the disc with flat ends between rigid plates without friction, whose pressure is larger at the edges: 0.864 and -2.86.\n\n"
-            + table(["diameter, mm", "across", "along"], discs)
-            + f"\n\nAngle of repose over friction, {len(ensembles.HEAP_SEEDS)} samples each: a line by least squares through the highest disc in each of eleven columns\n"
-            "of 10 mm.\n\n" + table(["friction", "slope", "of the samples"], [[friction, both(angles) + "°", ", ".join(f"{one:.1f}" for one in angles)]
-                                                              for friction, angles in slopes.items()]) + "\n")
+def of_several_samples(lab, command):
+    return f"{HEADINGS[1]}\n    {command}\n\nMeans and their standard errors.\n\n" + several.section(lab)
 
 
 def peer(test, sample, step, *more):
-    return result_of(call(["yade", "-n", "-x", "-j1", SCRIPT, test, CASES / sample, repr(step), *more]))
+    return result_of(call(["yade", "-n", "-x", "-j1", SCRIPT, test, CASES / sample, repr(step), *map(str, more)]))
 
 
 def sine(row):
@@ -194,39 +163,95 @@ def sine(row):
     return (axial - side) / (axial + side)
 
 
-def peers(lab, command):
-    rows = []
+def biaxial_of(theirs, rows=37):
+    """Angles of friction (degrees) at the peak and, where it goes so far, beyond 8 per cent of strain; rows of 0.8 ms, means over 30 ms
+    as in the readings."""
+    sines = readings.smooth([sine(row) for row in theirs["curve"]], rows)
+    late = [sine(row) for row in theirs["curve"] if row[0] > 0.08]
+    return [math.degrees(math.asin(one)) for one in (max(sines), *([sum(late) / len(late)] if late else []))]
 
-    def add(test, what, ours, seconds, steps, theirs, found):
-        rows.append([test, what, ours, found, f"{seconds:.1f}", f"{theirs['seconds']:.1f}", number(theirs["seconds"] / theirs["steps"] / (seconds / steps))])
+
+def packing_at_rest(lab, name, *settings):
+    """Discs (CSV) and places of the walls where the sand has its friction and has come to rest."""
+    until = "stage.2.until.displacement=1e-8" if name == "shear_box" else "stage.2.until.strain=1e-8"
+    out, _, _ = lab.run(name, *settings, until)
+    discs = readings.columns_without_text(out / "grains.csv", ("x_m", "y_m", "radius_m"))
+    samples.write(lab.folder, f"{out.name}_rest", [(*disc, "grains") for disc in zip(*discs.values())])
+    last = {column: values[-1] for column, values in readings.history(out).items()}
+    return lab.folder / f"{out.name}_rest.csv", last
+
+
+class Pairs:
+    """Rows of the table: a test in equidem and in YADE."""
+
+    def __init__(self):
+        self.rows = []
+
+    def add(self, test, what, ours, seconds, steps, theirs, found):
+        ratio = theirs["seconds"] / theirs["steps"] / (seconds / steps)
+        self.rows.append([test, what, ours, found, f"{seconds:.1f}", f"{theirs['seconds']:.1f}", number(ratio)])
         tell(f"{test}: YADE {theirs['seconds']:.1f} s")
 
+
+def sand_pairs(lab, pairs):
+    rest, walls = packing_at_rest(lab, "biaxial")
     out, result, seconds = lab.run("biaxial")
-    theirs = peer("biaxial", "biaxial.csv", result["time_step"])
-    sines = [sum(map(sine, theirs["curve"][k:k + 30])) / 30 for k in range(len(theirs["curve"]) - 30)]
+    theirs = peer("biaxial", rest, result["time_step"], *(walls[f"wall_{side}_m"] for side in ("left_x", "bottom_y", "right_x", "top_y")))
     read = readings.biaxial(out)
-    late = [sine(row) for row in theirs["curve"] if row[0] > 0.08]
-    add("biaxial", "φ at the peak, beyond 8 %", f"{degrees(read['peak'])}, {degrees(read['late'])}", seconds, result["steps"], theirs,
-        ", ".join(degrees(math.degrees(math.asin(one))) for one in (max(sines), sum(late) / len(late))))
+    pairs.add("biaxial, the same packing at rest", "φ at the peak, beyond 8 %", f"{degrees(read['peak'])}, {degrees(read['late'])}", seconds,
+              result["steps"], theirs, ", ".join(map(degrees, biaxial_of(theirs))))
+    loose = [ensembles.sample(lab, f"loose{seed}_sample", samples.sand(lab.equidem, seed)) for seed in ensembles.SAND_SEEDS]
+    ours = [readings.biaxial(lab.run("biaxial", *settings)[0])["peak"] for settings in loose]
+    found = [biaxial_of(peer("biaxial", lab.folder / f"loose{seed}_sample.csv", result["time_step"]))[0] for seed in ensembles.SAND_SEEDS]
+    pairs.rows.append(["biaxial, eight loose samples", "φ at the peak", several.both(ours) + "°", several.both(found) + "°", "", "", ""])
+    rest, walls = packing_at_rest(lab, "shear_box")
+    out, result, seconds = lab.run("shear_box")
+    theirs = peer("shear_box", rest, result["time_step"], walls["wall_lid_y_m"])
+    read, rows = readings.shear_box(out), 62
+    moved, _, ratio = map(numpy.array, zip(*theirs["curve"]))
+    ratios = max(readings.smooth(ratio, rows)), float(ratio[moved > 0.75 * moved[-1]].mean())
+    pairs.add("shear box, the same packing at rest", "φ in the plane, at the peak and over the last quarter", f"{degrees(read['peak'])}, {degrees(read['late'])}",
+              seconds, result["steps"], theirs, ", ".join(degrees(math.degrees(math.atan(one))) for one in ratios))
 
-    out, result, seconds = lab.run("unconfined", "bonds.bending_spring=none")
-    theirs = peer("unconfined", "lab_rock.csv", result["time_step"], CASES / "lab_rock_bonds.csv")
-    read, curve = readings.unconfined(out, 0.04), theirs["curve"]
-    peak = max(range(len(curve)), key=lambda k: curve[k][1])
-    add("unconfined, bonds without moments", "strength, Pa", number(read["strength"]), seconds, result["steps"], theirs, number(curve[peak][1]))
 
+def rock_pairs(lab, pairs):
+    for name, bonds, scale, unit in (("unconfined", "lab_rock", 1 / 0.04, "strength, Pa"), ("brazilian", "lab_brazilian", 2 / (math.pi * 0.05), "2P/(pi D), Pa")):
+        out, result, seconds = lab.run(name, "bonds.bending_spring=none")
+        theirs = peer(name, f"{bonds}.csv", result["time_step"], CASES / f"{bonds}_bonds.csv")
+        read = readings.unconfined(out, 0.04) if name == "unconfined" else readings.brazilian(out, 0.05)
+        found = scale * max(readings.smooth([force for _, force in theirs["curve"]], 3))
+        pairs.add(f"{name}, bonds without moments", unit, number(read["strength"]), seconds, result["steps"], theirs, number(found))
+    out, result, seconds = lab.run("bonded_beam", "run.duration=0.1")
+    read = readings.history(out)
+    theirs = peer("beam", "lab_beam.csv", result["time_step"])
+    bent, load = map(numpy.array, zip(*theirs["curve"]))
+    ours = numpy.polyfit(read["ends_y_m"] - read["middle_y_m"], read["wall_load_force_y_N_per_m"], 1)[0]
+    pairs.add("bonded beam, bent once", "load over deflection, N/m²", number(ours, 4), seconds, result["steps"], theirs, number(numpy.polyfit(bent, load, 1)[0], 4))
+
+
+def heap_pairs(lab, pairs):
+    ours, found = [], []
+    for seed in ensembles.HEAP_SEEDS:
+        settings = ensembles.sample(lab, f"pile{seed}_sample", samples.heap(lab.equidem, seed))
+        out, result, seconds = lab.run("repose", *settings)
+        ours.append(readings.slope(out)["angle"])
+        theirs = peer("repose", lab.folder / f"pile{seed}_sample.csv", result["time_step"], 0.5)
+        found.append(readings.slope_of(*numpy.array(theirs["discs"]).T)["angle"])
+    pairs.add("repose, friction 0.5, six samples", "slope", several.both(ours) + "°", seconds, result["steps"], theirs, several.both(found) + "°")
     out, result, seconds = lab.run("hopper")
     theirs = peer("hopper", "lab_heap.csv", result["time_step"])
     left = [(when, out_of) for when, out_of in theirs["out"] if 100 < out_of < 900]
     rate = (left[-1][1] - left[0][1]) / (left[-1][0] - left[0][0])
     read = readings.discharge(out)
-    add("hopper", "bodies a second", f"{read['rate']:.0f} ± {read['error']:.0f}", seconds, result["steps"], theirs, f"{rate:.0f}")
-    return (f"{HEADINGS[1]}\n    {command}\n\nThe same discs, springs, friction and time step on one core each; local damping 0.2 in YADE in place of "
-            "restitution, in the hopper\nviscous dashpots of the mean mass. The last column is the time of a step of YADE over that of ours.\n\n"
-            + table(["test", "", "equidem", "YADE", "equidem, s", "YADE, s", "ratio of a step"], rows) + "\n"
-            "\nYADE is the better choice for tests that you program: its scripts stop, change and measure anything in Python between steps, its servo\n"
-            "walls work in three dimensions, and its package brings tests of this kind in 3D. Its bonds break in tension and shear; the moments "
-            "of\nCohFrictMat yield. Ours have no rolling resistance between bodies that are not bonded.\n")
+    pairs.add("hopper", "bodies a second", f"{read['rate']:.0f} ± {read['error']:.0f}", seconds, result["steps"], theirs, f"{rate:.0f}")
+
+
+def peers(lab, command):
+    pairs = Pairs()
+    sand_pairs(lab, pairs), rock_pairs(lab, pairs), heap_pairs(lab, pairs)
+    return (f"{HEADINGS[2]}\n    {command}\n\nThe same discs, springs, friction and time step on one core each; local damping 0.2 in YADE in place of "
+            "restitution, with the heaps\nviscous dashpots of the mean mass. The last column is the time of a step of YADE over that of ours.\n\n"
+            + table(["test", "", "equidem", "YADE", "equidem, s", "YADE, s", "ratio of a step"], pairs.rows) + "\n" + REMARKS)
 
 
 def main():
@@ -241,7 +266,7 @@ def main():
         lab = Laboratory(request.build.resolve() / "tools" / "equidem", Path(name))
         chosen = 2 if request.peers else 1 if request.samples else 0
         command = "tools/bench/laboratory/page.py --build build/release" + ("", " --samples", " --peers")[chosen]
-        text = (tests, several, peers)[chosen](lab, command)
+        text = (tests, of_several_samples, peers)[chosen](lab, command)
     print(text)
     if request.page:
         old = request.page.read_text(encoding="utf-8") if request.page.exists() else ""

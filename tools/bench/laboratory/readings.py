@@ -163,14 +163,23 @@ def stress_at_the_centre(folder, diameter, until=math.inf):
     return [float(numpy.polyfit(unit[chosen], read[f"centre_stress_{axes}_Pa"][1:-1][chosen], 1)[0]) for axes in ("xx", "yy")]
 
 
-def hondros(half_angle, half_side):
-    """Mean stresses across and along the loaded diameter of a disc under uniform radial pressure on two opposite arcs of 2 half_angle (rad;
-    Hondros 1959), in a square of 2 half_side about its centre (in radii), over 2 P/(pi D). With the terms 1 and cos 2 theta of
-    the pressure, q0 and q2 (those beyond add 0.3 q4 half_side^4 at most), s_xx = -q0 + q2 (1 - r^2/R^2), s_yy = -q0 - q2 (1 - r^2/R^2)
-    on average over the directions; r^2 has the mean 2/3 half_side^2. The pressure is P/(D sin half_angle)."""
-    q0, q2 = half_angle / math.sin(half_angle), math.sin(2 * half_angle) / math.sin(half_angle)
+def hondros(half_angle, half_side, rigid=False):
+    """Mean stresses across and along the loaded diameter of a disc under radial pressure on two opposite arcs of 2 half_angle (rad), in a
+    square of 2 half_side about its centre (in radii), over 2 P/(pi D). Of the pressure q0 + q2 cos 2 theta + ... the first two terms count
+    (Hondros 1959): s_xx = -q0 + q2 (1 - r^2/R^2), s_yy = -q0 - q2 (1 - r^2/R^2) in the mean over the directions, where r^2 has the mean
+    2/3 half_side^2; the next term adds 0.3 q4 half_side^4 at most. The pressure is uniform, or that under rigid jaws, as 1/sqrt(half_angle^2 -
+    theta^2), whose terms are Bessel functions J0."""
+    if rigid:
+        q0, q2 = 1 / bessel(half_angle), 2 * bessel(2 * half_angle) / bessel(half_angle)
+    else:
+        q0, q2 = half_angle / math.sin(half_angle), math.sin(2 * half_angle) / math.sin(half_angle)
     share = 1 - 2 / 3 * half_side**2
     return -q0 + q2 * share, -q0 - q2 * share
+
+
+def bessel(x):
+    """J0."""
+    return sum((-1) ** k * (x / 2) ** (2 * k) / math.factorial(k) ** 2 for k in range(20))
 
 
 def breaks_near_the_diameter(folder, until):
@@ -208,11 +217,15 @@ def row_of_discs(bonds, spacing, bending, tangential, loss):
 
 def slope(folder, start=0.02, end=0.13, width=0.01):
     """Angle of the surface (degrees) and its standard error: a line through the highest points in columns of one width, least squares."""
-    read = columns_without_text(Path(folder) / "grains.csv", ("x_m", "y_m", "radius_m"))
-    x, top = read["x_m"], read["y_m"] + read["radius_m"]
+    return slope_of(*columns_without_text(Path(folder) / "grains.csv", ("x_m", "y_m", "radius_m")).values(), start, end, width)
+
+
+def slope_of(x, y, radius, start=0.02, end=0.13, width=0.01):
+    """The same of discs at these places."""
+    top = y + radius
     places, heights = [], []
     for left in numpy.arange(start, end - width / 2, width):
-        inside = numpy.flatnonzero((x >= left) & (x < left + width) & (read["y_m"] > 0))
+        inside = numpy.flatnonzero((x >= left) & (x < left + width) & (y > 0))
         if len(inside):
             highest = inside[numpy.argmax(top[inside])]
             places.append(x[highest]), heights.append(top[highest])

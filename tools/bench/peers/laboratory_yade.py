@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# yade -n -x -j1 laboratory_yade.py TEST SAMPLE STEP [BONDS | FRICTION]
-# A test of the laboratory in YADE, with the discs of a case (CSV: x,y,radius,...), its springs, stages and time step STEP (s): biaxial,
-# shear_box, repose (FRICTION), hopper, unconfined, brazilian (BONDS: CSV i,j), beam. Discs are spheres in a plane with the masses and
-# moments of discs. Prints one line of JSON.
+# yade -n -x -j1 laboratory_yade.py TEST SAMPLE STEP [MORE...]
+# A test of the laboratory in YADE, with the discs of a case (CSV: x,y,radius,...), its springs, stages and time step STEP (s). Tests and
+# what they want MORE: biaxial (left, bottom, right, top of a sample at rest; none: a loose one), shear_box (height of the lid of a sample
+# at rest), repose (friction), hopper, unconfined and brazilian (CSV of the bonds, i,j), beam. Discs are spheres in a plane with the
+# masses and moments of discs. Prints one line of JSON.
 import csv
 import json
 import math
@@ -38,11 +39,13 @@ def engines(contact, law, shapes, *more):
 
 
 def biaxial():
-    """As grains_biaxial.toml: 100 kPa from four walls without friction, friction 0.5 between discs, 0.0165 m/s until 10 per cent."""
-    stress, size = 1e5, 0.2
-    O.materials.append(FrictMat(young=1e8, poisson=0.5, frictionAngle=0, density=2600, label="discs"))
+    """As grains_biaxial.toml: 100 kPa from four walls without friction, friction 0.5 between discs, 0.0165 m/s until 10 per cent,
+    of a loose sample until 5, behind its peak."""
+    stress, (left, low, right, high) = 1e5, map(float, sys.argv[4:8] if len(sys.argv) > 4 else (0, 0, 0.2, 0.2))
+    loose = len(sys.argv) == 4
+    O.materials.append(FrictMat(young=1e8, poisson=0.5, frictionAngle=0 if loose else math.atan(0.5), density=2600, label="discs"))
     O.materials.append(FrictMat(young=1e8, poisson=0.5, frictionAngle=0, density=0, label="walls"))
-    walls = utils.aabbWalls([(0, 0, -0.5), (size, size, 0.5)], thickness=0, oversizeFactor=1.5, material="walls")
+    walls = utils.aabbWalls([(left, low, -0.5), (right, high, 0.5)], thickness=0, oversizeFactor=1.5, material="walls")
     O.bodies.append(walls)
     add_discs("discs", 2600)
     press = TriaxialStressController(thickness=0, stressMask=3, internalCompaction=False, goal1=-stress, goal2=-stress, goal3=0,
@@ -58,17 +61,18 @@ def biaxial():
             if held and utils.unbalancedForce() < unbalanced:
                 return
 
-    settle(1.0, 1e-3)
-    # The friction of two materials is the lesser of theirs: walls stay smooth.
-    O.materials[0].frictionAngle = math.atan(0.5)
-    for contact in O.interactions:
-        if max(contact.id1, contact.id2) >= 6 and min(contact.id1, contact.id2) >= 6:
-            contact.phys.tangensOfFrictionAngle = 0.5
+    if loose:
+        settle(1.0, 1e-3)
+        # The friction of two materials is the lesser of theirs: walls stay smooth.
+        O.materials[0].frictionAngle = math.atan(0.5)
+        for contact in O.interactions:
+            if min(contact.id1, contact.id2) >= 6:
+                contact.phys.tangensOfFrictionAngle = 0.5
     settle(0.5, 1e-4)
     width, height = press.width, press.height
     press.stressMask, press.goal2 = 1, -0.08
     curve = []
-    while press.height > height * 0.9:
+    while press.height > height * (0.95 if loose else 0.9):
         O.run(200, True)
         side, axial = -press.stress(press.wall_right_id)[0], -press.stress(press.wall_top_id)[1]
         curve.append((math.log(height / press.height), math.log(press.width * press.height / width / height), abs(axial), abs(side)))
@@ -120,19 +124,20 @@ def repose():
 
 
 def shear_box():
-    """As grains_shear_box.toml; the lid is a body of a tenth of the mass of the sand that 100 kPa push."""
-    stress, size, half, gap = 1e5, 0.2, 0.5, 5e-4
-    for label, friction in (("discs", 0.0), ("plates", 0.0), ("sides", 0.0)):
-        O.materials.append(FrictMat(young=1e8, poisson=0.5, frictionAngle=friction, density=2600, label=label))
+    """As grains_shear_box.toml from its packing at rest on; the lid is a body of a tenth of the mass of the sand that 100 kPa push."""
+    stress, size, half, gap, top = 1e5, 0.2, 0.5, 5e-4, float(sys.argv[4])
+    for label, friction in (("discs", 0.5), ("plates", 0.5), ("sides", 0.0)):
+        O.materials.append(FrictMat(young=1e8, poisson=0.5, frictionAngle=math.atan(friction), density=2600, label=label))
     add_discs("discs", 2600)
 
     def plate(centre, extents, material, fixed=True):
         return O.bodies.append(utils.box((*centre, 0), (*extents, half), fixed=fixed, material=material))
 
     t = 1e-3
-    lid = plate((size / 2, size + t), (size / 2, t), "plates", fixed=False)
+    lid = plate((size / 2, top + t), (size / 2, t), "plates", fixed=False)
     floor = plate((size / 2, -t), (size / 2 + 0.02, t), "plates")
-    lower = [floor, plate((-t, 0.03), (t, 0.05), "sides"), plate((size + t, 0.03), (t, 0.05), "sides"), plate((-0.025, 0.08 - t), (0.025, t), "sides")]
+    lower = [floor, plate((-t, 0.03), (t, 0.05), "sides"), plate((size + t, 0.03), (t, 0.05), "sides"),
+             plate((-0.025, 0.08 - t), (0.025, t), "sides")]
     upper = [plate((-t, 0.165 + gap), (t, 0.085), "sides"), plate((size + t, 0.165 + gap), (t, 0.085), "sides"),
              plate((size + 0.025, 0.08 + gap + t), (0.025, t), "sides")]
     state = O.bodies[lid].state
@@ -142,20 +147,10 @@ def shear_box():
             ([Bo1_Box_Aabb()], [Ig2_Box_Sphere_ScGeom()]), NewtonIntegrator(damping=0.2))
     O.forces.setPermF(lid, (0, -stress * size, 0))
 
-    def settle(limit, unbalanced):
-        end = O.time + limit
-        while O.time < end:
-            O.run(500, True)
-            if abs(O.forces.f(lid)[1]) < 0.01 * stress * size and utils.unbalancedForce() < unbalanced:
-                return
-
-    settle(1.0, 1e-3)
-    for material in O.materials[:2]:
-        material.frictionAngle = math.atan(0.5)
-    for contact in O.interactions:
-        if {contact.id1, contact.id2}.isdisjoint(lower[1:] + upper):
-            contact.phys.tangensOfFrictionAngle = 0.5
-    settle(0.5, 1e-4)
+    while O.time < 0.5:
+        O.run(500, True)
+        if utils.unbalancedForce() < 1e-4:
+            break
     for wall in lower:
         O.bodies[wall].state.vel = (0.02, 0, 0)
     start, bottom, curve = O.bodies[floor].state.pos[0], state.pos[1], []
