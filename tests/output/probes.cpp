@@ -71,8 +71,9 @@ TEST_CASE("a_probe_of_stress_records_that_of_its_box_by_its_own_bodies") {
     writer.record(0, 0, places, velocities, {}, {}, true, {}, contacts);
   }
   const std::string text = read_file(folder / "stress.csv");
-  CHECK(text.starts_with("step,time_s,middle_stress_xx_Pa,middle_stress_xy_Pa,middle_stress_yx_Pa,middle_stress_yy_Pa,"
-                         "middle_inside,"));
+  CHECK(
+      text.starts_with("step,time_s,middle_stress_xx_Pa,middle_stress_xy_Pa,middle_stress_yx_Pa,middle_stress_yy_Pa,"
+                       "middle_inside,"));
   // (F_x, F_y) times the branch of 1 m over the area of 8 m²: the row of y crosses nothing.
   CHECK(text.find("\n0,0,-0.375,0,0.625,0,1,") != std::string::npos);
 }

@@ -59,9 +59,9 @@ class Rock(Laboratory):
         return [parse_json(done.stdout)[name]["plane_stress"] for name in ("young_modulus", "poisson_ratio")]
 
     def test_the_gauges_of_the_unconfined_test_read_the_moduli_of_the_rock_inside(self):
-        """`homogenize` of the sample counts all of its area, and its edge lacks the bonds of discs outside: the share of the cells there,
-        half a diameter at four sides, is what it may be softer by than the inside. A cell without an edge is the other bound; one of this
-        size has a scatter of one per cent, and gauges of forty discs of a tenth of their spread in sqrt(40) as much."""
+        """`homogenize` of the sample counts all of its area, and its edge, half a diameter at each side, lacks the bonds of discs outside:
+        it is softer than the inside by that share. A periodic cell has no edge. The gauges read between the two. Cells of this size scatter by
+        1.7 % in E, gauges by 0.008 in nu (data/laboratory.md): three times that is allowed."""
         _, out = self.run_test("unconfined", "--set", "run.duration=2.4e-3", "--set", "strength=none")
         young, ratio = self.moduli()
         cell, cell_ratio = self.moduli("--set", "packing.sides=periodic")
@@ -72,9 +72,8 @@ class Rock(Laboratory):
         with self.subTest(gauges=found, sample=young, cell=cell, edge=edge, ratios=(read["poisson_ratio"], ratio, cell_ratio)):
             self.assertGreater(found, young)
             self.assertLess(found, cell)
-            self.assertLess(cell * (1 - edge) / young, 1.02)
-            self.assertGreater(cell * (1 - edge) / young, 0.98)
-            self.assertAlmostEqual(read["poisson_ratio"], cell_ratio, delta=edge * cell_ratio * 2)
+            self.assertAlmostEqual(cell * (1 - edge) / young, 1, delta=0.05)
+            self.assertAlmostEqual(read["poisson_ratio"], cell_ratio, delta=0.024)
 
     def test_a_box_around_the_brazilian_disc_has_the_stress_of_the_plates_and_its_centre_that_of_elasticity(self):
         """Around the disc: -P h over the area along, h being the distance of the plates, and nothing across. At the centre: that of
@@ -164,12 +163,16 @@ class Sand(Laboratory):
             self.assertGreater(stiffer, young)  # its boundary moves as a whole
 
     def test_the_shear_box_dilates_as_taylor_says(self):
-        """T/N = (T/N) at the end + dy/dx at the peak, both from fits over some rows of 445 discs: within 3 degrees."""
+        """T/N - dy/dx at the peak is what it is over the last quarter, where the box still dilates. Samples of 445 discs differ from that by
+        5 degrees (standard deviation of eight, data/laboratory.md); their mean difference is 0.2 degrees."""
         result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12")
         self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
         read = readings.shear_box(out)
-        self.assertGreater(read["dilation"], 0.2)
-        self.assertLess(abs(read["taylor"] - read["peak"]), 3)
+        with self.subTest(read=read):
+            self.assertGreater(read["dilation"], read["dilation_at_the_end"])
+            self.assertLess(abs(read["taylor"] - read["peak"]), 10)
+            # without dilation the peak would be that of the end, which is much lower
+            self.assertLess(abs(read["taylor"] - read["peak"]), 0.5 * (read["peak"] - read["late"]))
         # what moves the lower half acts on the upper half and on nothing else
         whole = readings.history(out, "shear")
         upper = sum(readings.mean_force(whole, wall, "x") for wall in ("lid", "upper_left", "upper_right", "roof"))

@@ -24,8 +24,9 @@ class Packing:
         self.discs = [[float(row[name]) for name in ("x_m", "y_m", "radius_m")] for row in tables["grains"]]
         self.touching = [(int(row["i"]), int(row["j"]), float(row["overlap_m"]), -float(row["normal_force_N_per_m"]),
                           -float(row["tangential_force_N_per_m"])) for row in tables["contacts"] if not row["wall"]]
+        bearing = {disc for i, j, *_ in self.touching for disc in (i, j)}  # a disc that leans on a plate alone bears nothing
         self.on_plates = [(int(row["i"]), row["wall"], float(row["overlap_m"]), -float(row["normal_force_N_per_m"]))
-                          for row in tables["contacts"] if row["wall"]]
+                          for row in tables["contacts"] if row["wall"] and int(row["i"]) in bearing]
         read = readings.history(self.folder)
         at = {side: float(read[f"wall_{side}_{'x' if side in ('left', 'right') else 'y'}_m"][-1]) for side in SIDES}
         self.low, self.high = (at["left"], at["bottom"]), (at["right"], at["top"])

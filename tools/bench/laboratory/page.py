@@ -70,12 +70,13 @@ def sand(lab):
     out, _, _ = lab.run("shear_box")
     box = readings.shear_box(out)
     rows = [["biaxial compression, angle of friction at the peak", degrees(plain["peak"]), degrees(plain["rowe"]),
-             "Rowe (1962): (1 + sin φ_cv)/(1 - sin φ_cv) (1 + D) with φ_cv and D read in the test"],
-            ["the same, beyond 8 % of strain", degrees(plain["late"]), "", f"φ_cv; volume {100 * plain['volume']:+.2f} %"],
+             f"Rowe (1962): s1/s2 = K (1 + D), K = {number(plain['factor'])} beyond 8 % of strain"],
+            ["the same, beyond 8 % of strain", degrees(plain["late"]), "", f"volume {100 * plain['volume']:+.2f} %"],
             ["dilation D at the peak", number(plain["dilation"]), "", f"at {100 * plain['strain']:.1f} % of strain"],
             ["side stress, Pa", f"{plain['side'][0]:.5g} to {plain['side'][1]:.5g}", "1e+05", "of the servo walls"],
             ["direct shear box, angle in the plane at the peak", degrees(box["peak"]), degrees(box["taylor"]),
-             "Taylor (1948): T/N = (T/N)_cv + dy/dx, both read in the test"],
+             f"Taylor (1948): T/N - dy/dx = {number(math.tan(math.radians(box['late'])) - box['dilation_at_the_end'])} as over the last quarter; dy/dx = "
+             f"{number(box['dilation'])}"],
             ["the same, over the last quarter", degrees(box["late"]), degrees(math.degrees(math.atan(math.sin(math.radians(plain["late"]))))),
              "tan φ = sin φ_cv of the biaxial test: no extension along the plane, coaxial (Davis 1968)"]]
     return rows

@@ -53,18 +53,18 @@ def plates(folder, stage="shear"):
 
 
 def biaxial(folder):
-    """Angles of friction (degrees) at the peak and beyond 8 per cent of strain, and that which Rowe's relation gives at the peak:
-    s1/s2 = (1 + sin phi_cv)/(1 - sin phi_cv) (1 + D), D = -(volume strain rate)/(axial strain rate), compression positive."""
+    """Angles of friction (degrees) at the peak and beyond 8 per cent of strain, and that which Rowe's relation gives at the peak: s1/s2 = K
+    (1 + D), D = -(volume strain rate)/(axial strain rate), compression positive, with the K of the end."""
     rows = 15
     axial, side, strain, volume = (smooth(values, rows) for values in plates(folder))
     sine = (axial - side) / (axial + side)
     peak = int(numpy.argmax(sine[rows:-rows])) + rows
     late = float(numpy.mean(sine[strain > 0.08]))
     near = slice(peak - rows, peak + rows + 1)
-    dilation = -numpy.polyfit(strain[near], volume[near], 1)[0]
-    rowe = (1 + late) / (1 - late) * (1 + dilation)
+    dilation, end = (-numpy.polyfit(strain[part], volume[part], 1)[0] for part in (near, strain > 0.08))
+    factor = (1 + late) / (1 - late) / (1 + end)
     return {"peak": math.degrees(math.asin(sine[peak])), "late": math.degrees(math.asin(late)), "strain": float(strain[peak]),
-            "dilation": float(dilation), "rowe": math.degrees(math.asin((rowe - 1) / (rowe + 1))),
+            "dilation": float(dilation), "factor": float(factor), "rowe": angle_of(factor * (1 + dilation)),
             "volume": float(-volume[-1]), "side": (float(side.min()), float(side.max()))}
 
 
@@ -102,8 +102,8 @@ def small_strain(folder, low=1e-5, high=1e-4):
 
 
 def shear_box(folder):
-    """Angles of friction in the plane of shear (degrees), at the peak and over the last quarter, and Taylor's sum at the peak: that of
-    the end and of dilation, T/N = (T/N)_cv + dy/dx."""
+    """Angles of friction in the plane of shear (degrees), at the peak and over the last quarter, and that which Taylor's relation gives at
+    the peak: T/N - dy/dx is what it is over the last quarter."""
     read = history(folder, "shear")
     moved = read["wall_floor_x_m"] - read["wall_floor_x_m"][0]
     lid = read["wall_lid_y_m"] - read["wall_lid_y_m"][0]
@@ -112,11 +112,12 @@ def shear_box(folder):
     ratio = smooth(-pushed, rows) / smooth(mean_force(read, "lid", "y"), rows)
     at, rise = smooth(middle(moved), rows), smooth(middle(lid), rows)
     peak = int(numpy.argmax(ratio[rows:-rows])) + rows
-    late = float(numpy.mean(ratio[at > 0.75 * at[-1]]))
+    end = at > 0.75 * at[-1]
+    late = float(numpy.mean(ratio[end]))
     near = slice(peak - rows, peak + rows + 1)
-    dilation = float(numpy.polyfit(at[near], rise[near], 1)[0])
+    dilation, last = (float(numpy.polyfit(at[part], rise[part], 1)[0]) for part in (near, end))
     return {"peak": math.degrees(math.atan(ratio[peak])), "late": math.degrees(math.atan(late)), "moved": float(at[peak]),
-            "dilation": dilation, "taylor": math.degrees(math.atan(late + dilation)), "rise": float(rise[-1])}
+            "dilation": dilation, "dilation_at_the_end": last, "taylor": math.degrees(math.atan(late - last + dilation)), "rise": float(rise[-1])}
 
 
 def unconfined(folder, width):

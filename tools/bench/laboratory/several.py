@@ -62,13 +62,13 @@ def rock(lab):
     inside, whole = fitted(sizes, 0), fitted(sizes, 2)
 
     def fit(of):
-        return f"{number(of[0] / 1e9)} ± {number(of[1] / 1e9, 1)} GPa with b = {number(of[2] / DIAMETER, 2)} mean diameters"
+        return f"E = {of[0] / 1e9:.3f} ± {of[1] / 1e9:.3f} GPa, b = {number(of[2] / DIAMETER, 2)} mean diameters"
 
     return (f"Rock of several sizes, {len(ensembles.ROCK_SEEDS)} samples each: E (GPa) and nu of the gauges of `grains_unconfined.toml`, and of `homogenize` of\n"
             "the sample, its boundary moved as a whole.\n\n"
             + table(["width, mm", "E, gauges", "E, homogenize", "ratio", "nu, gauges", "nu, homogenize"], rows)
-            + f"\n\nE (1 - b/W) fits the gauges with {fit(inside)},\n`homogenize` with {fit(whole)}.\n"
-            f"Periodic cells of 800 discs, which have no edge: E = {both(cells[:, 0] / 1e9)} GPa, nu = {both(cells[:, 1])}.")
+            + f"\n\nLines E (1 - b/W): of the gauges {fit(inside)};\nof `homogenize` {fit(whole)}: half a diameter at each side lacks the bonds of\n"
+            f"discs outside. Periodic cells of 800 discs, which have no edge: E = {both(cells[:, 0] / 1e9, 4)} GPa, nu = {both(cells[:, 1])}.")
 
 
 def brazilian(lab):
