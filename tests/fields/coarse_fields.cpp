@@ -115,6 +115,7 @@ TEST_CASE("bonds_carry_stress_as_contacts_do") {
   scene.bonds = {{.j = 1, .normal_spring = 1e6, .tangential_spring = 1e6}};
   scene.pairs = {PairProperties{.stiffness = 1e4}};
   GrainOptions options;
+  options.law = NormalLaw::linear_dashpot;
   options.time_step = 1e-4;
   GrainSimulation simulation(scene, options);
   simulation.advance(1000);

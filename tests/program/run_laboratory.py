@@ -143,13 +143,13 @@ class Heaps(Laboratory):
 
 class Sand(Laboratory):
     def test_the_stiffness_at_small_strain_is_that_of_the_packing_at_rest(self):
-        """Statics of the consolidated packing between the same plates, with the forces that it carries; springs alone would do, which
-        the run departs from where contacts slip or part: by 1 % at a strain of 1e-4, a tenth of that of the overlaps."""
+        """Statics of the consolidated packing between the same plates, with the forces that it carries. Contacts part and slip from the start
+        on, those first that carry least: up to a strain of 3e-5, a thirtieth of that of the mean overlap, by less than 1 %."""
         held = self.folder / "held"
         self.run_case(CASES / "grains_biaxial.toml", "--out", held, *QUIET, "--set", "stage.2.until.strain=1e-8")
         _, out = self.run_test("biaxial", "--set", "stage.2.wall.0.velocity=[0.0,1e-4]", "--set", "stage.2.wall.1.velocity=[0.0,-1e-4]", "--set",
-                               "stage.2.until.strain=5e-5", "--set", "output.probe_interval=2e-4")
-        read = readings.small_strain(out, 5e-6, 5e-5)
+                               "stage.2.until.strain=3e-5", "--set", "output.probe_interval=2e-4")
+        found = readings.small_strain(out, 1e-5, 3e-5)
 
         def call(command):
             return self.check_done(equidem(*command[1:])).stdout
@@ -157,9 +157,9 @@ class Sand(Laboratory):
         packing = at_rest.Packing(held)
         young, ratio = packing.between_plates("equidem", call)
         stiffer, _ = packing.homogenized("equidem", call)
-        with self.subTest(read=read, statics=(young, ratio), homogenize=stiffer):
-            self.assertAlmostEqual(read["young_modulus"] / young, 1, delta=0.01)
-            self.assertAlmostEqual(read["poisson_ratio"], ratio, delta=0.01)
+        with self.subTest(found=found, statics=(young, ratio), homogenize=stiffer):
+            self.assertAlmostEqual(found[0] / young, 1, delta=0.01)
+            self.assertAlmostEqual(found[1], ratio, delta=0.01)
             self.assertGreater(stiffer, young)  # its boundary moves as a whole
 
     def test_the_shear_box_dilates_as_taylor_says(self):

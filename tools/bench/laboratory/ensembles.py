@@ -42,8 +42,8 @@ def sand(lab):
 
 
 def small_strain(lab):
-    """Of each sample: slope of the axial stress and of the strain across (over that along) at a constant side stress, below 1e-4 of
-    strain; the same by statics of the packing at rest between the same plates; E of homogenize with the boundary moved as a whole."""
+    """Of each sample (E, nu): slopes of the axial stress and of the strain across over that along, at a constant side stress, in two ranges
+    of strain; the same by statics of the packing at rest between the same plates; and by homogenize, the boundary moved as a whole."""
     found = []
     for seed in STIFFNESS_SEEDS:
         settings = sample(lab, f"sand{seed}_sample", samples.sand(lab.equidem, seed))
@@ -51,8 +51,8 @@ def small_strain(lab):
         sheared, _, _ = lab.run("biaxial", *settings, "stage.2.wall.0.velocity=[0.0,1e-4]", "stage.2.wall.1.velocity=[0.0,-1e-4]",
                                 "stage.2.until.strain=1e-4", "output.probe_interval=2e-4")
         packing = at_rest.Packing(held)
-        found.append({**readings.small_strain(sheared), "statics": packing.between_plates(lab.equidem, call),
-                      "homogenize": packing.homogenized(lab.equidem, call)})
+        found.append([readings.small_strain(sheared, 1e-5, 3e-5), readings.small_strain(sheared, 3e-5, 1e-4),
+                      packing.between_plates(lab.equidem, call), packing.homogenized(lab.equidem, call)])
     return found
 
 

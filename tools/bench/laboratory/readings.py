@@ -92,13 +92,12 @@ def angle_of(ratio):
     return math.degrees(math.asin((ratio - 1) / (ratio + 1)))
 
 
-def small_strain(folder, low=1e-5, high=1e-4):
+def small_strain(folder, low, high):
     """Slopes of the axial stress over the strain and of the strain across over that along, between two strains, while the sides keep
-    their stress; with the plates slow enough that waves have died out below `low`."""
+    their stress, E and nu; with the plates slow enough that waves have died out below `low`."""
     axial, side, strain, volume = plates(folder)
     chosen = (strain > low) & (strain < high)
-    return {"young_modulus": float(numpy.polyfit(strain[chosen], (axial - side)[chosen], 1)[0]),
-            "poisson_ratio": float(numpy.polyfit(strain[chosen], (strain - volume)[chosen], 1)[0])}
+    return [float(numpy.polyfit(strain[chosen], values[chosen], 1)[0]) for values in (axial - side, strain - volume)]
 
 
 def shear_box(folder):
