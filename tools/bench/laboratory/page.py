@@ -94,7 +94,7 @@ def rock(lab):
     across, along = readings.stress_at_the_centre(out, 0.05, float(readings.rows_of_breaks(out)[0]["time_s"]))
     theory = readings.hondros(samples.HALF_ANGLE, ensembles.PROBE)
     crack = readings.breaks_near_the_diameter(out, split["time"] + 2e-4)
-    return [["unconfined compression, E, Pa", number(plain["young_modulus"], 4), number(young, 4), "homogenize lab_rock.toml, uniform displacements"],
+    return [["unconfined compression, E, Pa", number(plain["young_modulus"], 4), number(young, 4), "homogenize lab_rock.toml, its edge included: below"],
             ["the same, nu", number(plain["poisson_ratio"]), number(nu), "likewise"],
             ["unconfined strength, Pa", number(plain["strength"], 4), "", f"at a strain of {100 * plain['strain']:.2f} %"],
             ["the same, plates with friction 0.5", number(rubbing["strength"], 4), "", "held ends"],
