@@ -163,16 +163,15 @@ class Sand(Laboratory):
             self.assertGreater(stiffer, young)  # its boundary moves as a whole
 
     def test_the_shear_box_dilates_as_taylor_says(self):
-        """T/N - dy/dx at the peak is what it is over the last quarter, where the box still dilates. Samples of 445 discs differ from that by
-        5 degrees (standard deviation of eight, data/laboratory.md); their mean difference is 0.2 degrees."""
+        """T/N - dy/dx is the same over the first 5 mm, where the sand dilates most, and the last 8 mm. Of eight samples of 445 discs the
+        two differ by 0.06 (standard deviation, data/laboratory.md), thrice which is allowed; it is T/N alone that falls by more."""
         result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12")
         self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
-        read = readings.shear_box(out)
-        with self.subTest(read=read):
-            self.assertGreater(read["dilation"], read["dilation_at_the_end"])
-            self.assertLess(abs(read["taylor"] - read["peak"]), 10)
-            # without dilation the peak would be that of the end, which is much lower
-            self.assertLess(abs(read["taylor"] - read["peak"]), 0.5 * (read["peak"] - read["late"]))
+        (first, rise), (last, late_rise) = readings.taylor(out)
+        with self.subTest(first=first, rise=rise, last=last, late_rise=late_rise):
+            self.assertGreater(rise, late_rise)
+            self.assertLess(abs((first - rise) - (last - late_rise)), 0.18)
+            self.assertLess(abs((first - rise) - (last - late_rise)), abs(first - last))
         # what moves the lower half acts on the upper half and on nothing else
         whole = readings.history(out, "shear")
         upper = sum(readings.mean_force(whole, wall, "x") for wall in ("lid", "upper_left", "upper_right", "roof"))

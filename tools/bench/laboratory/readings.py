@@ -119,6 +119,19 @@ def shear_box(folder):
             "dilation": dilation, "dilation_at_the_end": last, "taylor": math.degrees(math.atan(late - last + dilation)), "rise": float(rise[-1])}
 
 
+def taylor(folder, parts=((0, 5e-3), (8e-3, 16e-3))):
+    """T/N and dy/dx of the shear box, means over two parts of its way (m): [[T/N, dy/dx], ...]; by Taylor their difference is one number."""
+    read = history(folder, "shear")
+    moved, lid = read["wall_floor_x_m"] - read["wall_floor_x_m"][0], read["wall_lid_y_m"]
+    pushed = -sum(mean_force(read, wall, "x") for wall in ("floor", "lower_left", "lower_right", "shelf"))
+    pressed, at = mean_force(read, "lid", "y"), middle(moved)
+    found = []
+    for start, end in parts:
+        chosen = (at > start) & (at < end)
+        found.append([float(pushed[chosen].mean() / pressed[chosen].mean()), float(numpy.diff(numpy.interp((start, end), moved, lid))[0] / (end - start))])
+    return found
+
+
 def unconfined(folder, width):
     """Strength, and from the stresses between a tenth and four tenths of it Young's modulus and Poisson's ratio of the sheet (the
     uniaxial stress over its strain, and the share across): those of the reading 'plane stress' of homogenize."""

@@ -30,7 +30,7 @@ def fitted(sizes, column):
 def sand(lab):
     presses, boxes = ensembles.sand(lab)
     plain, mean = [readings.biaxial(out) for out in presses], readings.stress_dilatancy(presses)
-    sheared = [readings.shear_box(out) for out in boxes]
+    sheared, parts = [readings.shear_box(out) for out in boxes], [readings.taylor(out) for out in boxes]
 
     def of(reads, name):
         return both([read[name] for read in reads]) + "°"
@@ -44,7 +44,9 @@ def sand(lab):
         ["R = s1/s2 over D along the mean curves", f"{number(mean['offset'])} + {number(mean['slope'])} D", f"{factor} (1 + D)",
          f"least squares, correlation {number(mean['correlation'], 2)}"],
         ["shear box, angle at the peak", of(sheared, "peak"), of(sheared, "taylor"), "Taylor, by T/N - dy/dx over the last quarter of each"],
-        ["the same, over the last quarter", of(sheared, "late"), "", ""]])
+        ["the same, over the last quarter", of(sheared, "late"), "", ""],
+        ["T/N over the first 5 mm and the last 8 mm", ", ".join(both([read[k][0] for read in parts]) for k in (0, 1)), "", ""],
+        ["T/N - dy/dx, likewise", *(both([read[k][0] - read[k][1] for read in parts]) for k in (0, 1)), "Taylor: the same in both"]])
 
 
 def stiffness(lab):
