@@ -19,7 +19,7 @@ namespace {
 /// Discs side by side in rows, all contacts alike: s_xx = -fx/d, s_yy = -fy/d, s_xy = s_yx = t/d.
 struct Lattice {
   std::vector<Grain> grains;
-  std::vector<GrainContact> contacts;
+  std::vector<BodyContact> contacts;
 };
 Lattice square_lattice(int count, double d, double fx, double fy, double t) {
   Lattice lattice;
@@ -29,21 +29,16 @@ Lattice square_lattice(int count, double d, double fx, double fy, double t) {
   for (int row = 0; row < count; ++row)
     for (int column = 0; column < count; ++column) {
       const int i = row * count + column;
-      GrainContact contact;
+      BodyContact contact;
       contact.i = i;
-      // The force on i is -N n - T s: to the right neighbour s is up, to the upper one it is to the left.
       if (column + 1 < count) {
         contact.j = i + 1;
-        contact.normal = {1, 0};
-        contact.normal_force = fx;
-        contact.tangential_force = -t;
+        contact.force = {-fx, t};
         lattice.contacts.push_back(contact);
       }
       if (row + 1 < count) {
         contact.j = i + count;
-        contact.normal = {0, 1};
-        contact.normal_force = fy;
-        contact.tangential_force = t;
+        contact.force = {t, -fy};
         lattice.contacts.push_back(contact);
       }
     }
@@ -76,17 +71,16 @@ TEST_CASE("the_stress_of_a_lattice_is_the_one_its_forces_make_in_every_cell") {
 
 TEST_CASE("cells_add_up_to_the_stress_of_the_whole_and_bodies_to_their_area") {
   const Bodies bodies = scattered(GrainShape::ellipse, 50, 2);
-  std::vector<GrainContact> contacts;
+  std::vector<BodyContact> contacts;
   Random random(4);
   for (int k = 0; k + 1 < 50; k += 2) {
     const double angle = random.uniform(-3, 3);
-    GrainContact contact;
+    const Vec2 normal = {std::cos(angle), std::sin(angle)};
+    BodyContact contact;
     contact.i = k;
     contact.j = k % 4 == 0 ? ~0 : k + 1;
-    contact.normal = {std::cos(angle), std::sin(angle)};
-    contact.arm_i = 0.03 * contact.normal;
-    contact.normal_force = random.uniform(0, 5);
-    contact.tangential_force = random.uniform(-1, 1);
+    contact.arm = 0.03 * normal;
+    contact.force = -(random.uniform(0, 5) * normal) + random.uniform(-1, 1) * perpendicular(normal);
     contacts.push_back(contact);
   }
   const Region all{{-0.2, -0.2}, {1.2, 1.2}};
@@ -111,6 +105,29 @@ TEST_CASE("cells_add_up_to_the_stress_of_the_whole_and_bodies_to_their_area") {
   }
 }
 
+TEST_CASE("bonds_carry_stress_as_contacts_do") {
+  // Two heavy discs part at 2e-4 m/s: their bond of 1e6 N/m pulls with 2e-4 t 1e6 N/m along its 0.2 m.
+  GrainScene scene;
+  for (const double side : {-1.0, 1.0}) {
+    scene.grains.push_back(disc({0, 0.1 * side}, 0.1, {0, 1e-4 * side}));
+    scene.grains.back().inertia = {1e12, 1e12};
+  }
+  scene.bonds = {{.j = 1, .normal_spring = 1e6, .tangential_spring = 1e6}};
+  scene.pairs = {PairProperties{.stiffness = 1e4}};
+  GrainOptions options;
+  options.law = NormalLaw::linear_dashpot;
+  options.time_step = 1e-4;
+  GrainSimulation simulation(scene, options);
+  simulation.advance(1000);
+  const CoarseFields fields =
+      coarse_fields(simulation.grains(), {}, simulation.body_contacts(), grid_over({{-0.5, -0.2}, {0.5, 0.2}}, 1));
+  REQUIRE(fields.stress.size() == 1);
+  CAPTURE(fields.stress[0].xx, fields.stress[0].yy);
+  CHECK(fields.stress[0].yy == Approx(2e-4 * 0.1 * 1e6 * 0.2 / 0.4).epsilon(2e-3));  // one step and the longer bond
+  CHECK(fields.stress[0].xx == Approx(0).margin(1e-9));
+  CHECK(fields.coordination[0] == 1);
+}
+
 TEST_CASE("a_column_at_rest_carries_its_weight") {
   // Discs upon each other on a floor: at any height s_yy times the width is the weight above.
   GrainScene scene;
@@ -127,7 +144,7 @@ TEST_CASE("a_column_at_rest_carries_its_weight") {
   simulation.advance(30'000);
   // Centres are 0.2 apart: the contact below the k-th carries the k-th and all above.
   const CoarseFields fields =
-      coarse_fields(simulation.grains(), {}, simulation.contacts(), grid_over({{-0.5, 0}, {0.5, 0.2}}, 1));
+      coarse_fields(simulation.grains(), {}, simulation.body_contacts(), grid_over({{-0.5, 0}, {0.5, 0.2}}, 1));
   const double weight = 0.01 * 10, upper = 9 * weight, lower = 10 * weight;
   const auto grains = simulation.grains();
   const double foot = grains[0].position.y, rest = 0.2 - foot;

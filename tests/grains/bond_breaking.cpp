@@ -11,6 +11,8 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/contact/bending.hpp"
 #include "equidem/statics/equilibrium.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+#include "equidem/waves/natural_frequencies.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "support/catch.hpp"
@@ -265,13 +267,17 @@ TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
   for (const char* end : {"left", "right"})
     for (const std::int32_t d : block.groups.at(end).discs)
       scene.grains[static_cast<std::size_t>(d)].inertia = {1e9, 1e9};
+  // Dashpots in proportion to the springs take no part in how a steady motion divides forces: under a speed V of the
+  // right end u = u_s V t solves K u + lag K u' = 0 inside, u_s being the motion of statics, once the start has died
+  // out.
+  const double lag = 0.025;  // s
   for (std::size_t c = 0; c < block.contacts.size(); ++c) {
     const Contact& contact = block.contacts[c];
     scene.bonds.push_back({.i = static_cast<std::size_t>(contact.i),
                            .j = static_cast<std::size_t>(contact.j),
-                           .normal_dashpot = 10,
-                           .tangential_dashpot = 5,
-                           .rolling_dashpot = 0.5,
+                           .normal_dashpot = lag * k.kN,
+                           .tangential_dashpot = lag * k.kT,
+                           .rolling_dashpot = lag * springs.bending(c),
                            .normal_spring = k.kN,
                            .tangential_spring = k.kT,
                            .bending_spring = springs.bending(c)});
@@ -300,10 +306,24 @@ TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
   while (simulation.breaks().empty() && simulation.time() < 2 * expected) simulation.advance(1);
   REQUIRE_FALSE(simulation.breaks().empty());
   const BondBreak found = simulation.breaks().front();
-  CAPTURE(first, second / first, expected, found.step * step, weakest, found.bond, to_string(found.mode));
-  CHECK(second > 1.005 * first);
+  // The sudden start swings the block: all discs lack at most the speed V, which bends a bond by at most 2 sqrt(n)
+  // V/omega, omega being the lowest frequency; it dies out as exp(-omega^2 lag t/2). Finite motions change forces by
+  // the strain, 1e-6. What is left is the step in which the strength is reached, and the one before which it is told.
+  std::vector<Inertia> inertia;
+  for (std::size_t d = 0; d < block.size(); ++d) inertia.push_back(ball(block.centres[d], block.radii[d]).inertia);
+  const DegreesOfFreedom unknowns =
+      number_unknowns(block, springs, derive_effects(springs, Rotation::from_scene), ends);
+  const double omega2 = natural_frequencies(block, springs, unknowns, inertia, {.count = 1}).squared.at(0);
+  const ContactForce& strongest = state.contact_forces[weakest];
+  const double stretch_rate = std::max(std::abs(strongest.normal) / k.kN, std::abs(strongest.tangential) / k.kT) / pull;
+  const double swing =
+      2 * std::sqrt(static_cast<double>(block.size()) / omega2) / stretch_rate * std::exp(-omega2 * lag * expected / 2);
+  const double time = static_cast<double>(found.step) * step, bound = 2 * step + 1e-6 * expected + swing;
+  CAPTURE(first, second / first, expected, time - expected, bound, swing, omega2, weakest, found.bond,
+          to_string(found.mode));
+  CHECK(std::abs(time - expected) < bound);
+  CHECK((second - first) * pull / speed > 2 * bound);  // no other bond is as near
   CHECK(found.bond == weakest);
-  CHECK(static_cast<double>(found.step) * step == Approx(expected).epsilon(1e-3));
 }
 
 TEST_CASE("strengths_that_mean_nothing_are_refused") {

@@ -57,6 +57,27 @@ TEST_CASE("a_probe_with_a_box_counts_its_bodies_inside_sides_included") {
   CHECK(text.find("\n0,0,2,") != std::string::npos);
 }
 
+TEST_CASE("a_probe_of_stress_records_that_of_its_box_by_its_own_bodies") {
+  const TemporaryFolder folder;
+  const Probe probe{
+      .name = "middle", .bodies = {1}, .quantities = {ProbeQuantity::stress}, .box = Rectangle{{0.5, -2}, {2.5, 2}}};
+  std::vector<DiscMotion> places(3), velocities(3);
+  places[1].u = {1, 0}, places[2].u = {2, 0};
+  // Body 1 is pushed by 3 N/m along and by 5 N/m across at x = 0.5 and 1.5; of bodies 0 and 2 the ways do not count.
+  const std::vector<BodyContact> contacts{{.i = 0, .j = 1, .arm = {0.5, 0}, .force = {-3, 5}},
+                                          {.i = 1, .j = 2, .arm = {0.5, 0}, .force = {-3, 5}}};
+  {
+    ProbeWriter writer(folder / "stress.csv", {probe}, places.size(), {.family = BodyFamily::colliding});
+    writer.record(0, 0, places, velocities, {}, {}, true, {}, contacts);
+  }
+  const std::string text = read_file(folder / "stress.csv");
+  CHECK(
+      text.starts_with("step,time_s,middle_stress_xx_Pa,middle_stress_xy_Pa,middle_stress_yx_Pa,middle_stress_yy_Pa,"
+                       "middle_inside,"));
+  // (F_x, F_y) times the branch of 1 m over the area of 8 m²: the row of y crosses nothing.
+  CHECK(text.find("\n0,0,-0.375,0,0.625,0,1,") != std::string::npos);
+}
+
 TEST_CASE("probes_record_means_and_energies") {
   const TemporaryFolder folder;
   {
@@ -240,6 +261,7 @@ TEST_CASE("probes_that_cannot_measure_are_refused") {
   CHECK(start({{"a", {-1}}}).says("the probe 'a' names body -1"));
   CHECK(start({{"a", {1}}, {"a", {2}}}).says("two probes are called 'a'"));
   CHECK(start({{"", {1}}}).says("a probe has no name"));
+  CHECK(start({{"a", {1}, {ProbeQuantity::stress}}}).says("the probe 'a' has a stress and no box"));
   CHECK(folder.files() == 0);
   write_file(folder / "probes.csv", "mine", false);
   CHECK(start(probes).says("exists already"));

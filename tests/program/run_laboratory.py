@@ -11,7 +11,9 @@ from motion import RunTest
 from program import CASES, SOURCE, equidem, parse_json
 
 sys.path.insert(0, str(SOURCE / "tools" / "bench" / "laboratory"))
+import at_rest  # noqa: E402
 import readings  # noqa: E402
+import samples  # noqa: E402
 
 QUIET = ("--set", "output.picture=false")
 
@@ -52,18 +54,44 @@ class Beam(Laboratory):
 
 
 class Rock(Laboratory):
-    def test_the_gauges_of_the_unconfined_test_read_the_moduli_of_the_packing(self):
-        """Between plates without friction; gauges are means over few discs: 6 % of E, 0.03 of nu."""
+    def moduli(self, *options):
+        done = self.check_done(equidem("homogenize", CASES / "lab_rock.toml", "--json", "-", "--quiet", *options))
+        return [parse_json(done.stdout)[name]["plane_stress"] for name in ("young_modulus", "poisson_ratio")]
+
+    def test_the_gauges_of_the_unconfined_test_read_the_moduli_of_the_rock_inside(self):
+        """`homogenize` of the sample counts all of its area, and its edge, half a diameter at each side, lacks the bonds of discs outside:
+        it is softer than the inside by that share. A periodic cell has no edge. The gauges read between the two. Cells of this size scatter by
+        1.7 % in E, gauges by 0.008 in nu (data/laboratory.md): three times that is allowed."""
         _, out = self.run_test("unconfined", "--set", "run.duration=2.4e-3", "--set", "strength=none")
-        moduli = parse_json(self.check_done(equidem("homogenize", CASES / "lab_rock.toml", "--json", "-", "--quiet")).stdout)
-        read = readings.history(out)
-        stress = (readings.mean_force(read, "top", "y") - readings.mean_force(read, "bottom", "y")) / 2 / 0.04
-        along, across = read["upper_y_m"] - read["lower_y_m"], read["right_x_m"] - read["left_x_m"]
-        late = stress > 0.3 * stress.max()
-        found = readings.elastic(stress[late], readings.middle(1 - along / along[0])[late],
-                                 readings.middle(across / across[0] - 1)[late])
-        self.assertAlmostEqual(found["young_modulus"] / moduli["young_modulus"]["plane_stress"], 1, delta=0.06)
-        self.assertAlmostEqual(found["poisson_ratio"], moduli["poisson_ratio"]["plane_stress"], delta=0.03)
+        young, ratio = self.moduli()
+        cell, cell_ratio = self.moduli("--set", "packing.sides=periodic")
+        read = readings.elastic_gauges(out, 0.04)
+        diameter = 2 * numpy.mean(readings.columns_without_text(CASES / "lab_rock.csv", ("radius",))["radius"])
+        edge = diameter / 0.04 + diameter / 0.08
+        found = read["young_modulus"]
+        with self.subTest(gauges=found, sample=young, cell=cell, edge=edge, ratios=(read["poisson_ratio"], ratio, cell_ratio)):
+            self.assertGreater(found, young)
+            self.assertLess(found, cell)
+            self.assertAlmostEqual(cell * (1 - edge) / young, 1, delta=0.05)
+            self.assertAlmostEqual(read["poisson_ratio"], cell_ratio, delta=0.024)
+
+    def test_a_box_around_the_brazilian_disc_has_the_stress_of_the_plates_and_its_centre_that_of_elasticity(self):
+        """Around the disc: -P h over the area along, h being the distance of the plates, and nothing across. At the centre: that of
+        Hondros (1959) on arcs; four samples of this size scatter by 0.04 across and 0.09 along (data/laboratory.md), here 2.5 times that."""
+        box = 0.03
+        _, out = self.run_test("brazilian", "--set", "run.duration=3e-3", "--set", "strength=none", "--set", "output.probe_interval=2e-5")
+        centre = readings.stress_at_the_centre(out, 0.05)
+        _, out = self.run_test("brazilian", "--set", "run.duration=3e-3", "--set", "strength=none", "--set",
+                               f"probe.0.box=[{-box},{-box},{box},{box}]", "--set", "output.probe_interval=2e-5")
+        whole = readings.stress_at_the_centre(out, 0.05)
+        height = 2 * 0.025 * math.cos(samples.HALF_ANGLE)
+        along = -height * math.pi * 0.05 / 2 / (2 * box) ** 2
+        with self.subTest(centre=centre, whole=whole, along=along):
+            self.assertAlmostEqual(whole[1] / along, 1, delta=0.01)
+            self.assertAlmostEqual(whole[0] / along, 0, delta=0.01)
+            across, along = readings.hondros(samples.HALF_ANGLE, 0.24, rigid=True)
+            self.assertAlmostEqual(centre[0], across, delta=0.1)
+            self.assertAlmostEqual(centre[1], along, delta=0.22)
 
 
 class Heaps(Laboratory):
@@ -76,9 +104,31 @@ class Heaps(Laboratory):
         self.assertTrue((numpy.diff(counted) >= 0).all())
         below = int((readings.columns_without_text(out / "grains.csv", ("y_m",))["y_m"] <= 0).sum())
         self.assertEqual(counted[-1], below)
-        # 0.12 s at the steady rate of data/laboratory.md, 1269 a second, would be 152; the start is slower
-        self.assertGreater(below, 60)
-        self.assertLess(below, 152)
+        self.assertGreater(below, 0)
+
+    def test_the_discharge_grows_with_the_opening_by_the_power_of_beverloo(self):
+        """Openings W of 40 and 64 mm: (W - k d)^(3/2) with k from 1 to 3 grows 2.1 to 2.5 times, a linear law 1.7 to 1.9 times, a square
+        law 2.8 to 3.5 times. About 330 and 760 bodies in the time that is read, of which 5 % is twice the scatter of such counts."""
+        d, rates, openings = 0.004, [], (0.040, 0.064)
+        for opening in openings:
+            _, out = self.run_test("hopper", "--set", "stage.1.duration=0.4", "--set", f"stage.1.wall.1.end=[{0.075 - opening / 2},0.0]", "--set",
+                                   f"stage.1.wall.2.point=[{0.075 + opening / 2},0.0]")
+            read = readings.history(out, "flow")
+            late = read["time_s"] > read["time_s"][0] + 0.15
+            rates.append(numpy.polyfit(read["time_s"][late], read["out_inside"][late], 1)[0])
+        least, most = ((((openings[1] - k * d) / (openings[0] - k * d)) ** 1.5) for k in (1, 3))
+        with self.subTest(rates=rates, least=least, most=most):
+            self.assertGreater(rates[1] / rates[0], 0.95 * least)
+            self.assertLess(rates[1] / rates[0], 1.05 * most)
+
+    def test_a_heap_of_rougher_grains_is_steeper(self):
+        """Friction 0.05 and 0.5: slopes of the same column, apart by more than three times the errors of both lines."""
+        slopes = []
+        for friction in (0.05, 0.5):
+            _, out = self.run_test("repose", "--set", f"collisions.friction={friction}", "--set", "stage.1.duration=1.0")
+            slopes.append(readings.slope(out))
+        with self.subTest(slopes=slopes):
+            self.assertGreater(slopes[1]["angle"] - slopes[0]["angle"], 3 * math.hypot(slopes[0]["error"], slopes[1]["error"]))
 
     def test_a_slope_of_a_known_angle_is_read(self):
         with open(self.folder / "grains.csv", "w", encoding="utf-8") as file:
@@ -92,13 +142,36 @@ class Heaps(Laboratory):
 
 
 class Sand(Laboratory):
+    def test_the_stiffness_at_small_strain_is_that_of_the_packing_at_rest(self):
+        """Statics of the consolidated packing between the same plates, with the forces that it carries. Contacts part and slip from the start
+        on, those first that carry least: up to a strain of 3e-5, a thirtieth of that of the mean overlap, by less than 1 %."""
+        held = self.folder / "held"
+        self.run_case(CASES / "grains_biaxial.toml", "--out", held, *QUIET, "--set", "stage.2.until.strain=1e-8")
+        _, out = self.run_test("biaxial", "--set", "stage.2.wall.0.velocity=[0.0,1e-4]", "--set", "stage.2.wall.1.velocity=[0.0,-1e-4]", "--set",
+                               "stage.2.until.strain=3e-5", "--set", "output.probe_interval=2e-4")
+        found = readings.small_strain(out, 1e-5, 3e-5)
+
+        def call(command):
+            return self.check_done(equidem(*command[1:])).stdout
+
+        packing = at_rest.Packing(held)
+        young, ratio = packing.between_plates("equidem", call)
+        stiffer, _ = packing.homogenized("equidem", call)
+        with self.subTest(found=found, statics=(young, ratio), homogenize=stiffer):
+            self.assertAlmostEqual(found[0] / young, 1, delta=0.01)
+            self.assertAlmostEqual(found[1], ratio, delta=0.01)
+            self.assertGreater(stiffer, young)  # its boundary moves as a whole
+
     def test_the_shear_box_dilates_as_taylor_says(self):
-        """T/N = (T/N) at the end + dy/dx at the peak, both from fits over some rows of 445 discs: within 3 degrees."""
+        """T/N - dy/dx is the same over the first 5 mm, where the sand dilates most, and the last 8 mm. Of eight samples of 445 discs the
+        two differ by 0.06 (standard deviation, data/laboratory.md), thrice which is allowed; it is T/N alone that falls by more."""
         result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12")
         self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
-        read = readings.shear_box(out)
-        self.assertGreater(read["dilation"], 0.2)
-        self.assertLess(abs(read["taylor"] - read["peak"]), 3)
+        (first, rise), (last, late_rise) = readings.taylor(out)
+        with self.subTest(first=first, rise=rise, last=last, late_rise=late_rise):
+            self.assertGreater(rise, late_rise)
+            self.assertLess(abs((first - rise) - (last - late_rise)), 0.18)
+            self.assertLess(abs((first - rise) - (last - late_rise)), abs(first - last))
         # what moves the lower half acts on the upper half and on nothing else
         whole = readings.history(out, "shear")
         upper = sum(readings.mean_force(whole, wall, "x") for wall in ("lid", "upper_left", "upper_right", "roof"))

@@ -109,7 +109,7 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
   using enum ProbeQuantity;
   const std::vector<ProbeQuantity> own = family == BodyFamily::bonded
                                              ? std::vector{displacement, velocity, rotation, spin}
-                                             : std::vector{position, velocity, angle, spin};
+                                             : std::vector{position, velocity, angle, spin, stress};
   std::vector<std::string> words;
   for (const ProbeQuantity quantity : own) words.push_back(to_string(quantity));
   const auto first = [&](KeySpec& key) { key.fallback = default_text(std::vector{own.front()}); };
@@ -119,7 +119,10 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
       key("bodies", &Probe::bodies, optional, formerly("grains"), "counted from 0; those of a file first"),
       key("quantities", &Probe::quantities, choices(std::move(words)), first,
           refused({{"energy", "the energies of the whole scene are in every history", "Remove it"}}),
-          "the means over these bodies; the energies of the whole scene are in every history")};
+          family == BodyFamily::bonded
+              ? "the means over these bodies; the energies of the whole scene are in every history"
+              : "the means over these bodies; stress: of their contacts and bonds, over the box. The energies of the "
+                "whole scene are in every history")};
   if (family == BodyFamily::bonded) {
     keys.push_back(key("wavelength", &Probe::wavelength, unit("m"), positive,
                        "of a standing wave: the report gives the period of the mean velocity, from its passages "
@@ -127,7 +130,7 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
   } else {
     keys.push_back(key("box", &Probe::box, unit("m"),
                        "how many of these bodies have their centre inside is recorded too, such as those that have "
-                       "left a hopper"));
+                       "left a hopper; for a stress, its region"));
   }
   return keys;
 }

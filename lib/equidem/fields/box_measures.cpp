@@ -133,7 +133,7 @@ CoarseFields BoxMeasures::fields(const GrainSimulation& simulation) const {
   if (!box.lid)
     region.high.y = *std::max_element(last_.heights.begin(), last_.heights.end(),
                                       [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  return coarse_fields(grains, scene_.clumps, simulation.contacts(), grid_over(region, *options_.cell));
+  return coarse_fields(grains, scene_.clumps, simulation.body_contacts(), grid_over(region, *options_.cell));
 }
 
 }  // namespace equidem

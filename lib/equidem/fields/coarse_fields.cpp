@@ -58,7 +58,7 @@ CoarseGrid grid_over(const Region& region, double width) {
 }
 
 CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump> clumps,
-                           std::span<const GrainContact> contacts, const CoarseGrid& grid) {
+                           std::span<const BodyContact> contacts, const CoarseGrid& grid) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   CoarseFields fields{.grid = grid,
                       .stress = std::vector<Tensor2>(grid.size()),
@@ -69,25 +69,23 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
   const double area = size.x * size.y;
 
   std::vector<double> held(grains.size(), 0.0), shares;
-  for (const GrainContact& contact : contacts) {
+  for (const BodyContact& contact : contacts) {
     const auto i = static_cast<std::size_t>(contact.i);
     const Grain& grain = grains[i];
     held[i] += 1;
-    Vec2 branch = contact.arm_i;
+    Vec2 branch = contact.arm;
     if (contact.j >= 0) {
       const auto j = static_cast<std::size_t>(contact.j);
       held[j] += 1;
       branch = grains[j].position - grain.position;
     }
-    const Vec2 on_i =
-        -(contact.normal_force * contact.normal) - contact.tangential_force * perpendicular(contact.normal);
     shares = {0, 1};
     add_crossings(grain.position.x, branch.x, grid.region.low.x, size.x, grid.columns, shares);
     add_crossings(grain.position.y, branch.y, grid.region.low.y, size.y, grid.rows, shares);
     std::sort(shares.begin(), shares.end());
     for (std::size_t k = 0; k + 1 < shares.size(); ++k) {
       const auto cell = cell_at(grid, grain.position + 0.5 * (shares[k] + shares[k + 1]) * branch);
-      if (cell) fields.stress[*cell] += ((shares[k + 1] - shares[k]) / area) * outer(on_i, branch);
+      if (cell) fields.stress[*cell] += ((shares[k + 1] - shares[k]) / area) * outer(contact.force, branch);
     }
   }
 

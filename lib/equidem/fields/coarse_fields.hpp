@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 
@@ -37,12 +38,12 @@ struct CoarseFields {
   /// adds nothing to it.
   std::vector<Tensor2> stress;
   std::vector<double> solid_fraction;  ///< exact areas
-  std::vector<double> coordination;    ///< contacts of a body with its centre in the cell; NaN: there is none
+  std::vector<double> coordination;    ///< contacts and bonds of a body with its centre in the cell; NaN: there is none
   std::vector<Vec2> velocity;          ///< m/s, mean by mass over these bodies; NaN: there is none
 };
 
-/// \param contacts with the forces of the last step
+/// \param contacts with the forces of the last step, and bonds
 CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump> clumps,
-                           std::span<const GrainContact> contacts, const CoarseGrid& grid);
+                           std::span<const BodyContact> contacts, const CoarseGrid& grid);
 
 }  // namespace equidem

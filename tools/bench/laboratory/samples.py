@@ -33,7 +33,7 @@ HEAP = """schema = "equidem/1"
 method = "falling"
 grains = 2000
 box    = [0.15, 0.5]
-seed   = 3
+seed   = {seed}
 [packing.radii]
 smallest = 0.0016
 largest  = 0.0024
@@ -47,8 +47,21 @@ kN = 1.0e6
 kT = 5.0e5
 density = 2500.0
 """
-ROCK = (0.04, 0.08)  # m, width and height
-RADIUS, HALF_ANGLE = 0.025, math.radians(10)  # m, of the Brazilian disc and of its flat ends
+SAND = """schema = "equidem/1"
+[packing]
+method = "local_moves"
+grains = 445
+box    = [0.2, 0.2]
+seed   = {seed}
+[packing.radii]
+smallest = 0.0035
+largest  = 0.0055
+[springs]
+kN = 1.0e8
+kT = 5.0e7
+"""
+ROCK, ROCK_GRAINS = (0.04, 0.08), 800  # m, width and height
+RADIUS, HALF_ANGLE, DISC_GRAINS = 0.025, math.radians(10), 1200  # m, of the Brazilian disc and of its flat ends
 
 
 def packed(program, case):
@@ -60,9 +73,8 @@ def packed(program, case):
     return made["discs"], [contact[:2] for contact in made["contacts"]]
 
 
-def gauge_of(x, y):
+def gauge_of(x, y, width, height):
     """Groups of a rock whose mean motions give its strains: bands near its sides, away from its corners."""
-    width, height = ROCK
     if 0.1 * width < x < 0.9 * width:
         if 0.86 * height < y < 0.92 * height:
             return "upper"
@@ -76,22 +88,34 @@ def gauge_of(x, y):
     return "rock"
 
 
-def rock(program, grains=800, seed=4):
-    discs, contacts = packed(program, PACK.format(grains=grains, width=ROCK[0], height=ROCK[1], seed=seed))
-    return [(x, y, r, gauge_of(x, y)) for x, y, r in discs], contacts
+def rock(program, grains=ROCK_GRAINS, seed=4):
+    """A rock of these many discs, all as large as in the case; width and height follow."""
+    width, height = (side * math.sqrt(grains / ROCK_GRAINS) for side in ROCK)
+    discs, contacts = packed(program, PACK.format(grains=grains, width=width, height=height, seed=seed))
+    return [(x, y, r, gauge_of(x, y, width, height)) for x, y, r in discs], contacts
 
 
-def brazilian(program, grains=1200, seed=6):
-    """The disc about the origin, pressed along y on ends that are flat over 2 HALF_ANGLE."""
-    half = RADIUS * math.cos(HALF_ANGLE)
-    discs, contacts = packed(program, PACK.format(grains=grains, width=2 * RADIUS, height=2 * half, seed=seed))
+def brazilian(program, grains=DISC_GRAINS, seed=6):
+    """The disc about the origin, pressed along y on ends that are flat over 2 HALF_ANGLE; cut out of these many discs."""
+    radius = RADIUS * math.sqrt(grains / DISC_GRAINS)
+    half = radius * math.cos(HALF_ANGLE)
+    discs, contacts = packed(program, PACK.format(grains=grains, width=2 * radius, height=2 * half, seed=seed))
     number, cut = {}, []
     for k, (x, y, r) in enumerate(discs):
-        x, y = x - RADIUS, y - half
-        if math.hypot(x, y) <= RADIUS - r / 2:
+        x, y = x - radius, y - half
+        if math.hypot(x, y) <= radius - r / 2:
             number[k] = len(cut)
             cut.append((x, y, r, "rock"))
     return cut, [(number[i], number[j]) for i, j in contacts if i in number and j in number]
+
+
+def heap(program, seed=3):
+    return [(*disc, "grains") for disc in packed(program, HEAP.format(seed=seed))[0]]
+
+
+def sand(program, seed):
+    """The loose sand of several samples, as that of biaxial.csv."""
+    return [(*disc, "grains") for disc in packed(program, SAND.format(seed=seed))[0]]
 
 
 def write(folder, name, discs, contacts=None):
@@ -106,7 +130,7 @@ def main():
     program, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     write(folder, "lab_rock", *rock(program))
     write(folder, "lab_brazilian", *brazilian(program))
-    write(folder, "lab_heap", [(*disc, "grains") for disc in packed(program, HEAP)[0]])
+    write(folder, "lab_heap", heap(program))
     ends = {0: "ends", 10: "middle", 20: "ends"}
     write(folder, "lab_beam", [(0.01 * k, 0.0, 0.005, ends.get(k, "beam")) for k in range(21)], [(k, k + 1) for k in range(20)])
 

@@ -32,6 +32,21 @@ void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>&
               "the name stands for all walls", "Name it otherwise");
 }
 
+void check_stress(const TomlValue& table, const GrainTables& tables, const Probe& probe) {
+  if (!has_stress(probe)) return;
+  const auto refuse = [&](const char* what, const char* why, const char* advice) {
+    fail_at(*table.find("quantities"), "probe.quantities",
+            fmt::format("the probe '{}' has a stress {}", probe.name, what), why, advice);
+  };
+  if (!probe.box) refuse("and no box", "a stress is the mean over an area", "Add box = [x_min, y_min, x_max, y_max]");
+  if (tables.body == Body::sphere)
+    refuse("of spheres", "their forces have no width to act on",
+           "Use discs, or divide forces of contacts.csv yourself");
+  if (tables.scene.cell)
+    refuse("in a periodic cell", "its box would have to repeat as the bodies do",
+           "Remove it: history.csv has the stress of the cell");
+}
+
 /// A probe of a group has its bodies.
 void choose_bodies(const TomlValue& table, const std::vector<std::string>& groups, Probe& probe) {
   check_bodies(table, probe, groups.size());
@@ -135,8 +150,11 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   if (tables.shaking_table) complete_shaking(root, tables);
   if (tables.measures) at_key(*root.find("measures"), "measures", [&] { check(*tables.measures, tables.body); });
   check_probes(root);
-  for (std::size_t k = 0; k < tables.probes.size(); ++k)
-    choose_bodies(repeated(root, "probe")[k], groups, tables.probes[k]);
+  for (std::size_t k = 0; k < tables.probes.size(); ++k) {
+    const TomlValue& table = repeated(root, "probe")[k];
+    choose_bodies(table, groups, tables.probes[k]);
+    check_stress(table, tables, tables.probes[k]);
+  }
   tables.document = std::move(root);
   return tables;
 }

@@ -8,6 +8,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/fields/region_stress.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"
 #include "equidem/output/run/cell_history.hpp"
@@ -27,6 +28,10 @@ void check(const std::vector<Probe>& probes, std::size_t bodies) {
       bad_input(fmt::format("the probe '{}' holds no body", probe.name), "nothing has no mean",
                 "Choose at least one body");
     }
+    if (has_stress(probe) && !probe.box) {
+      bad_input(fmt::format("the probe '{}' has a stress and no box", probe.name), "a stress is the mean over an area",
+                "Give it a box");
+    }
     for (const std::int32_t body : probe.bodies) {
       if (body < 0 || static_cast<std::size_t>(body) >= bodies) {
         bad_input(fmt::format("the probe '{}' names body {}", probe.name, body),
@@ -41,7 +46,7 @@ std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const P
   std::vector<std::string> columns{"step", "time_s"};
   for (const Probe& probe : probes) {
     for (const ProbeQuantity quantity : probe.quantities)
-      for (const char* column : {entry_of(quantity).column, entry_of(quantity).second_column})
+      for (const char* column : entry_of(quantity).columns)
         if (column != nullptr) columns.push_back(probe.name + column);
     if (probe.box) columns.push_back(probe.name + "_inside");
   }
@@ -97,15 +102,21 @@ ProbeWriter::ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, 
 
 void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities, std::span<const WallState> walls,
-                         const EnergyLedger& ledger, bool regular, const std::optional<CellState>& cell) {
+                         const EnergyLedger& ledger, bool regular, const std::optional<CellState>& cell,
+                         std::span<const BodyContact> contacts) {
   assert(cell.has_value() == cell_);
   std::vector<double> cells = {time};
   for (const Probe& probe : probes_) {
     const DiscMotion motion = mean_of(probe.bodies, motions), velocity = mean_of(probe.bodies, velocities);
     for (const ProbeQuantity quantity : probe.quantities) {
+      if (quantity == ProbeQuantity::stress) {
+        const Tensor2 stress = region_stress(*probe.box, probe.bodies, motions, contacts);
+        cells.insert(cells.end(), {stress.xx, stress.xy, stress.yx, stress.yy});
+        continue;
+      }
       const ProbeQuantityFacts& facts = entry_of(quantity);
       const DiscMotion& value = facts.rate ? velocity : motion;
-      if (facts.second_column == nullptr) {
+      if (facts.columns[1] == nullptr) {
         cells.push_back(value.theta);
       } else {
         cells.insert(cells.end(), {value.u.x, value.u.y});

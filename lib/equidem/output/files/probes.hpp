@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/cell_state.hpp"
@@ -31,13 +32,14 @@ struct ProbeOptions {
 };
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
-/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; NAME_inside of a probe with a box;
-/// those of every wall (wall_loads.hpp) and of the periodic cell (cell_history.hpp); then the columns of the energy
-/// ledger (energies.hpp).
+/// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; NAME_stress_xx_Pa, _xy_, _yx_,
+/// _yy_; NAME_inside of a probe with a box; those of every wall (wall_loads.hpp) and of the periodic cell
+/// (cell_history.hpp); then the columns of the energy ledger (energies.hpp).
 class ProbeWriter {
  public:
   /// \param bodies of the scene
-  /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, where a
+  /// \throws Error (bad_input) where two probes share a name or one has no body or one that is not there, or a stress
+  ///         without a box, where a
   ///         probe and a wall have a column of one name, where the file exists and neither `overwrite` nor
   ///         `continue_from` is set, where it cannot be written, or as GrowingCsv where it cannot be continued
   ProbeWriter(std::filesystem::path path, std::vector<Probe> probes, std::size_t bodies, const ProbeOptions& options);
@@ -47,10 +49,12 @@ class ProbeWriter {
   /// \param motions displacements and rotations, or positions and angles, of all bodies
   /// \param regular as in GrowingCsv::add
   /// \param cell given where ProbeOptions::cell is set
+  /// \param contacts of the bodies, where a probe has a stress
   /// \throws Error (computation_failed) where the disk is full
   void record(std::int64_t step, double time, std::span<const DiscMotion> motions,
               std::span<const DiscMotion> velocities, std::span<const WallState> walls, const EnergyLedger& ledger,
-              bool regular = true, const std::optional<CellState>& cell = {});
+              bool regular = true, const std::optional<CellState>& cell = {},
+              std::span<const BodyContact> contacts = {});
   /// Write all rows to the operating system.
   void flush() { table_.flush(); }
   /// Sync all rows to disk, as required before a checkpoint refers to them.

@@ -187,7 +187,9 @@ class RunLoop {
     }
     if (row) {
       const auto cell = plan_.cell ? simulation_.cell() : std::nullopt;
-      history_->record(step, time, motions, velocities, walls, ledger, regular_row, cell);
+      const auto contacts =
+          std::ranges::any_of(plan_.probes, has_stress) ? simulation_.body_contacts() : std::vector<BodyContact>();
+      history_->record(step, time, motions, velocities, walls, ledger, regular_row, cell, contacts);
     }
   }
 
