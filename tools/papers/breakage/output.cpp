@@ -145,11 +145,11 @@ std::string fits_text(const Notches& notches) {
   std::string text = header({"discs wide", "kT/kN", "exponent of a", "exponent of a + c", "c/d", "K_Ic sqrt(d)/f_t",
                              "infinite lattice", "least by energy"});
   for (const NotchFit& fit : notches.fits) {
-    text +=
-        cells({fmt::format("{}", fit.columns), fmt::format("{:g}", fit.ratio),
-               with_error(fit.plain_exponent, fit.plain_exponent_error), with_error(fit.exponent, fit.exponent_error),
-               with_error(fit.shift, fit.shift_error), with_error(fit.toughness, fit.toughness_error),
-               fmt::format("{:.4f}", fit.lattice), fmt::format("{:.4f}", fit.griffith)});
+    text += cells({fmt::format("{}", fit.columns), fmt::format("{:g}", fit.ratio),
+                   fit.plain_exponent != 0 ? with_error(fit.plain_exponent, fit.plain_exponent_error) : "-",
+                   with_error(fit.exponent, fit.exponent_error), with_error(fit.shift, fit.shift_error),
+                   with_error(fit.toughness, fit.toughness_error), fmt::format("{:.4f}", fit.lattice),
+                   fmt::format("{:.4f}", fit.griffith)});
   }
   return text;
 }

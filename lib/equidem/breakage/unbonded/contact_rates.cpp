@@ -67,9 +67,9 @@ class RateResidual {
   }
   /// Motions that nothing resists would follow the round-off of forces far.
   void leave_loose(const Rates& rates, std::vector<double>& residual) const {
-    constexpr double round_off = 1e-15, nothing_acts = 1e-13;
+    constexpr double noise = 1e-15, nothing_acts = 1e-13;
     for (std::size_t k = 0; k < residual.size(); ++k) {
-      if (sizes_[k] <= nothing_acts * rates.force_scale || std::abs(residual[k]) <= round_off * rates.force_scale)
+      if (sizes_[k] <= nothing_acts * rates.force_scale || std::abs(residual[k]) <= noise * rates.force_scale)
         residual[k] = 0;
     }
   }
