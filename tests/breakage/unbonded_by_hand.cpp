@@ -313,7 +313,7 @@ TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
         for (const BreakEvent& event : onward.events()) CHECK(event.other_answers == 0);
         continue;
       }
-      CHECK_THAT(onward.run().why(), Catch::Contains("may have no answer"));
+      CHECK_THAT(onward.run().why(), Catch::Contains("the increment has no answer"));
       options.legs = {onward.run().lambda(), 0};
       Unbonded back(scene, springs, strengths, options, {friction, {}});
       back.all();

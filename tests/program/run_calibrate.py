@@ -306,6 +306,12 @@ uy = {motion}
         self.check_error(equidem("calibrate", STRENGTH, "--springs", self.folder / "k.toml"), 2, "the case for strengths")
         self.check_error(equidem("calibrate", RANDOM, "--strength", self.folder / "k.toml"), 2, "the case for springs")
         self.check_error(equidem("calibrate", STRENGTH, "--set", "springs.kT=-1e8"), 2, "kT < 0")
+        notched = ("--set", "strength_target.compressive=none", "--set", "strength_target.toughness=1e5")
+        self.check_error(equidem("calibrate", STRENGTH, *notched, "--set", "strength_target.notches=[-0.002]"), 2,
+                         "strength_target: the length of the notch is -0.002 m", "Give a length of the notch above 0 m")
+        self.check_error(equidem("calibrate", STRENGTH, *notched, "--set", "strength_target.notches=[0.2]"), 2,
+                         "strength_target: a notch of 0.2 m in a sample", "Give shorter notches")
+        self.check_error(equidem("calibrate", STRENGTH, *notched), 2, "strength_target: a toughness needs notches")
         result = self.calibrated(STRENGTH, "--dry-run")
         self.assertGreater(result["estimated_seconds"], 0)
         self.assertEqual(result["estimated_tests"], 64)

@@ -16,11 +16,12 @@ class QuickBreakage(ProgramTest):
                 self.assertTrue((out / line.split("(breakage/")[1].rstrip(")")).exists(), line)
         for name in ("notches_values.csv", "weibull_chains_values.csv", "weibull_plates_values.csv"):
             self.assertTrue((out / name).exists(), name)
-        # Strength falls as the root of the length.
+        # Strength falls as the root of the length, with the toughness of the lattice.
         for fit in result["fits"]:
             self.assertGreater(fit["toughness"], fit["griffith"], fit)
+            self.assertLess(abs(fit["toughness"] / fit["lattice"] - 1), 0.03 if fit["columns"] < 41 else 0.02, fit)
             if fit["columns"] == 41:
-                self.assertLess(abs(fit["exponent"] + 0.5), 0.05, fit)
+                self.assertLess(abs(fit["exponent"] + 0.5), 0.015, fit)
         for chain in result["chains"]:
             self.assertLess(abs(chain["strength"] - chain["weakest_link"]), 4.5 * chain["standard_error"], chain)
         # Larger plates are weaker, and scatter less.

@@ -244,6 +244,35 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", NOTCH, "--set", "quasistatic.legs=[0.0]"), 2, "quasistatic.legs",
                          "nothing happens on it")
 
+    def test_refusals_name_the_line_and_the_key(self):
+        plate = NOTCH.read_text()
+        load = '[[load]]\ngroup = "top"\nkind = "total"\nforce = [0.0, 1.0e5]\n'
+        pulled = plate.replace('[[support]]\ngroup = "top"\nuy = 1.0e-6               # m, times lambda\n', load)
+        rubs = 'friction        = 0.5\nafter_breaking  = "rubs"'
+        cell = ('schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = 8\nrows = 8\nradius = 0.5\n'
+                'periodic = true\n[springs]\nkN = 1e9\nkT = 3e8\n[strength]\ntension = 1e6\nshear = 2e6\n')
+        one = '[[group]]\nname = "one"\ndiscs = [0]\n'
+        for text, at, key, words in (
+                (plate.replace("uy = 1.0e-6", "uy = 0.0"), "[[support]]", "support", "nothing grows with lambda"),
+                (cell + "[strain]\nxx = 0.0\n", "[strain]", "strain", "nothing grows with lambda"),
+                (plate + "[strain]\nxx = 1e-3\n", "[strain]", "strain", "not periodic"),
+                (plate + '[[load]]\ngroup = "left"\nforce = [1.0, 0.0]\n', "[[load]]", "load", "grow with lambda together"),
+                (cell + "[strain]\nxx = 1e-3\n" + one + '[[dead_load]]\ngroup = "one"\nforce = [1.0, 0.0]\n',
+                 "[[dead_load]]", "dead_load", "cannot carry its loads"),
+                (pulled.replace("0.008, 0.0152", "1.0, 0.0152"), "[[load]]", "load", "cannot carry its loads"),
+                (plate.replace("kT = 3.0e9", "kT = -1.0e8"), "[springs]", "springs", "kT < 0"),
+                (plate.replace("tension         = 10.0e3", "#"), "[strength]", "strength", "one of two strengths is missing"),
+                (plate.replace("weibull_modulus = 8.0", "weibull_modulus = 1e-3"), "[strength]", "strength", "scatters them"),
+                (plate.replace("friction        = 0.5", rubs), "control", "quasistatic.control", "their state depends on"),
+                (plate.replace('"path"', '"motion"\nlegs = [1.0, 1.0]'), "legs", "quasistatic.legs", "nothing happens"),
+                (plate.replace("from = [-0.001, 0.0152]", "from = [1.0, 1.0]").replace("0.008, 0.0152", "2.0, 2.0"),
+                 "[[notch]]", "notch", "crosses no contact")):
+            case = self.folder / "case.toml"
+            case.write_text(text)
+            line = 1 + next(k for k, row in enumerate(text.splitlines()) if row.startswith(at))
+            with self.subTest(key=key, words=words):
+                self.check_error(equidem("quasistatic", case), 2, f"case.toml:{line}: {key}", words)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -68,9 +68,11 @@ void check_size(const std::string& what, double size) {
             "Choose another unit; lambda multiplies what grows");
 }
 
+}  // namespace
+
 /// With kT < 0 every equilibrium is a saddle of the energy (one negative eigenvalue for each rotation): statics solves
 /// for it, but no motion of the discs leads from one to the next, which is what a break asks for.
-void check_springs(const ContactSprings& springs) {
+void check_breaking_springs(const ContactSprings& springs) {
   if (springs.bends()) {
     bad_input("bending springs in a network that breaks at rest",
               "the search for the next break knows forces, and no moments of contacts",
@@ -82,11 +84,9 @@ void check_springs(const ContactSprings& springs) {
             "Take kT >= 0; solve gives the forces of the unbroken network for any kT");
 }
 
-}  // namespace
-
 LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs, const Effects& effects,
                         const LoadPathOptions& options) {
-  check_springs(springs);
+  check_breaking_springs(springs);
   check_legs(options.legs);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, options.supports);
   LoadPath path;

@@ -68,6 +68,9 @@ struct LoadPath {
 /// \throws Error (bad_input) where an end is not finite, or a leg leads nowhere: to the lambda that it begins at
 void check_legs(const std::vector<double>& legs);
 
+/// \throws Error (bad_input) where contacts bend, or some kT < 0
+void check_breaking_springs(const ContactSprings& springs);
+
 /// \throws Error (bad_input) where nothing, or more than one of loads, motions and strain, grows with lambda, where a
 ///         strain is asked of a free assembly, a number is not finite or out of range, a leg leads nowhere, some kT <
 ///         0, or as number_unknowns and assemble_loads

@@ -51,7 +51,7 @@ void check_options(const StrengthOptions& options) {
   if (options.shear) check_strength("strength in shear", *options.shear);
   check_friction("friction", options.friction);
   if (options.residual_friction) check_friction("residual friction", *options.residual_friction);
-  if (options.weibull_modulus) check_positive(*options.weibull_modulus, "the Weibull modulus");
+  if (options.weibull_modulus) check_positive(*options.weibull_modulus, "Weibull modulus");
 }
 
 double length_of(const Assembly& assembly, std::size_t contact, BondLength length) {

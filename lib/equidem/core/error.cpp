@@ -41,7 +41,7 @@ Error::Error(ErrorKind kind, std::string problem, std::string why, std::string r
       where_(std::move(where)) {}
 
 Error Error::at(const std::string& where) const {
-  return where_.empty() ? Error(kind_, problem_, why_, remedy_, where) : *this;
+  return where_.empty() && kind_ != ErrorKind::interrupted ? Error(kind_, problem_, why_, remedy_, where) : *this;
 }
 
 void bad_input(std::string problem, std::string why, std::string remedy) {

@@ -34,7 +34,7 @@ class Error : public std::runtime_error {
   [[nodiscard]] const std::string& where() const { return where_; }
   [[nodiscard]] int exit_code() const { return static_cast<int>(kind_); }
 
-  /// A copy with the place in the user's file that caused the error; a place that is already set is kept.
+  /// A copy with the place in the user's file that caused the error. One that is set stays; interruptions have none.
   [[nodiscard]] Error at(const std::string& where) const;
 
  private:

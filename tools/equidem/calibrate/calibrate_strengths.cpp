@@ -8,8 +8,10 @@
 
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/load_path.hpp"
 #include "equidem/breakage/path_estimate.hpp"
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -101,15 +103,19 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   const Case& resolved = problem.resolved;
   if (options.dry_run) return dry_run_strengths(options, problem);
 
+  casefile::with_place(resolved.where("springs"), [&] { check_breaking_springs(problem.springs.springs); });
+  const std::string place = resolved.where("strength_target");
   Stopwatch watch;
-  const std::vector<SeededSample> samples = build_samples(problem);
+  const std::vector<SeededSample> samples = casefile::with_place(place, [&] { return build_samples(problem); });
   problem.times.add("samples", watch.lap());
   const StrengthTargetCase& target = *resolved.strength_target;
   StrengthOptions strengths = resolved.strength.value_or(StrengthOptions{});
   Progress progress("testing");
-  const StrengthCalibration found = calibrate_strength(
-      samples, target.wanted, {.strengths = strengths, .shear_over_tension = target.shear_over_tension},
-      [&](double share) { progress.update(share); });
+  const StrengthCalibration found = casefile::with_place(place, [&] {
+    return calibrate_strength(samples, target.wanted,
+                              {.strengths = strengths, .shear_over_tension = target.shear_over_tension},
+                              [&](double share) { progress.update(share); });
+  });
   problem.times.add("tests", watch.lap());
   strengths.tension = found.tension;
   strengths.shear = found.shear;

@@ -118,7 +118,7 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
         viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
                                {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
   } catch (const Error& error) {
-    throw error.kind() == ErrorKind::interrupted ? error : error.at(resolved.where("viscoelastic"));
+    throw error.at(resolved.where("viscoelastic"));
   }
   return result;
 }

@@ -11,6 +11,7 @@
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/path_estimate.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -57,34 +58,45 @@ struct Sequence {
   std::unique_ptr<UnbondedRun> unbonded{};  ///< where contacts rub, instead of the two above
 
   explicit Sequence(Problem given) : problem(std::move(given)) {
+    using casefile::with_place;
     const Case& resolved = problem.resolved;
     const Assembly& assembly = problem.assembly;
-    effects = derive_effects(assembly, problem.springs.springs, resolved.rotation);
-    strengths = contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{}));
-    cut = contacts_across(assembly, resolved.notches);
+    const ContactSprings& springs = problem.springs.springs;
+    effects = derive_effects(assembly, springs, resolved.rotation);
+    strengths = with_place(resolved.where("strength"),
+                           [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
+    cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
     const QuasistaticCase& wanted = resolved.quasistatic;
     const bool loaded = !problem.load_cases.front().loads.empty();
     if (rubs()) {
       for (const std::size_t contact : cut) strengths.tension[contact] = strengths.shear[contact] = 0;
+      check_rubbing_solver();
     }
-    try {
-      check_legs(wanted.legs);
-    } catch (const Error& error) {
-      throw error.at(resolved.where("quasistatic.legs"));
-    }
-    if (rubs()) check_rubbing_solver();
-    path = make_load_path(assembly, problem.springs.springs, effects,
-                          {.supports = problem.supports,
-                           .loads = problem.load_cases.front().loads,
-                           .dead_loads = resolved.dead_loads,
-                           .strain = resolved.strain,
-                           .control = wanted.control.value_or(!rubs()  ? LoadControl::path
-                                                              : loaded ? LoadControl::load
-                                                                       : LoadControl::motion),
-                           .legs = wanted.legs,
-                           .max_events = wanted.max_events});
+    with_place(resolved.where("quasistatic.legs"), [&] { check_legs(wanted.legs); });
+    with_place(resolved.where(resolved.material ? "material" : "springs"), [&] { check_breaking_springs(springs); });
+    path = with_place(place_of_driving(), [&] {
+      return make_load_path(assembly, springs, effects,
+                            {.supports = problem.supports,
+                             .loads = problem.load_cases.front().loads,
+                             .dead_loads = resolved.dead_loads,
+                             .strain = resolved.strain,
+                             .control = wanted.control.value_or(!rubs()  ? LoadControl::path
+                                                                : loaded ? LoadControl::load
+                                                                         : LoadControl::motion),
+                             .legs = wanted.legs,
+                             .max_events = wanted.max_events});
+    });
+    if (rubs()) with_place(resolved.where("quasistatic.control"), [&] { check_control_of_rubbing(path); });
   }
 
+  /// The table that drives the path, or should.
+  [[nodiscard]] std::string place_of_driving() const {
+    const Case& resolved = problem.resolved;
+    for (const char* table : {"strain", "load", "test", "support"}) {
+      if (resolved.document.find(table) != nullptr) return resolved.where(table);
+    }
+    return resolved.document.where();
+  }
   void check_rubbing_solver() const {
     const SolverMethod method = problem.resolved.solver.method;
     if (method == SolverMethod::automatic || method == SolverMethod::umfpack) return;
@@ -118,11 +130,14 @@ struct Sequence {
       UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
         options.rest.push_back(force_at_rest(problem.assembly, c));
-      unbonded = std::make_unique<UnbondedRun>(scene(), effects, problem.supports, std::move(options));
+      casefile::with_place(problem.resolved.where("strength"), [&] {
+        unbonded = std::make_unique<UnbondedRun>(scene(), effects, problem.supports, std::move(options));
+      });
     } else {
       system = make_breakable_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
       if (!cut.empty()) system->remove(cut);
-      brittle = std::make_unique<BreakageRun>(scene(), *system);
+      casefile::with_place(system->carries(0) ? problem.resolved.where("dead_load") : place_of_driving(),
+                           [&] { brittle = std::make_unique<BreakageRun>(scene(), *system); });
     }
     problem.times.add("first state", watch.seconds());
   }

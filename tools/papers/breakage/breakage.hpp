@@ -27,14 +27,23 @@ struct NotchedPlate {
   double energy_error = 0;
 };
 
-/// The exponent of sigma sqrt(sec(pi a/W)) against a, and the toughness, over the plates of one lattice and size.
+/// sigma sqrt(sec(pi a/W)) against a, over the plates of one lattice and size. The crack of a lattice ends between the
+/// last contact that is cut and the first that is not: a half-length a + c of the continuum, with c found too.
 struct NotchFit {
   std::int64_t columns = 0;
   double ratio = 0;
-  double griffith = 0;                      ///< the least toughness that the energy of the broken contacts allows
-  double exponent = 0, exponent_error = 0;  ///< standard error from the scatter about the line
-  MeanEstimate toughness = {};
+  double griffith = 0;  ///< the least toughness that the energy of the broken contacts allows
+  double lattice = 0;   ///< toughness of the infinite lattice (lattice_toughness)
+  double exponent = 0,
+         exponent_error = 0;          ///< of a + c; standard errors, here and below, from the scatter about the fit
+  double shift = 0, shift_error = 0;  ///< c over the distance of neighbours, where the exponent is -1/2
+  double toughness = 0, toughness_error = 0;            ///< likewise
+  double plain_exponent = 0, plain_exponent_error = 0;  ///< of a alone, over longer notches
 };
+
+/// Toughness K_Ic sqrt(d)/f_t of the infinite hexagonal lattice: K of the field of a crack around its tip (Williams
+/// 1957) at which the first contact reaches f_t.
+double lattice_toughness(double ratio, bool quick);
 
 struct Notches {
   std::vector<NotchedPlate> plates;

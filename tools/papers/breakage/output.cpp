@@ -28,16 +28,17 @@ Plot notch_plot(const Notches& notches) {
                   .style = SeriesStyle::points,
                   .colour = colours[colour % 3],
                   .marker = markers[colour % 3]};
-    Series theory{.label = "K/sqrt(pi a sec(pi a/W)), that K" + std::string(colour == 0 ? " of each size" : ""),
+    Series theory{.label = colour == 0 ? "K/sqrt(pi (a + c) sec(pi a/W)), K and c of each size" : "",
                   .style = SeriesStyle::line,
                   .colour = colours[colour % 3]};
-    if (colour > 0) theory.label.clear(), theory.column = fmt::format("theory {}", fit.columns);
+    if (colour > 0) theory.column = fmt::format("theory {}", fit.columns);
     for (const NotchedPlate& plate : notches.plates) {
       if (plate.columns != fit.columns || plate.ratio != fit.ratio) continue;
       points.x.push_back(plate.length);
       points.y.push_back(plate.strength);
       theory.x.push_back(plate.length);
-      theory.y.push_back(plate.strength * fit.toughness.mean / plate.toughness);
+      theory.y.push_back(plate.strength * fit.toughness / plate.toughness *
+                         std::sqrt(plate.length / (plate.length + 2 * fit.shift)));
     }
     plot.series.push_back(std::move(theory));
     plot.series.push_back(std::move(points));
@@ -104,7 +105,13 @@ Table fits_table(const Notches& notches) {
   table.add("ratio", notches.fits, &NotchFit::ratio);
   table.add("exponent", notches.fits, &NotchFit::exponent);
   table.add("exponent_error", notches.fits, &NotchFit::exponent_error);
-  table.add("toughness", notches.fits, [](const NotchFit& fit) { return fit.toughness.mean; });
+  table.add("shift", notches.fits, &NotchFit::shift);
+  table.add("shift_error", notches.fits, &NotchFit::shift_error);
+  table.add("toughness", notches.fits, &NotchFit::toughness);
+  table.add("toughness_error", notches.fits, &NotchFit::toughness_error);
+  table.add("plain_exponent", notches.fits, &NotchFit::plain_exponent);
+  table.add("plain_exponent_error", notches.fits, &NotchFit::plain_exponent_error);
+  table.add("lattice", notches.fits, &NotchFit::lattice);
   table.add("griffith", notches.fits, &NotchFit::griffith);
   return table;
 }
@@ -135,12 +142,15 @@ std::string with_error(double value, double error) {
 }
 
 std::string fits_text(const Notches& notches) {
-  std::string text = header({"discs wide", "kT/kN", "exponent", "K_Ic sqrt(d)/f_t", "least by energy", "over it"});
-  for (const NotchFit& fit : notches.fits)
+  std::string text = header({"discs wide", "kT/kN", "exponent of a", "exponent of a + c", "c/d", "K_Ic sqrt(d)/f_t",
+                             "infinite lattice", "least by energy"});
+  for (const NotchFit& fit : notches.fits) {
     text += cells({fmt::format("{}", fit.columns), fmt::format("{:g}", fit.ratio),
-                   with_error(fit.exponent, fit.exponent_error),
-                   with_error(fit.toughness.mean, fit.toughness.standard_error), fmt::format("{:.4f}", fit.griffith),
-                   fmt::format("{:.3f}", fit.toughness.mean / fit.griffith)});
+                   fit.plain_exponent != 0 ? with_error(fit.plain_exponent, fit.plain_exponent_error) : "-",
+                   with_error(fit.exponent, fit.exponent_error), with_error(fit.shift, fit.shift_error),
+                   with_error(fit.toughness, fit.toughness_error), fmt::format("{:.4f}", fit.lattice),
+                   fmt::format("{:.4f}", fit.griffith)});
+  }
   return text;
 }
 
@@ -204,19 +214,20 @@ std::string page_of(const Notches& notches, const Weibull& weibull, bool quick) 
       "of a contact in tension.\n\n"
       "## Strength against the length of a notch\n\n"
       "Hexagonal plates twice as high as wide, equal strengths, tension alone; a straight cut of length 2a along a "
-      "close-packed row in the\nmiddle. Linear elastic fracture mechanics: sigma sqrt(sec(pi a/W)) falls as a^(-1/2), "
-      "K_Ic = sigma sqrt(pi a sec(pi a/W)), the\nsecant for the finite width. Fits and means are over notches of 12 d "
-      "and "
-      "more, up to 0.6 W.\nA crack that grows by d breaks two contacts, which takes f_t²/kN at "
-      "least (Griffith): K_Ic sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher:\nthe energy between two breaks is lost, "
-      "too.\n\n",
+      "close-packed row in the\nmiddle, from 2 d to 0.6 of the width W. Linear elastic fracture mechanics: sigma "
+      "sqrt(sec(pi a/W)) falls as a^(-1/2), K_Ic = sigma\nsqrt(pi a sec(pi a/W)), the secant for the finite width. The "
+      "crack of a lattice ends between the last contact that is cut and the first\nthat is not: a + c takes the place "
+      "of a. Three numbers are fitted (K, c, the exponent) for the exponent, two for K and c, where it\nis -1/2; "
+      "without "
+      "c, over notches of 12 d and more, exponents are those of the third column.\n\n"
+      "The toughness of the infinite lattice is found without plates: the discs of a rim around the tip of a crack are "
+      "moved by the field of\na crack (Williams 1957) until the first contact reaches f_t; rims of two radii are "
+      "extrapolated. A crack that grows by d breaks two\ncontacts, which takes f_t²/kN at least (Griffith): K_Ic "
+      "sqrt(d)/f_t >= sqrt(E/kN). Lattices are tougher: the energy between two breaks\nis lost, too.\n\n",
       100 * test_over, 100 * scattered_test_over);
   text += fits_text(notches);
-  text += fmt::format(
-      "\n![Strength of notched plates](breakage/notches.svg)\n\nPlates with notches of a few d are weaker than the "
-      "formula says: they cannot be stronger than without a notch. That bends\nthe fits, too. "
-      "{} plates in {:.1f} s.\n\n",
-      notches.plates.size(), notches.seconds);
+  text += fmt::format("\n![Strength of notched plates](breakage/notches.svg)\n\n{} plates in {:.1f} s.\n\n",
+                      notches.plates.size(), notches.seconds);
   text += fmt::format(
       "## Scatter and size by Weibull's law\n\nA share exp(-x^m) of the contacts is more than x f_t strong; f_s = 2 "
       "f_t, friction 0.5. A chain is as strong as its weakest link:\nits mean strength is Gamma(1 + 1/m) n^(-1/m) f_t, "

@@ -31,9 +31,11 @@ Assembly chain(std::int64_t contacts) {
 
 WeibullSize measure(const StrengthSample& sample, double modulus, std::int64_t seeds) {
   std::vector<double> strengths(static_cast<std::size_t>(seeds)), errors(strengths.size());
+  const auto first_seed = static_cast<std::uint64_t>(1e6 * modulus);  // other draws for each modulus
   parallel_tasks(strengths.size(), [&](std::size_t k, int) {
     const ContactStrengths drawn = contact_strengths(
-        sample.assembly(), {.tension = 1, .shear = 2, .friction = 0.5, .weibull_modulus = modulus, .seed = k + 1});
+        sample.assembly(),
+        {.tension = 1, .shear = 2, .friction = 0.5, .weibull_modulus = modulus, .seed = first_seed + k});
     const SampleStrength found = sample.strength(StrengthTestKind::tension, drawn);
     strengths[k] = found.stress * diameter;
     errors[k] = found.energy_error;

@@ -253,18 +253,18 @@ StrengthCalibration Search::run() {
 }
 
 void check_targets(const StrengthTargets& wanted, const StrengthCalibrationOptions& options) {
-  check_positive(wanted.tensile, "the wanted tensile strength", "Pa");
+  check_positive(wanted.tensile, "wanted tensile strength", "Pa");
   if (wanted.compressive.has_value() == wanted.toughness.has_value())
     bad_input("a compressive strength and a toughness are both given, or neither is", "one of them goes with tension",
               "Give one");
-  check_positive(wanted.second(), wanted.compressive ? "the wanted compressive strength" : "the wanted toughness");
+  check_positive(wanted.second(), wanted.compressive ? "wanted compressive strength" : "wanted toughness");
   if (wanted.toughness.has_value() == wanted.notches.empty())
     bad_input("a toughness needs notches, and nothing else does", "it is read off notched samples",
               "Give toughness and notches together");
-  for (const double notch : wanted.notches) check_positive(notch, "the length of a notch", "m");
+  for (const double notch : wanted.notches) check_positive(notch, "length of the notch", "m");
   if (options.strengths.tension || options.strengths.shear)
     bad_input("strengths of contacts are given", "they are what is looked for", "Remove tension and shear");
-  if (options.shear_over_tension) check_positive(*options.shear_over_tension, "the ratio of shear to tension");
+  if (options.shear_over_tension) check_positive(*options.shear_over_tension, "ratio of shear to tension");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace equidem {
 namespace {
@@ -99,6 +100,16 @@ void ContactOperator::add_internal(std::size_t contact, const ContactForce& forc
   for (std::size_t k = 0; k < b; ++k) {
     internal[rows.i + k] += rows.by.normal_i[k] * force.normal + rows.by.tangential_i[k] * force.tangential;
     internal[rows.j + k] += rows.by.normal_j[k] * force.normal + rows.by.tangential_j[k] * force.tangential;
+  }
+}
+
+void ContactOperator::add_size(std::size_t contact, const ContactForce& force, std::span<double> sizes) const {
+  const Rows& rows = rows_[contact];
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  const double size = std::abs(force.normal) + std::abs(force.tangential);
+  for (std::size_t k = 0; k < b; ++k) {
+    sizes[rows.i + k] += size;
+    sizes[rows.j + k] += size;
   }
 }
 

@@ -28,6 +28,7 @@ class RateResidual {
     const auto& held = contacts_.unknowns().held;
     const std::vector<double>& load = driving_.pattern->force;
     std::vector<double> internal(contacts_.components(), 0.0);
+    sizes_.assign(contacts_.components(), 0.0);
     rates.force_scale = 0;
     double stiffest = 0, fastest = 0;
     for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
@@ -45,6 +46,7 @@ class RateResidual {
       if (f.normal == 0 && f.tangential == 0) continue;
       rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
       contacts_.add_internal(c, f, internal);
+      contacts_.add_size(c, f, sizes_);
     }
     double sum = 0;
     for (std::size_t k = 0; k < held.size(); ++k) {
@@ -53,6 +55,7 @@ class RateResidual {
       const double from_load = load.empty() ? 0 : rates.lambda * load[k];
       const double beside = driving_.beside.empty() ? 0 : driving_.beside[k];
       rates.force_scale = std::max({rates.force_scale, std::abs(from_load), std::abs(beside)});
+      sizes_[k] += std::abs(from_load) + std::abs(beside);
       residual[k] = from_load + beside - internal[k];
       sum = std::max(sum, std::abs(residual[k]));
     }
@@ -62,14 +65,23 @@ class RateResidual {
     if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;
   }
+  /// Motions that nothing resists would follow the round-off of forces far.
+  void leave_loose(const Rates& rates, std::vector<double>& residual) const {
+    constexpr double noise = 1e-15, nothing_acts = 1e-13;
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+      if (sizes_[k] <= nothing_acts * rates.force_scale || std::abs(residual[k]) <= noise * rates.force_scale)
+        residual[k] = 0;
+    }
+  }
 
  private:
   const ContactOperator& contacts_;
   std::span<const ContactTangent> tangents_;
   const Driving& driving_;
+  mutable std::vector<double> sizes_;  // of what acts on the disc of each component, as last evaluated
 };
 
-constexpr double balanced = 1e-11, refined = 1e-14, round_off_share = 1e-15;
+constexpr double balanced = 1e-11, refined = 1e-14;
 constexpr int most_refinements = 40;
 
 /// \return the residual that is left
@@ -89,8 +101,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
     if (k > 0 && left <= refined) break;
-    // Motions that nothing resists would follow the round-off of forces far.
-    for (double& r : residual) r = std::abs(r) > round_off_share * rates.force_scale ? r : 0;
+    residual_of.leave_loose(rates, residual);
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
     rates.lambda += lambda;
@@ -108,15 +119,35 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   return left;
 }
 
+/// Rates::negligible of these rates.
+double negligible_rate(const RateProblem& problem, const Rates& rates) {
+  double largest = 0;
+  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
+    const ContactDeformation& d = rates.deformation[c];
+    const SpringConstants& k = problem.laws[c].k;
+    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
+  }
+  return 1e-9 * rates.force_scale + 1e-11 * largest;
+}
+
+struct StatusChange {
+  std::size_t contact;
+  ContactStatus wanted;
+  bool forceless;  ///< a slip to the other side of a contact that carries no force: it changes no rate
+};
+
 /// The contacts on limits whose rates ask for another status.
-std::vector<std::pair<std::size_t, ContactStatus>> inconsistent(const RateProblem& problem, const RateAnswer& answer) {
-  std::vector<std::pair<std::size_t, ContactStatus>> wrong;
+std::vector<StatusChange> inconsistent(const RateProblem& problem, const RateAnswer& answer) {
+  std::vector<StatusChange> wrong;
   const double none = answer.rates.negligible;
   for (const LimitContact& at : problem.limits) {
     const ContactStatus present = answer.status[at.contact];
-    const ContactStatus wanted =
-        status_after(problem.laws[at.contact], at, answer.rates.deformation[at.contact], present, none);
-    if (wanted != present) wrong.emplace_back(at.contact, wanted);
+    const UnbondedLaw& law = problem.laws[at.contact];
+    const ContactDeformation& rate = answer.rates.deformation[at.contact];
+    const ContactStatus wanted = status_after(law, at, rate, present, none);
+    if (wanted == present) continue;
+    const bool forceless = is_slipping(wanted) && is_slipping(present) && law.k.kN * rate.normal >= -none;
+    wrong.push_back({at.contact, wanted, forceless});
   }
   return wrong;
 }
@@ -151,14 +182,12 @@ std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::
   return tangents;
 }
 
-double negligible_rate(const RateProblem& problem, const Rates& rates) {
-  double largest = 0;
-  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
-    const ContactDeformation& d = rates.deformation[c];
-    const SpringConstants& k = problem.laws[c].k;
-    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
-  }
-  return 1e-9 * rates.force_scale + 1e-11 * largest;
+bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {
+  answer.rates.negligible = negligible_rate(problem, answer.rates);
+  const auto wrong = inconsistent(problem, answer);
+  answer.agrees = std::ranges::all_of(wrong, &StatusChange::forceless);
+  for (const StatusChange& change : wrong) answer.status[change.contact] = change.wanted;
+  return answer.agrees;
 }
 
 RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {
@@ -170,23 +199,10 @@ RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::v
     for (const LimitContact& at : problem.limits) chosen.push_back(answer.status[at.contact]);
     return chosen;
   };
-  bool one_at_a_time = false;
-  const std::size_t most = 60 + 20 * problem.limits.size();
-  for (std::size_t k = 0; k < most; ++k) {
+  constexpr int most = 60;
+  for (int k = 0; k < most && seen.insert(on_limits()).second; ++k) {
     answer.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, answer.status), problem.driving);
-    answer.rates.negligible = negligible_rate(problem, answer.rates);
-    const auto wrong = inconsistent(problem, answer);
-    if (wrong.empty()) {
-      answer.agrees = true;
-      return answer;
-    }
-    if (!seen.insert(on_limits()).second) {
-      if (one_at_a_time) return answer;
-      one_at_a_time = true;
-      seen.clear();
-    }
-    const std::size_t changes = one_at_a_time ? 1 : wrong.size();
-    for (std::size_t m = 0; m < changes; ++m) answer.status[wrong[m].first] = wrong[m].second;
+    if (agree_with_rates(problem, answer)) return answer;
   }
   return answer;
 }

@@ -53,12 +53,13 @@ struct RateAnswer {
 
 std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
 
-/// Rates::negligible of these rates.
-double negligible_rate(const RateProblem& problem, const Rates& rates);
+/// Sets the statuses of the contacts on limits to those that follow from the rates, RateAnswer::agrees and
+/// Rates::negligible.
+/// \return whether they were those already, but for slips to the other side without a force
+bool agree_with_rates(const RateProblem& problem, RateAnswer& answer);
 
-/// The statuses of the contacts on limits that agree with the rates which follow from them: Newton's method on the
-/// piecewise linear problem from the statuses given, then changes one at a time, the contact of least number first
-/// (Murty's least-index method of linear complementarity, finite where the answer is unique for all loads).
+/// The statuses of the contacts on limits that agree with the rates which follow from them, by Newton's method on the
+/// piecewise linear problem from the statuses given. It may go round in circles; rate_path.hpp does not.
 RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status);
 
 }  // namespace equidem

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/breakage/unbonded/complementarity.hpp"
 #include "equidem/breakage/unbonded/dense_lu.hpp"
-#include "equidem/breakage/unbonded/limit_compliance.hpp"
 
 namespace equidem {
 namespace {
@@ -50,13 +48,6 @@ class Combinations {
   std::vector<LimitContact> limits_;
   std::vector<std::vector<ContactStatus>> choices_;
   std::vector<std::size_t> digits_;
-};
-
-/// An opening or a slip of a contact on a limit.
-struct Multiplier {
-  std::size_t place;  // in RateProblem::limits
-  bool opens;
-  double sign;  // of the slip
 };
 
 }  // namespace
@@ -132,64 +123,21 @@ Branches find_branches(const RateProblem& problem, std::span<const double> c, co
   return result;
 }
 
-std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
-                                      std::vector<ContactStatus> status) {
-  const std::size_t contacts = problem.limits.size();
-  if (contacts == 0 || contacts > most_on_limits) return {};
-  for (const LimitContact& at : problem.limits) status[at.contact] = ContactStatus::stuck;
-  const Rates base = rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving);
-  const std::vector<double> c = limit_compliance(problem, solver);
-  std::vector<Multiplier> unknowns;
-  for (std::size_t p = 0; p < contacts; ++p) {
-    const LimitContact& at = problem.limits[p];
-    if (at.limit == OnLimit::apex) unknowns.push_back({p, true, 1});
-    if (!problem.laws[at.contact].rough()) continue;
-    if (at.limit == OnLimit::friction) unknowns.push_back({p, false, at.direction});
-    if (at.limit == OnLimit::apex) unknowns.push_back({p, false, 1}), unknowns.push_back({p, false, -1});
-  }
-  const auto law = [&](const Multiplier& m) -> const UnbondedLaw& {
-    return problem.laws[problem.limits[m.place].contact];
-  };
-  // w of a multiplier where the contact deforms by d beside its own eigenstrain.
-  const auto slack = [&](const Multiplier& m, double normal, double tangential) {
-    const UnbondedLaw& l = law(m);
-    const double n = l.k.kN * normal, t = l.k.kT * tangential;
-    return m.opens ? -n : -(m.sign * t + l.friction * n);
-  };
-  const std::size_t n = unknowns.size(), width = 2 * contacts;
-  std::vector<double> matrix(n * n), q(n);
-  double stiffest = 0, unit = 0;
-  for (std::size_t r = 0; r < n; ++r) {
-    const ContactDeformation& d = base.deformation[problem.limits[unknowns[r].place].contact];
-    q[r] = slack(unknowns[r], d.normal, d.tangential);
-    unit = std::max(unit, std::abs(q[r]));
-    stiffest = std::max(stiffest, law(unknowns[r]).k.kN);
-  }
-  if (unit == 0) return {};
-  for (std::size_t k = 0; k < n; ++k) {
-    const Multiplier& by = unknowns[k];
-    const std::size_t column = 2 * by.place + (by.opens ? 0 : 1);
-    const double stress = by.opens ? law(by).k.kN : law(by).k.kT * by.sign;
-    for (std::size_t r = 0; r < n; ++r) {
-      const std::size_t p = 2 * unknowns[r].place;
-      const bool own = unknowns[r].place == by.place;
-      const double normal = c[p * width + column] * stress - (own && by.opens ? 1 : 0);
-      const double tangential = c[(p + 1) * width + column] * stress - (own && !by.opens ? by.sign : 0);
-      matrix[r * n + k] = slack(unknowns[r], normal, tangential) / stiffest;
-    }
-  }
-  for (double& x : q) x = std::abs(x) > 1e-12 * unit ? x / unit : 0;
-  const std::optional<std::vector<double>> z = solve_complementarity(matrix, q);
-  if (!z) return {};
-  const double largest = *std::ranges::max_element(*z);
-  for (std::size_t k = 0; k < n; ++k) {
-    ContactStatus& now = status[problem.limits[unknowns[k].place].contact];
-    if ((*z)[k] <= 1e-10 * largest || now == ContactStatus::open) continue;
-    now = unknowns[k].opens ? ContactStatus::open : slipping(unknowns[k].sign);
-  }
-  RateAnswer answer = solve_rates(problem, solver, std::move(status));
-  if (!answer.agrees || !answer.rates.balanced) return {};
-  return answer;
+TriedStatuses try_all_statuses(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {
+  TriedStatuses result;
+  Combinations all(problem, {problem.limits.begin(), problem.limits.end()});
+  if (all.count() > static_cast<double>(most_branches)) return result;
+  do {
+    ++result.tried;
+    for (std::size_t k = 0; k < problem.limits.size(); ++k) status[problem.limits[k].contact] = all.of(k);
+    RateAnswer answer{true, status,
+                      rates_of(problem.contacts, solver, tangents_of(problem.laws, status), problem.driving)};
+    if (!answer.rates.balanced) continue;
+    if (!agree_with_rates(problem, answer)) continue;
+    result.answer = std::move(answer);
+    return result;
+  } while (all.next());
+  return result;
 }
 
 }  // namespace equidem

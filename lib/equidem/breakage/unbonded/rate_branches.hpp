@@ -35,14 +35,11 @@ struct Branches {
 Branches find_branches(const RateProblem& problem, std::span<const double> compliance, const RateAnswer& answer,
                        std::span<const std::size_t> fresh);
 
-/// An answer by complementary pivots, from the network in which all contacts on limits stick: with the openings a, the
-/// slips s forward and backward,
-///
-///   0 <= a  _|_  -N' >= 0,   0 <= s  _|_  -mu N' -+ T' >= 0.
-///
-/// \return none where the pivots find none, where the contacts on limits are too many, or where the answer that they
-///         find does not agree with its rates
-std::optional<RateAnswer> pivot_rates(const RateProblem& problem, TangentSolver& solver,
-                                      std::vector<ContactStatus> status);
+/// The first of all combinations of statuses that agrees with its rates and balances the loads.
+struct TriedStatuses {
+  std::int64_t tried = 0;  ///< 0: they are more than most_branches
+  std::optional<RateAnswer> answer{};
+};
+TriedStatuses try_all_statuses(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status);
 
 }  // namespace equidem

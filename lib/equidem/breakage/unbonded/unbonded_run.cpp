@@ -63,7 +63,13 @@ void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
   if (!(options.friction >= 0) || !std::isfinite(options.friction))
     bad_input(fmt::format("the friction of contacts without a bond is {}", options.friction),
               "it must be finite and not negative", "Correct it");
-  const LoadPath& path = scene.path;
+  check_control_of_rubbing(scene.path);
+  check_rest(scene, options);
+}
+
+}  // namespace
+
+void check_control_of_rubbing(const LoadPath& path) {
   if (path.control == LoadControl::path) {
     bad_input("lambda may fall from event to event, and contacts close and slip",
               "their state depends on the path by which lambda falls, which this control leaves open",
@@ -73,10 +79,7 @@ void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
     bad_input("the load is held, and a motion is imposed", "the motion would have to follow the load, not lambda",
               "Take control = \"motion\", or drive by loads");
   }
-  check_rest(scene, options);
 }
-
-}  // namespace
 
 UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
                          UnbondedOptions options)
@@ -156,15 +159,12 @@ bool UnbondedRun::find_rates() {
   if (releasing()) beside_ = state_->unreleased();
   const std::vector<LimitContact> limits = contacts_on_limits(*state_, laws_);
   const RateProblem problem{contacts_, laws_, limits, driving()};
-  RateAnswer answer = solve_rates(problem, solver_, state_->status());
-  if (!answer.agrees || !answer.rates.balanced) {
-    std::optional<RateAnswer> other = pivot_rates(problem, solver_, state_->status());
-    if (!other) {
-      if (answer.agrees) record_changes(answer.status);
-      end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(answer));
-      return false;
-    }
-    answer = std::move(*other);
+  RateSearch search = search_rates(problem, solver_, state_->status());
+  RateAnswer& answer = search.answer;
+  if (!search.found) {
+    if (answer.agrees) record_changes(answer.status);
+    end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
+    return false;
   }
   const std::size_t first = events_.size();
   record_changes(answer.status);
@@ -233,7 +233,15 @@ double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStat
   return sum / path.size;
 }
 
-std::string UnbondedRun::sentence_on(const RateAnswer& answer) const {
+std::string UnbondedRun::sentence_on(const RateSearch& search, std::size_t limits) const {
+  const RateAnswer& answer = search.answer;
+  if (!answer.agrees && search.tried > 0) {
+    return fmt::format(
+        "none of the {} of {} on limits balances what acts on them: with friction the increment has no "
+        "answer",
+        counted(search.tried, "combination of the states", "combinations of the states"),
+        counted(static_cast<std::int64_t>(limits), "contact"));
+  }
   if (!answer.agrees) {
     return "no statuses of the contacts on their limits were found that balance what acts on them: with friction "
            "the increment may have no answer";

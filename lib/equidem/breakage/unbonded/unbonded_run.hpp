@@ -20,6 +20,7 @@
 #include "equidem/breakage/unbonded/contact_events.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
+#include "equidem/breakage/unbonded/rate_search.hpp"
 #include "equidem/breakage/unbonded/unbonded_state.hpp"
 
 namespace equidem {
@@ -39,6 +40,9 @@ struct UnbondedCounters {
   double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;
 };
+
+/// \throws Error (bad_input) where the control is none of those that a path with a history has
+void check_control_of_rubbing(const LoadPath& path);
 
 class UnbondedRun : public EventPath {
  public:
@@ -75,7 +79,7 @@ class UnbondedRun : public EventPath {
   bool find_rates();
   void look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first);
   [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
-  [[nodiscard]] std::string sentence_on(const RateAnswer& answer) const;
+  [[nodiscard]] std::string sentence_on(const RateSearch& search, std::size_t limits) const;
   [[nodiscard]] double stage_end() const;
   void finish_stage();
   void break_bond(const NextContactEvent& next, double lambda_rate);

@@ -99,8 +99,19 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
   residual_ = force_scale_ > no_force * rounded ? largest / force_scale_ : 0;
 }
 
+/// Discs on which nothing acts but round-off would follow it far: no contact resists them.
+void UnbondedState::leave_loose(std::vector<double>& residual) const {
+  constexpr double none = 1e-15, nothing_acts = 1e-13;  // of the largest force
+  std::vector<double> sizes(residual.size());
+  for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = std::abs(outside(k));
+  for (std::size_t c = 0; c < forces_.size(); ++c) contacts_.add_size(c, forces_[c], sizes);
+  const double negligible = nothing_acts * force_scale_ + 4 * round_off_force();
+  for (std::size_t k = 0; k < residual.size(); ++k)
+    if (sizes[k] <= negligible || std::abs(residual[k]) <= none * force_scale_) residual[k] = 0;
+}
+
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
-  constexpr double good = 4e-15, none = 1e-15;
+  constexpr double good = 4e-15;
   constexpr int most = 6;
   const std::vector<double>& load = path_.pattern.force;
   std::vector<double> residual(contacts_.components()), along;
@@ -114,8 +125,7 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   for (int k = 0; k < most && residual_ > good; ++k) {
     const double before = residual_;
     const auto kept = std::pair(motion_, lambda_);
-    // Loose discs would follow the round-off of forces far.
-    for (double& r : residual) r = std::abs(r) > none * force_scale_ ? r : 0;
+    leave_loose(residual);
     solver.solve(residual);
     if (by_motion) {
       if (along.empty()) {
@@ -177,6 +187,11 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
 
 double UnbondedState::negligible_force() const {
   return on_limit * force_scale_ + 4 * round_off_force();
+}
+
+double UnbondedState::overlap_of_round_off() const {
+  constexpr double share = 1e-6;
+  return share * force_scale_;
 }
 
 double UnbondedState::farthest() const {

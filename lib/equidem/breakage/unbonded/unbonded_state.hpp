@@ -74,10 +74,14 @@ class UnbondedState {
   [[nodiscard]] double relative_residual() const { return residual_; }
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
+  /// N/m: by as much, over kN, open contacts of discs that nothing else holds may overlap at the place where they
+  /// touch, since the round-off of forces moves such discs far.
+  [[nodiscard]] double overlap_of_round_off() const;
 
  private:
   void evaluate();
   void measure_residual(std::vector<double>& residual);
+  void leave_loose(std::vector<double>& residual) const;
   void correct(bool by_motion, TangentSolver& solver);
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;

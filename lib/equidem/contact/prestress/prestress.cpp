@@ -1,29 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/prestress/prestress.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace equidem {
 namespace {
 
-/// With ds = t - r theta - ..., t the motion of the centres, terms of theta are si - r ss beside t and
-/// ii - 2 r si + r² ss beside theta.
-bool turns(double lever, double ss, double s_theta, double theta_theta) {
+/// With ds = t - r theta - ..., t the motion of the centres, terms of theta are ni - r ns beside dn, si - r ss beside t
+/// and ii - 2 r si + r² ss beside theta.
+bool turns(double lever, std::array<double, 2> beside_n, std::array<double, 2> beside_s, double theta_theta) {
   constexpr double round_off = 1e-12;
-  const double beside = s_theta - lever * ss, own = theta_theta - lever * (s_theta + beside);
-  const double size = std::abs(s_theta) + std::abs(lever * ss);
-  return std::abs(beside) > round_off * size ||
+  const auto [ns, n_theta] = beside_n;
+  const auto [ss, s_theta] = beside_s;
+  const double along = n_theta - lever * ns, across = s_theta - lever * ss;
+  const double own = theta_theta - lever * (s_theta + across), size = std::abs(s_theta) + std::abs(lever * ss);
+  return std::abs(along) > round_off * (std::abs(n_theta) + std::abs(lever * ns)) ||
+         std::abs(across) > round_off * size ||
          std::abs(own) > round_off * (std::abs(lever) * size + std::abs(theta_theta));
 }
 
 }  // namespace
 
 bool turns_i(const ContactPrestress& prestress, const ContactFrame& frame) {
-  return turns(frame.lever_i, prestress.ss, prestress.si, prestress.ii);
+  return turns(frame.lever_i, {prestress.ns, prestress.ni}, {prestress.ss, prestress.si}, prestress.ii);
 }
 
 bool turns_j(const ContactPrestress& prestress, const ContactFrame& frame) {
-  return turns(frame.lever_j, prestress.ss, prestress.sj, prestress.jj);
+  return turns(frame.lever_j, {prestress.ns, prestress.nj}, {prestress.ss, prestress.sj}, prestress.jj);
 }
 
 ContactPrestress prestress_of_discs(const ContactFrame& frame, double length, const ContactForce& at_rest) {
@@ -42,14 +46,18 @@ ContactPrestress prestress_of_discs(const ContactFrame& frame, double length, co
 }
 
 ContactPrestress prestress_of_bodies(const ContactFrame& frame, const ContactCurvatures& curvatures,
-                                     double normal_force) {
-  const double both = normal_force / (curvatures.i + curvatures.j);
-  return {.ss = both * curvatures.i * curvatures.j,
+                                     const ContactForce& at_rest) {
+  const double both = at_rest.normal / (curvatures.i + curvatures.j),
+               slides = -at_rest.tangential / (curvatures.i + curvatures.j);
+  return {.ns = slides * curvatures.i * curvatures.j,
+          .ni = slides * curvatures.j,
+          .nj = slides * curvatures.i,
+          .ss = both * curvatures.i * curvatures.j,
           .si = both * curvatures.j,
           .sj = both * curvatures.i,
-          .ii = normal_force * frame.lever_i - both,
+          .ii = at_rest.normal * frame.lever_i - both + at_rest.tangential * frame.offset_i,
           .ij = both,
-          .jj = normal_force * frame.lever_j - both};
+          .jj = at_rest.normal * frame.lever_j - both + at_rest.tangential * frame.offset_j};
 }
 
 }  // namespace equidem

@@ -16,13 +16,22 @@
 ///            / (kappa_i + kappa_j) + r_i theta_i² + r_j theta_j².
 ///
 /// For discs about their centres, kappa = 1/r and l = r_i + r_j, it is (s . (u_j - u_i))²/l: no rotation enters. A wall
-/// has kappa = 0. The slip of discs is that of finite_bond.hpp, (r_i + r_j) (psi - theta), whose second derivative is
-/// -2 (r_i + r_j)/l² (n . (u_j - u_i)) (s . (u_j - u_i)). Both are derivatives of a potential: K stays symmetric. Slip
-/// of other bodies depends on how their curvature varies, and is left to those who know their outlines.
+/// has kappa = 0.
+///
+/// The slip of two outlines that stay in contact is the difference of the arcs that the contact point has gone along
+/// them, a function of the place of the bodies alone. Its second derivative has the curvatures and not their change
+/// along the outlines, and the offsets o of the contact point:
+///
+///   d²(ds) = -2 dn (kappa_i kappa_j ds + kappa_j theta_i + kappa_i theta_j)/(kappa_i + kappa_j)
+///            + o_i theta_i² + o_j theta_j²,
+///
+/// for discs -2/l (n . (u_j - u_i)) (s . (u_j - u_i)), that of finite_bond.hpp. It holds where bodies touch, and for
+/// arcs of circles at any overlap; elsewhere the change of curvature within the overlap is left out. Both are
+/// derivatives of a potential: K stays symmetric.
 ///
 /// Colliding bodies (grains) have the same normal force; their tangential force follows the slip without a potential,
-/// dT = kT (v . s) dt, and differs in its derivative by T0/l along n: an amount of the order of the overlap over the
-/// radius beside kT.
+/// dT = kT (v . s) dt. Its derivative is the same for motions that keep the overlap, dn = 0; with dn it differs by
+/// terms of T0/l, beside kN and kT an amount of the order of the overlap over the radius.
 #pragma once
 
 #include "equidem/contact/frame.hpp"
@@ -49,10 +58,9 @@ struct ContactCurvatures {
 /// The form of two discs about their centres, which are `length` (m) apart.
 ContactPrestress prestress_of_discs(const ContactFrame& frame, double length, const ContactForce& at_rest);
 
-/// The form of two smooth bodies. Precondition: the curvatures are not negative, and not both 0; no tangential force,
-/// or a flat surface on one side, which turns no normal, beside a disc about its centre on the other.
+/// The form of two smooth bodies. Precondition: the curvatures are not negative, and not both 0.
 ContactPrestress prestress_of_bodies(const ContactFrame& frame, const ContactCurvatures& curvatures,
-                                     double normal_force);
+                                     const ContactForce& at_rest);
 
 /// The change of the force of a contact, and what turns the bodies beside the moments of that force, N.
 template <typename Number>

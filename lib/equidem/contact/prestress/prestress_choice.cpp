@@ -32,14 +32,7 @@ ContactPrestress prestress_at(const Assembly& assembly, std::size_t c) {
   const bool disc_i = about_its_centre(curvatures.i, frame.lever_i),
              disc_j = about_its_centre(curvatures.j, frame.lever_j);
   if (disc_i && disc_j) return prestress_of_discs(frame, length, force);
-  const bool at_wall = (disc_i && curvatures.j == 0) || (disc_j && curvatures.i == 0);
-  if (force.tangential != 0 && !at_wall) {
-    bad_input(fmt::format("contact {} of bodies that are no discs carries the tangential force {:.3g} N/m at rest", c,
-                          force.tangential),
-              "what it adds to the stiffness as such bodies roll is not known here, and would not be symmetric",
-              "Take a packing without friction, or set effects.prestress = \"off\"");
-  }
-  return prestress_of_bodies(frame, curvatures, force.normal);
+  return prestress_of_bodies(frame, curvatures, force);
 }
 
 void refuse_imbalance(const Assembly& assembly, const RestBalance& balance) {

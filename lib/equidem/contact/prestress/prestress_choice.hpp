@@ -42,8 +42,7 @@ struct PrestressedSprings {
 
 /// None where the assembly carries no forces at rest.
 /// \throws Error (bad_input) where prestress is asked for and contacts carry no forces, forces of a periodic cell do
-///         not balance, bodies that are no discs have no curvatures, or carry tangential forces at rest: the second
-///         derivative of their slip is not known. "auto" leaves prestress out then, and says so.
+///         not balance, or bodies that are no discs have no curvatures. "auto" leaves prestress out then, and says so.
 std::optional<PrestressedSprings> choose_prestress(const Assembly& assembly, const ContactSprings& springs,
                                                    PrestressChoice choice);
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rate problems of contacts on their limits: an answer is found wherever there is one.
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "equidem/assembly/lattices.hpp"
+
+#include "breakage/limit_network.hpp"
+#include "breakage/unbonded_scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+// A random load of a random network has an answer in half of the cases. Elsewhere it moves discs although all contacts
+// on limits stick, or none of all combinations of statuses agrees with its rates.
+TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
+  std::int64_t loads = 0, found = 0, not_carried = 0, none = 0, several = 0;
+  std::vector<std::uint64_t> missed;
+  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+    Random random(seed);
+    const double friction = std::array{0.1, 0.3, 0.8, 2.0, 5.0}[seed % 5];
+    // Half of them have no contact off its limits but bonds, and a third of these hardly any force.
+    const auto network =
+        seed % 2 == 0 ? random_limit_network(seed, random, friction)
+                      : random_limit_network(seed, random, friction, 6, seed % 3 == 0 ? 0.7 : 0.3, {0, 0.5, 0.5});
+    const AllStatuses all(*network);
+    std::vector<double> force(network->components());
+    for (double& f : force) f = random.uniform(-1, 1);
+    const LimitNetwork::Answers answers = network->load(force);
+    const AllStatuses::Count count = all.under(force);
+    ++loads;
+    found += answers.found ? 1 : 0;
+    several += count.answers > 1 ? 1 : 0;
+    CAPTURE(seed, friction, network->limits().size(), count.tried, count.answers, count.carried);
+    if (!count.carried) {
+      ++not_carried;
+      CHECK(answers.tried == 0);
+    } else if (count.answers == 0) {
+      ++none;
+      CHECK(answers.tried == count.tried);
+    } else if (!answers.found) {
+      missed.push_back(seed);
+    }
+    if (answers.found) CHECK(count.answers > 0);
+  }
+  CAPTURE(loads, found, not_carried, none, several, missed);
+  CHECK(missed.empty());
+  CHECK(found > loads / 3);
+  CHECK(not_carried > loads / 20);
+  CHECK(none > loads / 10);
+  CHECK(several > loads / 20);
+}
+
+TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
+  // No contact carries a force at first, so that every one is at the apex of its law, and the forces are proportional
+  // to the way of the plate. Discs between those that carry it are pushed along without a force; nothing makes them
+  // balance better than to round-off over the springs that hold loose discs (1e-9). On the way back a lattice may fall
+  // from one state to another.
+  int whole = 0;
+  for (const int rows : {4, 7}) {
+    for (const double friction : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 3.0, 10.0}) {
+      const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.5});
+      LoadPathOptions options;
+      options.supports = {{"bottom", 0, 0, {}}, {"top", {}, -1e-3, {}}};
+      options.control = LoadControl::motion;
+      options.legs = {1, 2, 0};
+      Unbonded pressed(block, ContactSprings(SpringConstants{1e3, 3e2}), options, friction);
+      pressed.all();
+      CAPTURE(rows, friction, pressed.run().why(), pressed.run().lambda());
+      const std::vector<LegPoint> points = pressed.run().leg_points();
+      REQUIRE(points.size() >= 3);
+      CHECK(points[1].load > 0.1);
+      CHECK(points[2].load == Approx(2 * points[1].load).epsilon(1e-9));
+      CHECK(pressed.run().counters().largest_residual < 1e-8);
+      CHECK(pressed.run().energy_error() < 1e-10);
+      if (pressed.run().end() == PathEnd::legs_done) {
+        ++whole;
+        CHECK(std::abs(points[3].load) < 1e-9);
+      } else {
+        CHECK(pressed.run().end() == PathEnd::no_answer);
+      }
+    }
+  }
+  CAPTURE(whole);
+  CHECK(whole >= 18);
+}
