@@ -47,9 +47,6 @@ void begin_loads_of_walls(GrainSystem& system) {
 
 }  // namespace
 
-GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
-    : GrainSimulation(scene, options, std::vector<std::size_t>()) {}
-
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
                                  const std::vector<std::size_t>& order)
     : AnySimulation(BodyFamily::colliding, options.time_step), implementation_(hidden<Implementation>()) {
@@ -118,7 +115,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
       load = {.impulse = -2 * load.step_impulse,
               .step_impulse = 2 * load.step_impulse,
               .step_angular = 2 * load.step_angular};
-    if (system.cell.deforms) begin_cell_stress(system);
+    if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -350,6 +347,21 @@ std::vector<Wall> GrainSimulation::placed_walls() const {
     walls[system.walls.wall_of[w]] = std::move(wall);
   }
   return walls;
+}
+
+std::optional<PeriodicCell> GrainSimulation::placed_cell() const {
+  const GrainSystem& system = implementation_->system;
+  std::optional<PeriodicCell> cell = system.scene.cell;
+  if (!cell) return cell;
+  cell->width = system.cell.now.a.x;
+  cell->height = system.cell.now.b.y;
+  cell->shift = system.cell.now.b.x;
+  cell->corner = system.cell.centre - 0.5 * Vec2{cell->width, cell->height};
+  return cell;
+}
+
+const std::vector<std::size_t>& GrainSimulation::order() const {
+  return implementation_->system.bodies.grain_of;
 }
 
 std::vector<ServoReport> GrainSimulation::servos() const {

@@ -9,13 +9,11 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/saved_contact.hpp"
 
 namespace equidem {
 namespace {
 
-/// The state of a contact as numbers: i, j, steps, mode, then the other members; for parts also their indices and arms.
-constexpr std::size_t numbers_per_plain_contact = 13;
-constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_image = 2;
 constexpr std::size_t numbers_per_impulse = 3;
 constexpr std::size_t numbers_per_bond = 3;
@@ -31,11 +29,6 @@ constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evalu
                                                            &GrainCounters::rebuilds, &GrainCounters::sweeps,
                                                            &GrainCounters::doubtful};
 static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
-
-std::size_t numbers_per_contact_of(const GrainSystem& system) {
-  return numbers_per_plain_contact + (system.shapes.parts.empty() ? 0 : numbers_per_pair_of_parts) +
-         (system.cell.active ? numbers_per_image : 0);
-}
 
 void append(std::vector<double>& numbers, const PartPair& pair) {
   for (const double number : {static_cast<double>(pair.i), static_cast<double>(pair.j), pair.arm_i.x, pair.arm_i.y,
@@ -82,18 +75,19 @@ void append(std::vector<double>& numbers, const Candidate& candidate) {
 }
 
 void take(const double* numbers, Candidate& candidate) {
-  candidate.i = static_cast<std::int32_t>(numbers[0]);
-  candidate.j = static_cast<std::int32_t>(numbers[1]);
-  candidate.steps = static_cast<std::int64_t>(numbers[2]);
-  candidate.mode = static_cast<int>(numbers[3]);
-  candidate.stretch = numbers[4];
-  candidate.overlap = numbers[5];
-  candidate.closing = numbers[6];
-  candidate.normal = {numbers[7], numbers[8]};
-  candidate.impulse = numbers[9];
-  candidate.moment = numbers[10];
-  candidate.tangential_impulse = numbers[11];
-  candidate.parted = numbers[12] != 0;
+  using At = ContactColumns;
+  candidate.i = static_cast<std::int32_t>(numbers[At::i]);
+  candidate.j = static_cast<std::int32_t>(numbers[At::j]);
+  candidate.steps = static_cast<std::int64_t>(numbers[At::steps]);
+  candidate.mode = static_cast<int>(numbers[At::mode]);
+  candidate.stretch = numbers[At::stretch];
+  candidate.overlap = numbers[At::overlap];
+  candidate.closing = numbers[At::closing];
+  candidate.normal = {numbers[At::normal], numbers[At::normal + 1]};
+  candidate.impulse = numbers[At::impulse];
+  candidate.moment = numbers[At::moment];
+  candidate.tangential_impulse = numbers[At::tangential_impulse];
+  candidate.parted = numbers[At::parted] != 0;
   candidate.touching = true;
 }
 
@@ -147,7 +141,7 @@ SavedState GrainSimulation::save() const {
   SavedState state{.step = system.step,
                    .arrays = {{"motions", 3, numbers_of(motions())},
                               {"velocities", 3, numbers_of(velocities())},
-                              {"contacts", numbers_per_contact_of(system), std::move(contacts)},
+                              {"contacts", ContactColumns(system).count, std::move(contacts)},
                               {"impulses", numbers_per_impulse, std::move(impulses)},
                               {"bonds", numbers_per_bond, std::move(bonds)},
                               {"losses", 1, std::move(losses)},
@@ -189,7 +183,7 @@ void GrainSimulation::restore(const SavedState& state) {
 
 void GrainSimulation::go_back_to(const SavedState& state) {
   GrainSystem& system = implementation_->system;
-  const std::size_t numbers_per_contact = numbers_per_contact_of(system);
+  const ContactColumns columns(system);
   const bool shapes = !system.shapes.parts.empty();
   const std::size_t impulses =
       implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
@@ -204,9 +198,8 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % numbers_per_contact != 0 || state["impulses"].size() != impulses ||
-      state["bonds"].size() != bonds || losses.size() != energy_terms(BodyFamily::colliding).size() ||
-      counts.size() != std::size(counters_saved) ||
+      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses || state["bonds"].size() != bonds ||
+      losses.size() != energy_terms(BodyFamily::colliding).size() || counts.size() != std::size(counters_saved) ||
       state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
       state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {
     bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
@@ -258,18 +251,18 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   std::vector<std::pair<Candidate, PeriodicImage>> imaged;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
-  for (std::size_t at = 0; at < contacts.size(); at += numbers_per_contact) {
+  for (std::size_t at = 0; at < contacts.size(); at += columns.count) {
     Candidate contact;
     take(contacts.data() + at, contact);
     const double* numbers = contacts.data() + at;
     if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.contacts.near.active) {
       if (system.cell.active) {
-        imaged.emplace_back(contact, image_of(numbers + numbers_per_plain_contact, contact.j));
+        imaged.emplace_back(contact, image_of(numbers + columns.image, contact.j));
       } else {
         near.push_back(contact);
       }
     } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.contacts.near_parts.active) {
-      near_parts.emplace_back(contact, pair_of(numbers + numbers_per_plain_contact));
+      near_parts.emplace_back(contact, pair_of(numbers + columns.part));
     } else {
       others.push_back(numbers);
     }
@@ -288,7 +281,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   for (const double* contact : others) {
     const auto i = static_cast<std::int32_t>(contact[0]);
     const auto j = static_cast<std::int32_t>(contact[1]);
-    const double* numbers = contact + numbers_per_plain_contact;
+    const double* numbers = contact + columns.part;
     const auto is_it = [&] {
       if (system.contacts.candidates[c].i != i || system.contacts.candidates[c].j != j) return false;
       return !shapes || is_of(numbers, system.contacts.part_pairs[c]);

@@ -94,6 +94,8 @@ struct ServoState {
   double errors = 0, steps = 0;              ///< sum of |F - W| over largest_wanted, number of its steps
   double touched = 0, reached = 0;           ///< 0 or 1
   double side = 0;                           ///< 1, -1: the force began above or below the wanted one; 0: not known yet
+
+  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
 };
 
 /// The bodies sorted by position.

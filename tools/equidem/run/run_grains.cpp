@@ -25,16 +25,33 @@ namespace {
 constexpr std::int64_t energy_samples = 200,
                        samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
+void add_bodies(Checksum& sum, std::span<const Grain> grains, std::span<const double> densities) {
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Grain& grain = grains[g];
+    for (const double value :
+         {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y, grain.spin, grain.angle,
+          densities[g], static_cast<double>(grain.kind), grain.short_half_axis, static_cast<double>(grain.clump)})
+      sum.add(value);
+  }
+}
+
+/// Motions of walls and of the cell.
+void add_motions(Checksum& sum, const GrainScene& scene) {
+  for (const Wall& wall : scene.walls) {
+    add(sum, wall.move_x), add(sum, wall.move_y);
+    if (wall.servo) add(sum, wall.servo->wanted);
+  }
+  if (!scene.cell) return;
+  for (const Schedule* rate : {&scene.cell->rate_xx, &scene.cell->rate_yy, &scene.cell->rate_xy}) add(sum, *rate);
+  if (scene.cell->servo)
+    for (const auto* stress : {&scene.cell->servo->stress_xx, &scene.cell->servo->stress_yy})
+      if (*stress) add(sum, **stress);
+}
+
 /// Tells whether files that a case names are still what they were.
 std::string checksum_of(const GrainCase& resolved) {
   Checksum sum;
-  for (std::size_t g = 0; g < resolved.scene.grains.size(); ++g) {
-    const Grain& grain = resolved.scene.grains[g];
-    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
-                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind),
-                               grain.short_half_axis, static_cast<double>(grain.clump)})
-      sum.add(value);
-  }
+  add_bodies(sum, resolved.scene.grains, resolved.densities);
   for (const GrainBond& bond : resolved.scene.bonds)
     for (const double value :
          {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
@@ -43,23 +60,26 @@ std::string checksum_of(const GrainCase& resolved) {
   if (const auto& strengths = resolved.scene.strengths)
     for (std::size_t b = 0; b < strengths->tension.size(); ++b)
       sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
-  for (const Clump& clump : resolved.scene.clumps)
-    for (const Clump::Disc& disc : clump.discs)
+  const auto shape_of = [&](const Grain& grain) {
+    for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
       for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  const auto add_walls = [&](const std::vector<Wall>& walls) {
-    for (const Wall& wall : walls) {
-      add(sum, wall.move_x), add(sum, wall.move_y);
-      if (wall.servo) add(sum, wall.servo->wanted);
-    }
   };
-  add_walls(resolved.scene.walls);
-  if (const auto& cell = resolved.scene.cell) {
-    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy}) add(sum, *rate);
-    if (cell->servo)
-      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
-        if (*stress) add(sum, **stress);
-  }
-  for (const StageCase& stage : resolved.stages) add_walls(stage.scene.walls);
+  for (const Grain& grain : resolved.scene.grains)
+    if (grain.shape() == GrainShape::clump) shape_of(grain);
+  if (resolved.stages.empty()) add_motions(sum, resolved.scene);
+  return sum.text();
+}
+
+/// Likewise, of one stage. \param first_added number of the first body that it adds
+std::string checksum_of(const GrainCase& resolved, std::size_t stage, std::size_t first_added) {
+  Checksum sum;
+  const StageCase& of = resolved.stages[stage];
+  add_bodies(sum, of.bodies.added, std::span(resolved.densities).subspan(first_added));
+  for (const Grain& grain : of.bodies.added)
+    if (grain.shape() == GrainShape::clump)
+      for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
+        for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+  add_motions(sum, of.scene);
   return sum.text();
 }
 
@@ -67,21 +87,28 @@ void check_events(const GrainCase& resolved, double step) {
   const auto length_of = [&](const StageCase& stage) {
     return stage.duration ? *stage.duration : static_cast<double>(*stage.steps) * step;
   };
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    for (const Wall& wall : resolved.stages[k].scene.walls)
-      for (const Schedule* motion : {&wall.move_x, &wall.move_y})
-        check_event(*motion, step, length_of(resolved.stages[k]), resolved.where(fmt::format("stage.{}", k)));
-  if (const auto& cell = resolved.scene.cell) {
-    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy})
-      check_event(*rate, step, resolved.duration, resolved.where("cell.motion"));
-    if (cell->servo)
-      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
-        if (*stress) check_event(**stress, step, resolved.duration, resolved.where("cell.servo"));
+  const auto check_all = [&](const GrainScene& scene, double length, const auto& place_of_wall,
+                             const std::string& place_of_cell) {
+    for (std::size_t w = 0; w < scene.walls.size(); ++w)
+      for (const Schedule* motion : {&scene.walls[w].move_x, &scene.walls[w].move_y})
+        check_event(*motion, step, length, place_of_wall(w));
+    if (!scene.cell) return;
+    for (const Schedule* rate : {&scene.cell->rate_xx, &scene.cell->rate_yy, &scene.cell->rate_xy})
+      check_event(*rate, step, length, resolved.where(place_of_cell + ".motion"));
+    if (scene.cell->servo)
+      for (const auto* stress : {&scene.cell->servo->stress_xx, &scene.cell->servo->stress_yy})
+        if (*stress) check_event(**stress, step, length, resolved.where(place_of_cell + ".servo"));
+  };
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const std::string place = fmt::format("stage.{}", k);
+    check_all(
+        resolved.stages[k].scene, length_of(resolved.stages[k]), [&](std::size_t) { return resolved.where(place); },
+        place + ".cell");
   }
   if (!resolved.stages.empty()) return;
-  for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
-    for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
-      check_event(*motion, step, resolved.duration, resolved.where(fmt::format("wall.{}.schedule", k)));
+  check_all(
+      resolved.scene, resolved.duration,
+      [&](std::size_t wall) { return resolved.where(fmt::format("wall.{}.schedule", wall)); }, "cell");
 }
 
 StagedSimulation simulation_of(const GrainCase& resolved, double step) {
@@ -93,13 +120,22 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   } catch (const Error& error) {
     throw error.at(resolved.where("collisions"));
   }
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    casefile::with_place(resolved.where(fmt::format("stage.{}", k)),
-                         [&] { check_servos(resolved.stages[k].scene, options.law); });
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    if (const auto& bonds = resolved.stages[k].bonds)
-      casefile::with_place(resolved.where(fmt::format("stage.{}.bonds", k)),
-                           [&] { check(*bonds, scene.grains, options); });
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const StageCase& stage = resolved.stages[k];
+    const std::string place = fmt::format("stage.{}", k);
+    casefile::with_place(resolved.where(place), [&] { check_servos(stage.scene, options.law); });
+    if (k > 0 && stage.scene.cell)
+      casefile::with_place(resolved.where(place + ".cell"), [&] { check_cell(stage.scene, options); });
+    if (!stage.bodies.added.empty()) {
+      GrainScene added = stage.scene;  // among themselves: where the others will be is not known yet
+      added.grains = stage.bodies.added;
+      added.pairs = pairs_at(stage.contacts, options.law, step);
+      added.walls.clear();
+      casefile::with_place(resolved.where(place), [&] { check(added, options); });
+    }
+    if (stage.bonds)
+      casefile::with_place(resolved.where(place + ".bonds"), [&] { check(*stage.bonds, scene.grains, options); });
+  }
   return {build_grain_stages(resolved, step), options};
 }
 
@@ -116,20 +152,6 @@ std::vector<Wall> all_walls(const GrainCase& resolved) {
     for (const Wall& wall : stage.scene.walls)
       if (std::ranges::find(walls, wall.name, &Wall::name) == walls.end()) walls.push_back(wall);
   return walls;
-}
-
-/// Strengths of the bonds that have not broken, in their order. \param strengths null: none
-ContactStrengths strengths_left(const ContactStrengths* strengths, std::span<const BondBreak> breaks) {
-  ContactStrengths left;
-  if (strengths == nullptr) return left;
-  std::vector<char> broken(strengths->tension.size(), 0);
-  for (const BondBreak& event : breaks) broken[event.bond] = 1;
-  for (std::size_t b = 0; b < broken.size(); ++b) {
-    if (broken[b] != 0) continue;
-    left.tension.push_back(strengths->tension[b]);
-    left.shear.push_back(strengths->shear[b]);
-  }
-  return left;
 }
 
 /// Possible error of kinetic and potential energy by the rounding of positions.
@@ -177,6 +199,17 @@ void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simul
   }
 }
 
+/// Begins the text of a stage in a fingerprint.
+std::string stage_heading(const std::string& name) {
+  return fmt::format("\n# stage {}\n", name);
+}
+
+bool bodies_come_and_go(const GrainCase& resolved) {
+  return std::ranges::any_of(resolved.stages, [](const StageCase& stage) {
+    return !stage.bodies.removed.empty() || !stage.bodies.added.empty();
+  });
+}
+
 }  // namespace
 
 GrainRun::GrainRun(GrainCase resolved)
@@ -192,7 +225,7 @@ GrainRun::GrainRun(GrainCase resolved)
   frames_.moments =
       std::ranges::any_of(case_.scene.bonds, bends) ||
       std::ranges::any_of(case_.stages, [&](const StageCase& s) { return s.bonds && bends(s.bonds->like); });
-  frame_discs_ = discs_of_frames(case_.scene.grains, case_.scene.clumps, frames_);
+  frame_discs_ = discs_of_frames(case_.bodies(), case_.scene.clumps, bodies_come_and_go(case_), frames_);
 }
 
 std::vector<std::string> GrainRun::files() const {
@@ -206,7 +239,7 @@ std::vector<std::string> GrainRun::files() const {
 }
 
 RunPlan GrainRun::plan() {
-  const bool draws_paths = case_.scene.grains.size() <= most_drawn_paths;
+  const bool draws_paths = case_.bodies().size() <= most_drawn_paths;
   return {.steps = steps_,
           .time_step = step_.step,
           .case_text = fingerprint(),
@@ -233,13 +266,30 @@ RunPlan GrainRun::plan() {
 
 std::string GrainRun::fingerprint() const {
   TomlValue known = case_.document;
-  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
-  if (TomlValue* stages = known.find("stage"))
-    for (TomlValue& stage : stages->items)
-      if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
-  erase_keys(known, {"title", "output", "probe", "measures"});
-  return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
-                                                     toml_number(step_.step), checksum_of(case_));
+  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});    // the step is below
+  erase_keys(known, {"title", "output", "probe", "measures", "schedule", "stage"});  // schedules: by the checksums
+  std::string text =
+      to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
+                                                  toml_number(step_.step), checksum_of(case_));
+  std::size_t bodies = case_.scene.grains.size();
+  for (std::size_t k = 0; k < case_.stages.size(); ++k) {
+    TomlValue stage = casefile::repeated(case_.document, "stage")[k];
+    if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
+    text += stage_heading(case_.stages[k].name) + to_toml(std::move(stage), {}) +
+            fmt::format("\n# checksum of grains and schedules {}\n", checksum_of(case_, k, bodies));
+    bodies += case_.stages[k].bodies.added.size();
+  }
+  return text;
+}
+
+const ContactTable& GrainRun::present_contacts() const {
+  return case_.stages.empty() ? case_.contacts : case_.stages[simulation_.reports().size() - 1].contacts;
+}
+
+/// The same in all stages: the first kind of the group. Kinds of one group may differ by radius.
+int GrainRun::colour_of(const std::string& group) const {
+  const std::vector<std::string>& kinds = (case_.stages.empty() ? case_.contacts : case_.stages.back().contacts).kinds;
+  return static_cast<int>(std::ranges::find(kinds, group) - kinds.begin());
 }
 
 void GrainRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
@@ -257,39 +307,51 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
   const GrainCase& resolved = case_;
   const std::vector<Grain> grains = simulation_.present().grains();
   const std::vector<Wall> walls = simulation_.present().placed_walls();
+  const std::vector<std::size_t>& numbers = simulation_.numbers();
+  const std::vector<std::string>& kinds = present_contacts().kinds;
   std::vector<std::string> groups;
+  std::vector<double> densities;
   std::vector<int> colours;
-  for (const Grain& grain : grains) {
-    groups.push_back(resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]);
-    // Kinds of one group may differ by radius: the first of them lends its colour.
-    colours.push_back(
-        static_cast<int>(std::find(resolved.contacts.kinds.begin(), resolved.contacts.kinds.end(), groups.back()) -
-                         resolved.contacts.kinds.begin()));
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    groups.push_back(kinds[static_cast<std::size_t>(grains[k].kind)]);
+    densities.push_back(resolved.densities[numbers[k]]);
+    colours.push_back(colour_of(groups.back()));
   }
   if (resolved.output.csv) {
-    write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
+    const std::span<const std::size_t> told = bodies_come_and_go(resolved) ? numbers : std::span<const std::size_t>();
+    write_grain_csv(
+        folder / "grains.csv",
+        {.grains = grains, .clumps = resolved.scene.clumps, .groups = groups, .densities = densities, .numbers = told},
+        overwrite);
     write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
   }
-  const std::vector<BondBreak> breaks = simulation_.present().breaks();
-  const std::vector<GrainBond> bonds = bonds_left(simulation_.bonds(), breaks);
+  const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
   if (resolved.output.csv && !simulation_.bonds().empty())
-    write_bond_csv(folder / "bonds.csv", bonds, simulation_.present().bond_drifts(),
-                   strengths_left(simulation_.strengths(), breaks), overwrite);
+    write_bond_csv(folder / "bonds.csv", holding.bonds, simulation_.present().bond_drifts(), holding.strengths,
+                   overwrite);
+  const std::vector<BondBreak> breaks = simulation_.breaks();
   write_breaks(folder, resolved, {simulation_.bonds(), breaks}, step_.step, overwrite);
   if (resolved.output.picture) {
+    std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
+    for (const std::vector<Vec2>& places : result.record.paths) {
+      std::vector<Vec2>& shown = paths.emplace_back();
+      for (const std::size_t number : numbers) shown.push_back(places[number]);
+    }
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
                          .time = simulation_.time(),
                          .grains = grains,
                          .clumps = resolved.scene.clumps,
                          .groups = colours,
-                         .bonds = bonds,
+                         .bonds = holding.bonds,
                          .walls = walls,
-                         .paths = result.record.paths},
+                         .paths = paths},
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
-    add_film(resolved, walls_, colours, result.record.film);
+    std::vector<int> first_colours;
+    for (const std::string& group : resolved.groups) first_colours.push_back(colour_of(group));
+    add_film(resolved, walls_, first_colours, result.record.film);
   }
   write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);

@@ -34,6 +34,9 @@ class GrainRun final : public RunJob {
   /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
   /// lasts and what is written.
   [[nodiscard]] std::string fingerprint() const;
+  /// Of the present stage.
+  [[nodiscard]] const ContactTable& present_contacts() const;
+  [[nodiscard]] int colour_of(const std::string& group) const;
 
   GrainCase case_;
   GrainTimeStep step_;

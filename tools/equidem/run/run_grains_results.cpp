@@ -291,19 +291,20 @@ void add_stages(Results& out, const std::vector<StageReport>& stages, double ste
   std::vector<Results> rows;
   for (const StageReport& stage : stages) {
     const char* reason = stage.ended ? "met its end" : stage.over ? "duration" : "not over";
-    std::vector<std::string> active;
-    for (const Effects::Entry& entry : stage.effects.entries)
-      if (entry.active) active.push_back(entry.name);
     Results& row = rows.emplace_back();
     row.add("name", "stage", stage.name)
         .add("start", "from, s", static_cast<double>(stage.first) * step)
         .add("end", "to, s", static_cast<double>(stage.last) * step)
         .add("steps", "steps", stage.last - stage.first)
         .add("ended_by", "ended by", reason)
-        .set("effects", active);
+        .set("effects", stage.effects);
     if (stage.kinetic > 0 || stage.unbalanced > 0)
       row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
-    if (stage.bonds_made > 0) row.set("bonds_made", stage.bonds_made);
+    for (const auto& [key, count] : {std::pair{"removed", stage.removed},
+                                     {"renamed", stage.renamed},
+                                     {"added", stage.added},
+                                     {"bonds_made", stage.bonds_made}})
+      if (count > 0) row.set(key, count);
     if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
     if (stage.displacement > 0)
       row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
@@ -352,7 +353,7 @@ Results GrainRun::events() const {
       .add("evaluations", "", counters.evaluations, "evaluation", {Shown::count})
       .note(" of the law");
   if (const auto contacts = simulation_.present().contacts(); !contacts.empty()) {
-    const auto& grains = case_.scene.grains;
+    const std::vector<Grain> grains = simulation_.present().grains();
     double largest = 0;
     for (const GrainContact& contact : contacts) {
       const auto radius = [&](std::int32_t body) { return grains[static_cast<std::size_t>(body)].radius; };
@@ -365,7 +366,7 @@ Results GrainRun::events() const {
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.present().bonds());
-  const std::vector<BondBreak> breaks = simulation_.present().breaks();
+  const std::vector<BondBreak> breaks = simulation_.breaks();
   add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
   return out;
 }

@@ -227,6 +227,14 @@ void read_table(const std::vector<Key<S>>& keys, TomlValue table, S& into) {
     if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, {});
 }
 
+/// Likewise; paths of the table, relative to a folder, become those that the program opens.
+template <class S>
+void read_table_in_place(const std::vector<Key<S>>& keys, TomlValue& table, const std::filesystem::path& folder,
+                         S& into) {
+  for (const Key<S>& key : keys)
+    if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, folder);
+}
+
 template <class T>
 struct ItemOf {
   using type = T;

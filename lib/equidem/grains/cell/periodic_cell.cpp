@@ -14,11 +14,13 @@ namespace {
 void check_periods(const GrainScene& scene) {
   const PeriodicCell& cell = *scene.cell;
   const bool rows = cell.along == PeriodicCell::Along::xy;
-  if (!std::isfinite(cell.corner.x + cell.corner.y))
-    bad_input("the corner of the periodic cell is not a number", "it says where the cell lies", "Give finite numbers");
-  if (!rows && cell.height != 0)
-    bad_input(fmt::format("a cell that repeats along x alone has height = {} m", cell.height), "walls bound it along y",
-              "Leave the height out, or repeat along xy");
+  if (!std::isfinite(cell.corner.x + cell.corner.y + cell.shift))
+    bad_input("the corner or the shift of the periodic cell is not a number",
+              "they say where the cell and its images lie", "Give finite numbers");
+  if (!rows && (cell.height != 0 || cell.shift != 0))
+    bad_input(fmt::format("a cell that repeats along x alone has {} = {} m", cell.height != 0 ? "height" : "shift",
+                          cell.height != 0 ? cell.height : cell.shift),
+              "walls bound it along y", "Leave it out, or repeat along xy");
   double largest = 0;
   for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
   const auto check_period = [&](const char* name, double period) {

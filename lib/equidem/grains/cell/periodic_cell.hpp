@@ -35,6 +35,7 @@ struct PeriodicCell {
   enum class Along { x, xy } along = Along::xy;
   Vec2 corner = {};                                   ///< lower left, m
   double width = 0, height = 0;                       ///< m; along x alone the height is 0
+  double shift = 0;                                   ///< of the period along y, along x, m
   Schedule rate_xx = {}, rate_yy = {}, rate_xy = {};  ///< L, 1/s
   std::optional<CellServo> servo = {};
 

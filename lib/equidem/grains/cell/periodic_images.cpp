@@ -28,6 +28,11 @@ std::vector<ImagedContact> contacts_with_images(const GrainSystem& system) {
 
 }  // namespace
 
+Periods periods_of(const PeriodicCell& cell) {
+  const bool rows = cell.along == PeriodicCell::Along::xy;
+  return {{cell.width, 0}, rows ? Vec2{cell.shift, cell.height} : Vec2{}};
+}
+
 PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position) {
   PeriodicImage image;
   if (periods.b.y > 0) image.b = static_cast<std::int32_t>(-std::floor((position.y - centre.y) / periods.b.y + 0.5));

@@ -20,6 +20,7 @@ namespace equidem {
 
 struct GrainSystem;
 struct Candidate;
+struct PeriodicCell;
 
 /// A body moved by a whole number of each period.
 struct PeriodicImage {
@@ -34,6 +35,8 @@ struct Periods {
     return static_cast<double>(image.a) * a + static_cast<double>(image.b) * b;
   }
 };
+
+Periods periods_of(const PeriodicCell& cell);
 
 /// The image of a body in the cell around a centre: body 0, and the periods by which it is moved into the cell.
 PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);

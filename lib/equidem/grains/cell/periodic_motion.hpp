@@ -23,6 +23,8 @@ struct CellControl {
   double viscosity = 0;                                                ///< Pa s, likewise
   double largest_wanted = 0;                                           ///< Pa
   double overshoot = 0, errors = 0, steps = 0, reached = 0, side = 0;  ///< as in ServoState
+
+  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
 };
 
 /// Sums over the bodies of a block and the images that they touch.
@@ -55,6 +57,8 @@ struct MovingCell {
 /// time.
 void set_cell(GrainSystem& system);
 
+/// Set stiffness and viscosity of the controls by the contacts of the last step.
+void measure_resistance(GrainSystem& system);
 /// Choose the velocity gradient of the step.
 /// \throws Error (computation_failed) if the cell has become thinner than two of the largest diameters
 void steer_cell(GrainSystem& system);
@@ -64,8 +68,8 @@ void drift_in_cell(GrainSystem& system);
 void advance_cell(GrainSystem& system);
 /// As kick_of_verlet, and the work of the cell in the step.
 void kick_in_cell(GrainSystem& system);
-/// Set moment and stress from the impulses of the first kick.
-void begin_cell_stress(GrainSystem& system);
+/// Set moment and stress where a cell begins to deform, from the contacts of the last step or of the first kick.
+void begin_cell_stress(GrainSystem& system, std::span<const GrainContact> contacts);
 
 /// The cell as it is, its stress by the contacts of the last step.
 CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts);

@@ -18,6 +18,9 @@ BondRest rest_of(const Grain& i, const Grain& j) {
   return {j.position - i.position, i.angle, j.angle};
 }
 
+namespace {
+
+/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
 void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
   BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
   BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
@@ -27,8 +30,6 @@ void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& im
   on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
   on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
 }
-
-namespace {
 
 InverseInertia inverse_of(const Grain& grain) {
   return {1 / grain.inertia.mass, 1 / grain.inertia.moment};
@@ -162,6 +163,18 @@ BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bon
   const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
   const Vec2 way = mj.position - mi.position - bond.springs.branch;
   return {way.x, way.y, mi.angle - bond.angle_i, mj.angle - bond.angle_j};
+}
+
+std::array<BodyImpulse, 2> impulses_of_bond(const GrainSystem& system, const TiedPair& bond) {
+  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
+  const ContactFrame frame =
+      frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
+  const BondModes last = last_impulse(system, bond);
+  const BondForces<double> force = bond_forces(bond.springs, motion_of_bond(system, bond));
+  const double dt = system.dt();
+  const Vec2 on_i = dt * Vec2{force.x, force.y} - last.normal * frame.normal - last.tangential * frame.tangent();
+  return {BodyImpulse{on_i, dt * force.moment_i - frame.lever_i * last.tangential - last.rolling},
+          BodyImpulse{-on_i, dt * force.moment_j - frame.lever_j * last.tangential + last.rolling}};
 }
 
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene) {

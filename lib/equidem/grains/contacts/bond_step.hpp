@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/viscous_bond.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -42,9 +44,6 @@ BondRest rest_of(const Grain& i, const Grain& j);
 /// \return their numbers in the scene
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene);
 
-/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
-void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
-
 /// The place of the bond of two bodies i < j in a list ordered by them, or that of the first behind it.
 template <class Bonds>
 auto place_of_bond(Bonds& bonds, std::int32_t i, std::int32_t j) {
@@ -59,6 +58,9 @@ constexpr double nearest_centres_of_bonds = 1e-3;
 
 /// \throws Error (computation_failed) naming the first bond whose centres are nearer than nearest_centres_of_bonds
 void refuse_crept_bonds(const GrainSystem& system);
+
+/// Impulses of a bond on i and on j: of its dashpots in the last step, and in a step of its springs as they are now.
+std::array<BodyImpulse, 2> impulses_of_bond(const GrainSystem& system, const TiedPair& bond);
 
 /// Whether two bodies i < j are bonded. Calls must be in ascending order of pairs; `next` carries the position from
 /// call to call.

@@ -20,7 +20,7 @@ enum GrainColumn { x, y, radius, short_half_axis, vx, vy, spin, angle, density, 
 constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                            "spin", "angle", "density", "discs",           "group"};
 /// Columns that a run also writes, ignored by this reader.
-constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
+constexpr std::array ignored = {"grain", "number", "mass_kg", "mass_kg_per_m"};
 
 /// The columns of a packing that is periodic.
 constexpr std::array period = {"period_x_m", "period_y_m"};

@@ -135,7 +135,7 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
 
 /// Take bodies as their images inside a cell, and add the images that are near.
 void add_images(const PeriodicCell& cell, std::vector<Circle>& circles, std::vector<std::size_t>& grain_of) {
-  const Periods periods{{cell.width, 0}, {0, cell.height}};
+  const Periods periods = periods_of(cell);
   const Vec2 centre = cell.corner + 0.5 * Vec2{cell.width, cell.height};
   for (Circle& circle : circles) circle.centre += periods.shift(image_inside(periods, centre, circle.centre));
   for (const PeriodicImage& image : images_near(circles, periods, 0)) {
