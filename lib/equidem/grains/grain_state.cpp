@@ -42,13 +42,6 @@ void append(std::vector<double>& numbers, const PeriodicImage& image) {
   numbers.push_back(image.b);
 }
 
-PartPair parts_of_discs(const GrainSystem& system, const Candidate& candidate) {
-  PartPair pair;
-  pair.i = system.shapes.first_part[static_cast<std::size_t>(candidate.i)];
-  pair.j = system.shapes.first_part[static_cast<std::size_t>(candidate.j)];
-  return pair;
-}
-
 PartPair pair_of(const double* numbers) {
   PartPair pair;
   pair.i = static_cast<std::int32_t>(numbers[0]);
@@ -96,23 +89,24 @@ void take(const double* numbers, Candidate& candidate) {
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
   std::vector<double> contacts, losses, counts, impulses, bonds, walls, servos;
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      Candidate candidate = candidate_of(system, block, p);
-      const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
-      candidate.j = image.body;
-      append(contacts, candidate);
-      if (system.cell.active) append(contacts, image);
-      if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
-    }
-  }
+  const auto append_imaged = [&](Candidate candidate, PartPair pair) {
+    const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
+    candidate.j = image.body;
+    append(contacts, candidate);
+    if (system.cell.active) append(contacts, image);
+    if (system.shapes.parts.empty()) return;
+    pair.j = system.own_part(pair.j);
+    append(contacts, pair);
+  };
+  for (const PairBlock& block : system.contacts.near.blocks)
+    for (std::size_t p = 0; p < block.count; ++p)
+      if (block.touching(p))
+        append_imaged(candidate_of(system, block, p), parts_of_discs(system, block.first(p), block.second(p)));
   each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const auto [candidate, pair] = candidate_of(system, list, p);
-      append(contacts, candidate);
-      append(contacts, pair);
+      append_imaged(candidate, pair);
     }
   });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
@@ -242,40 +236,40 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     for (const auto number : servo_saved) servo.*number = *servo_number++;
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
+  find_images_of_bonds(system);
   place_walls(system);
   turn_axes(system);
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
   system.contacts.part_pairs.clear();
   std::vector<Candidate> near;
-  std::vector<std::pair<Candidate, PeriodicImage>> imaged;
+  std::vector<ImagedContact> imaged;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
   for (std::size_t at = 0; at < contacts.size(); at += columns.count) {
     Candidate contact;
     take(contacts.data() + at, contact);
     const double* numbers = contacts.data() + at;
-    if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.contacts.near.active) {
-      if (system.cell.active) {
-        imaged.emplace_back(contact, image_of(numbers + columns.image, contact.j));
-      } else {
-        near.push_back(contact);
-      }
-    } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.contacts.near_parts.active) {
+    const bool discs = contact.j >= 0 && are_discs(system, contact.i, contact.j);
+    const bool listed = contact.j >= 0 && (discs ? system.contacts.near.active : system.contacts.near_parts.active);
+    if (listed && system.cell.active) {
+      imaged.push_back({contact, shapes ? pair_of(numbers + columns.part) : PartPair{},
+                        image_of(numbers + columns.image, contact.j)});
+    } else if (listed && discs) {
+      near.push_back(contact);
+    } else if (listed) {
       near_parts.emplace_back(contact, pair_of(numbers + columns.part));
     } else {
       others.push_back(numbers);
     }
   }
-  if (system.contacts.near.active) {
-    load_pair_bodies(system);
-    if (system.cell.active) {
-      list_contacts(system, imaged);
-    } else {
-      take_near_pairs(system, near);
-    }
+  if (system.contacts.near.active) load_pair_bodies(system);
+  if (system.meets_images()) {
+    list_contacts(system, imaged);
+  } else {
+    if (system.contacts.near.active) take_near_pairs(system, near);
+    if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   }
-  if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   find_candidates(system);
   std::size_t c = 0;
   for (const double* contact : others) {

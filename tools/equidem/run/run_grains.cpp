@@ -10,6 +10,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/grain_frames.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
@@ -17,6 +18,7 @@
 #include "run/break_files.hpp"
 #include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
+#include "run/run_grains_text.hpp"
 #include "run/run_results.hpp"
 
 namespace equidem {
@@ -24,64 +26,6 @@ namespace {
 
 constexpr std::int64_t energy_samples = 200,
                        samples_of_few = 1000;  // of the energies, the latter where paths are drawn
-
-void add_bodies(Checksum& sum, std::span<const Grain> grains, std::span<const double> densities) {
-  for (std::size_t g = 0; g < grains.size(); ++g) {
-    const Grain& grain = grains[g];
-    for (const double value :
-         {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y, grain.spin, grain.angle,
-          densities[g], static_cast<double>(grain.kind), grain.short_half_axis, static_cast<double>(grain.clump)})
-      sum.add(value);
-  }
-}
-
-/// Motions of walls and of the cell.
-void add_motions(Checksum& sum, const GrainScene& scene) {
-  for (const Wall& wall : scene.walls) {
-    add(sum, wall.move_x), add(sum, wall.move_y);
-    if (wall.servo) add(sum, wall.servo->wanted);
-  }
-  if (!scene.cell) return;
-  for (const Schedule* rate : {&scene.cell->rate_xx, &scene.cell->rate_yy, &scene.cell->rate_xy}) add(sum, *rate);
-  if (scene.cell->servo)
-    for (const auto* stress : {&scene.cell->servo->stress_xx, &scene.cell->servo->stress_yy})
-      if (*stress) add(sum, **stress);
-}
-
-/// Tells whether files that a case names are still what they were.
-std::string checksum_of(const GrainCase& resolved) {
-  Checksum sum;
-  add_bodies(sum, resolved.scene.grains, resolved.densities);
-  for (const GrainBond& bond : resolved.scene.bonds)
-    for (const double value :
-         {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
-          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring, bond.bending_spring})
-      sum.add(value);
-  if (const auto& strengths = resolved.scene.strengths)
-    for (std::size_t b = 0; b < strengths->tension.size(); ++b)
-      sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
-  const auto shape_of = [&](const Grain& grain) {
-    for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
-      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  };
-  for (const Grain& grain : resolved.scene.grains)
-    if (grain.shape() == GrainShape::clump) shape_of(grain);
-  if (resolved.stages.empty()) add_motions(sum, resolved.scene);
-  return sum.text();
-}
-
-/// Likewise, of one stage. \param first_added number of the first body that it adds
-std::string checksum_of(const GrainCase& resolved, std::size_t stage, std::size_t first_added) {
-  Checksum sum;
-  const StageCase& of = resolved.stages[stage];
-  add_bodies(sum, of.bodies.added, std::span(resolved.densities).subspan(first_added));
-  for (const Grain& grain : of.bodies.added)
-    if (grain.shape() == GrainShape::clump)
-      for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
-        for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  add_motions(sum, of.scene);
-  return sum.text();
-}
 
 void check_events(const GrainCase& resolved, double step) {
   const auto length_of = [&](const StageCase& stage) {
@@ -199,9 +143,23 @@ void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simul
   }
 }
 
-/// Begins the text of a stage in a fingerprint.
-std::string stage_heading(const std::string& name) {
-  return fmt::format("\n# stage {}\n", name);
+/// \param kept of the checkpoint with which the run begins: an automatic step gives way to it
+GrainTimeStep step_of(const GrainCase& resolved, const std::optional<double>& kept) {
+  const GrainTimeStep chosen = choose_grain_step(resolved);
+  if (!kept || !chosen.automatic) return chosen;
+  if (*kept > chosen.step * (1 + 1e-9))
+    bad_input_at(resolved.where("run"),
+                 fmt::format("the checkpoint has steps of {:.6g} s, and this case needs {:.6g} s", *kept, chosen.step),
+                 "a run keeps its step through all stages",
+                 fmt::format("Run the stages before with time_step = {:.6g}, or give time_step = {:.6g} here to go on "
+                             "with the longer one",
+                             chosen.step, *kept));
+  GrainCase with_step = resolved;
+  with_step.step.time_step = *kept;
+  with_step.step.steps_per_contact.reset();
+  GrainTimeStep step = choose_grain_step(with_step);
+  step.automatic = true;
+  return step;
 }
 
 bool bodies_come_and_go(const GrainCase& resolved) {
@@ -212,9 +170,9 @@ bool bodies_come_and_go(const GrainCase& resolved) {
 
 }  // namespace
 
-GrainRun::GrainRun(GrainCase resolved)
+GrainRun::GrainRun(GrainCase resolved, const std::optional<double>& kept_step)
     : case_(std::move(resolved)),
-      step_(choose_grain_step(case_)),
+      step_(step_of(case_, kept_step)),
       steps_(count_all_steps(case_, step_.step)),
       walls_(all_walls(case_)),
       simulation_(simulation_of(case_, step_.step)) {
@@ -238,11 +196,37 @@ std::vector<std::string> GrainRun::files() const {
   return names;
 }
 
+void GrainRun::begin_from(const std::filesystem::path& path) {
+  const std::string there = case_of_checkpoint(path);
+  const SavedState state = read_checkpoint(path, there).state;
+  const std::size_t begun = StagedSimulation::stages_begun(state);
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    bad_input(fmt::format("cannot begin from '{}'", path.string()), why, remedy);
+  };
+  if (case_.stages.empty() || begun == 0 || stages_in(there) < begun)
+    refuse(case_.stages.empty() ? "this case is not in stages" : "it is of no run in stages",
+           "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
+  if (begun > case_.stages.size())
+    refuse(fmt::format("{} have begun in it, and this case has {}", counted(static_cast<long long>(begun), "stage"),
+                       case_.stages.size()),
+           "Give this case those stages, and what is to follow");
+  const std::string& last = case_.stages[begun - 1].name;
+  const std::string before = until_stage(there, begun), here = until_stage(case_text_of(case_, step_.step), begun);
+  if (before != here)
+    refuse(fmt::format("until the end of the stage '{}' its case is another one: {}", last,
+                       first_differences(before, here)),
+           "Change later stages only, or run all of this case");
+  simulation_.restore(state);
+  if (simulation_.over())
+    refuse(fmt::format("the stage '{}' is over, and this case has no other", last), "Add the stages that follow");
+  begun_from_ = path.string();
+}
+
 RunPlan GrainRun::plan() {
   const bool draws_paths = case_.bodies().size() <= most_drawn_paths;
   return {.steps = steps_,
           .time_step = step_.step,
-          .case_text = fingerprint(),
+          .case_text = case_text_of(case_, step_.step),
           .frame_interval = case_.output.frame_interval,
           .probe_interval = case_.output.probe_interval,
           .checkpoint_interval = case_.output.checkpoint_interval,
@@ -262,24 +246,6 @@ RunPlan GrainRun::plan() {
                 if (simulation_.milestone() >= 0) refuse_idle_servos(case_, simulation_);
               },
           .step_place = case_.where("run.time_step")};
-}
-
-std::string GrainRun::fingerprint() const {
-  TomlValue known = case_.document;
-  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});    // the step is below
-  erase_keys(known, {"title", "output", "probe", "measures", "schedule", "stage"});  // schedules: by the checksums
-  std::string text =
-      to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
-                                                  toml_number(step_.step), checksum_of(case_));
-  std::size_t bodies = case_.scene.grains.size();
-  for (std::size_t k = 0; k < case_.stages.size(); ++k) {
-    TomlValue stage = casefile::repeated(case_.document, "stage")[k];
-    if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
-    text += stage_heading(case_.stages[k].name) + to_toml(std::move(stage), {}) +
-            fmt::format("\n# checksum of grains and schedules {}\n", checksum_of(case_, k, bodies));
-    bodies += case_.stages[k].bodies.added.size();
-  }
-  return text;
 }
 
 const ContactTable& GrainRun::present_contacts() const {

@@ -10,6 +10,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/scene/clump.hpp"
 
 namespace equidem {
 namespace {
@@ -19,6 +20,30 @@ constexpr std::int64_t steps_between_measures = 16;
 
 double contraction(const Tensor2& a, const Tensor2& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
+}
+
+double area_of(const Grain& grain, const std::vector<Clump>& clumps) {
+  switch (grain.shape()) {
+    case GrainShape::clump:
+      return inertia_of_clump(clumps[static_cast<std::size_t>(grain.clump)], 1).mass;
+    case GrainShape::ellipse:
+      return std::numbers::pi * grain.radius * grain.short_half_axis;
+    case GrainShape::disc:
+      break;
+  }
+  return std::numbers::pi * squared(grain.radius);
+}
+
+/// Springs and dashpots of a contact or a bond, along and across its branch: N/m and N s/m.
+struct Resistances {
+  double k_n = 0, k_t = 0, c_n = 0, c_t = 0;
+};
+
+/// What they add to the resistance of the cell: stretched along x, the ends of a branch part by l_x along x.
+void add_resistance(Vec2 branch, Vec2 normal, const Resistances& of, Vec2& stiffness, Vec2& viscosity) {
+  const double xx = normal.x * normal.x, yy = normal.y * normal.y;
+  stiffness += Vec2{squared(branch.x) * (of.k_n * xx + of.k_t * yy), squared(branch.y) * (of.k_n * yy + of.k_t * xx)};
+  viscosity += Vec2{squared(branch.x) * (of.c_n * xx + of.c_t * yy), squared(branch.y) * (of.c_n * yy + of.c_t * xx)};
 }
 
 Periods deformed(const Periods& periods, const Tensor2& gradient, double dt) {
@@ -56,7 +81,7 @@ double controlled_rate(const CellServo& servo, const Schedule& stress, double ti
 
 /// Sum the works and moments of all blocks.
 CellSums summed(const MovingCell& cell) {
-  CellSums all;
+  CellSums all = cell.bond_sums;
   for (const CellSums& sums : cell.sums) {
     all.here += sums.here;
     all.before += sums.before;
@@ -84,19 +109,22 @@ void add_moments(const GrainSystem& system, std::size_t block, CellSums& sums) {
     sums.here += outer(impulse, system.bodies.motions[i].position - cell.centre);
     sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
   }
-  if (!system.contacts.near.active) return;
-  const OutwardImpulses& outward = system.contacts.near.blocks[block].outward;
-  for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-    if (!system.is_image(outward.bodies[k])) continue;
-    const PeriodicImage& image = system.image(outward.bodies[k]);
-    sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
-    sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
-  }
+  const auto add = [&](const OutwardImpulses& outward) {
+    for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
+      if (!system.is_image(outward.bodies[k])) continue;
+      const PeriodicImage& image = system.image(outward.bodies[k]);
+      sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
+      sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
+    }
+  };
+  if (system.contacts.near.active) add(system.contacts.near.blocks[block].outward);
+  if (!system.contacts.near_parts.active) return;
+  for (const NearParts::List& list : system.contacts.near_parts.blocks[block].lists) add(list.outward);
 }
 
 /// Sum of force times branch over the contacts, and of m u u over the bodies.
 std::pair<Tensor2, Tensor2> sums_of_stress(const GrainSystem& system, std::span<const GrainContact> contacts) {
-  Tensor2 forces, flux;
+  Tensor2 forces = moment_of_bonds(system), flux;
   for (const GrainContact& contact : contacts) {
     const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
     forces += outer(on_j, contact.arm_i - contact.arm_j);
@@ -144,8 +172,10 @@ void set_cell(GrainSystem& system) {
   cell.before = cell.next = cell.now;
   cell.centre = given.corner + 0.5 * Vec2{given.width, cell.now.b.y};
   cell.sums.resize(system.bodies.blocks.count());
-  for (const GrainBody& body : system.bodies.constants)
-    cell.largest_radius = std::max(cell.largest_radius, body.radius);
+  for (const Grain& grain : system.scene.grains) {
+    cell.largest_radius = std::max(cell.largest_radius, grain.radius);
+    cell.solid += area_of(grain, system.scene.clumps);
+  }
   for (GrainMotion& motion : system.bodies.motions) {
     PeriodicImage move = image_inside(cell.now, cell.centre, motion.position);
     motion.position += cell.now.shift(move);
@@ -157,28 +187,43 @@ void measure_resistance(GrainSystem& system) {
   const NearPairs& near = system.contacts.near;
   const LawDescription& law = system.law();
   Vec2 stiffness, viscosity;
+  const auto along = [&](double spring, double dashpot, double overlap) {
+    return Resistances{.k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1),
+                       .c_n = law.dashpot != nullptr ? law.dashpot(dashpot, overlap) : dashpot};
+  };
   for (const PairBlock& block : near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
       if (!block.touching(p)) continue;
       const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-      const auto i = static_cast<std::size_t>(block.first(p));
-      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
+      const Vec2 branch = system.position_of(block.second(p)) -
+                          system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
       const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
       if (!(distance > 0)) continue;
-      const double spring = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      const double k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1);
-      const double c = block.groups[g].dashpot[k], c_n = law.dashpot != nullptr ? law.dashpot(c, overlap) : c;
-      double k_t = 0, c_t = 0;
+      Resistances of =
+          along(near.equal ? near.law.stiffness : block.laws[g].stiffness[k], block.groups[g].dashpot[k], overlap);
       if (system.friction) {
-        k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        c_t = block.slips[g].dashpot[k];
+        of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
+        of.c_t = block.slips[g].dashpot[k];
       }
-      // stretched along x, the ends of a branch part by l_x along x
-      const Vec2 normal = branch / distance;
-      const double xx = normal.x * normal.x, yy = normal.y * normal.y;
-      stiffness += Vec2{squared(branch.x) * (k_n * xx + k_t * yy), squared(branch.y) * (k_n * yy + k_t * xx)};
-      viscosity += Vec2{squared(branch.x) * (c_n * xx + c_t * yy), squared(branch.y) * (c_n * yy + c_t * xx)};
+      add_resistance(branch, branch / distance, of, stiffness, viscosity);
     }
+  }
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (!list.touching(p)) continue;
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      Resistances of = along(candidate.stiffness, dashpot_of(system, candidate), std::max(candidate.overlap, 0.0));
+      of.k_t = candidate.sliding.stiffness;
+      of.c_t = candidate.sliding.dashpot;
+      add_resistance(system.position_of(candidate.j) - system.position_of(candidate.i), candidate.normal, of, stiffness,
+                     viscosity);
+    }
+  });
+  for (const TiedPair& bond : system.bonds.tied) {
+    const Vec2 branch = branch_of(system, bond);
+    const SpringConstants& springs = bond.springs.springs;
+    add_resistance(branch, branch / norm(branch),
+                   {springs.kN, springs.kT, bond.dashpots.normal, bond.dashpots.tangential}, stiffness, viscosity);
   }
   const double area = system.cell.area();
   CellControl& x = system.cell.controls[0];
@@ -296,12 +341,10 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   state.shift = std::remainder(cell.now.b.x, cell.now.a.x);
   state.strain = cell.strain;
   const auto [forces, flux] = sums_of_stress(system, contacts);
-  double discs = 0;
-  for (const GrainBody& body : system.bodies.constants) discs += std::numbers::pi * squared(body.radius);
   state.stress = (-1 / cell.area()) * (forces + flux);
-  state.void_ratio = cell.area() / discs - 1;
-  state.coordination_number =
-      2 * static_cast<double>(contacts.size()) / static_cast<double>(system.bodies.constants.size());
+  state.void_ratio = cell.area() / cell.solid - 1;
+  state.coordination_number = 2 * static_cast<double>(contacts.size() + system.bonds.tied.size()) /
+                              static_cast<double>(system.bodies.constants.size());
   if (!system.scene.cell->servo) return state;
   const CellServo& servo = *system.scene.cell->servo;
   const auto add = [&](const char* component, const std::optional<Schedule>& stress, const CellControl& control) {

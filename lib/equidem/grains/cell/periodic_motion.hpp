@@ -27,7 +27,7 @@ struct CellControl {
   void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
 };
 
-/// Sums over the bodies of a block and the images that they touch.
+/// Sums over the bodies of a block and the images that they meet.
 struct CellSums {
   Tensor2 here, before;  ///< of impulse times place, after the step and before it, N s m
   Tensor2 flux;          ///< of m u u, J
@@ -46,6 +46,8 @@ struct MovingCell {
   Tensor2 stress;              ///< deforming cells: at the start of this step, Pa
   CellControl controls[2];     ///< of xx and yy
   std::vector<CellSums> sums;  ///< of each block
+  CellSums bond_sums;          ///< of the impulses of bonds on images
+  double solid = 0;            ///< area of the bodies, m²
   std::vector<PeriodicImage> images;
   /// For each body the periods by which it has been moved into the cell, with the opposite sign: where it would be.
   std::vector<PeriodicImage> crossed;

@@ -22,9 +22,7 @@ double share_of_strength(double load, double strength) {
 
 /// The place of the bond as far as the levers say, between both centres.
 Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
-  const Vec2 i = system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
-  const Vec2 j = system.bodies.motions[static_cast<std::size_t>(bond.j)].position;
-  return i + bond.share * (j - i);
+  return system.bodies.motions[static_cast<std::size_t>(bond.i)].position + bond.share * branch_of(system, bond);
 }
 
 /// The bodies of a bond as a contact that begins now.
@@ -38,8 +36,8 @@ NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
   candidate.j = bond.j;
   set_constants(system, candidate);
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const double overlap = system.bodies.constants[i].radius + system.bodies.constants[j].radius -
-                         norm(system.bodies.motions[j].position - system.bodies.motions[i].position);
+  const double overlap =
+      system.bodies.constants[i].radius + system.bodies.constants[j].radius - norm(branch_of(system, bond));
   return {candidate.stiffness, std::max(overlap, 0.0)};
 }
 
@@ -47,7 +45,7 @@ NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
 /// give way to that of the spring behind it, so that both half kicks of the step are of the same contact.
 void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContact& contact) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
+  const Vec2 branch = branch_of(system, bond);
   const double force = contact.stiffness * std::pow(contact.overlap, system.law().spring_power);
   const Vec2 push = system.dt() * force / norm(branch) * branch;
   const auto [of_i, of_j] = impulses_of_bond(system, bond);

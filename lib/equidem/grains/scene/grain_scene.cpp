@@ -213,7 +213,7 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
               "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
   }
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
-  const double distance = norm(j.position - i.position);
+  const double distance = norm(rest_of(scene, bond.i, bond.j).branch);
   if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
     bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
               "a bond lies along the line between them", "Move them apart");

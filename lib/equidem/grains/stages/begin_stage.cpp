@@ -72,17 +72,19 @@ StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
   const GrainScene& scene = stages_.front().scene;
   Bonds bonds{scene.bonds, scene.strengths, {}};
   for (GrainBond& bond : bonds.all)
-    if (!bond.rest) bond.rest = rest_of(scene.grains.at(bond.i), scene.grains.at(bond.j));
-  return bonds_of(0, std::move(bonds), start_of_first().bodies, {});
+    if (!bond.rest) bond.rest = rest_of(scene, bond.i, bond.j);
+  return bonds_of(0, std::move(bonds), start_of_first(), {});
 }
 
-StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const PresentBodies& bodies,
+StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const Start& start,
                                                    std::span<const GrainContact> contacts) const {
   if (!stages_[stage].bonds) return bonds;
+  const PresentBodies& bodies = start.bodies;
   const StageBonds& how = *stages_[stage].bonds;
   GrainScene scene;
   scene.grains = bodies.grains;
-  scene.bonds = make_bonds(bodies.grains, contacts, bonds_between(bodies.numbers, bonds).bonds, how);
+  scene.cell = start.cell;
+  scene.bonds = make_bonds(scene, contacts, bonds_between(bodies.numbers, bonds).bonds, how);
   if (how.strengths) {
     const ContactStrengths made = bond_strengths(scene, *how.strengths);
     if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
@@ -184,7 +186,7 @@ void StagedSimulation::begin_stage() {
     changed = change_bodies({numbers(), present_->grains()}, how, first_added(next));
     start.bodies = changed.now;
     const std::vector<GrainContact> contacts = contacts_now(*present_, changed.origins);
-    bonds = bonds_of(next, bonds_, start.bodies, contacts);
+    bonds = bonds_of(next, bonds_, start, contacts);
     simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_,
                                                    order_now(present_->order(), changed.origins));
     simulation->take_over(*present_,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/grains/stages/make_bonds.hpp"
 #include "equidem/grains/stages/stage_bodies.hpp"
 #include "equidem/motion/servo.hpp"
@@ -132,6 +133,8 @@ class StagedSimulation final : public AnySimulation {
   /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_energies.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
+  /// The number of stages that have begun in a saved state; 0: it is of no simulation in stages.
+  [[nodiscard]] static std::size_t stages_begun(const SavedState& state);
 
  private:
   /// Where a stage has begun.
@@ -164,7 +167,7 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] Start start_of_first() const;
   [[nodiscard]] Bonds bonds_at_start() const;
   /// The bonds with those that a stage makes.
-  [[nodiscard]] Bonds bonds_of(std::size_t stage, Bonds bonds, const PresentBodies& bodies,
+  [[nodiscard]] Bonds bonds_of(std::size_t stage, Bonds bonds, const Start& start,
                                std::span<const GrainContact> contacts) const;
   [[nodiscard]] Bonds bonds_in(const SavedState& state, std::size_t begun) const;
   [[nodiscard]] Start start_in(const SavedState& state, std::size_t begun, std::vector<std::size_t>& order) const;

@@ -207,9 +207,14 @@ StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std:
   return start;
 }
 
+std::size_t StagedSimulation::stages_begun(const SavedState& state) {
+  const auto found = std::ranges::find(state.arrays, "stages", &SavedArray::name);
+  return found == state.arrays.end() ? 0 : found->values.size() / numbers_per_stage;
+}
+
 void StagedSimulation::restore(const SavedState& state) {
   const std::vector<double>&stages = state["stages"], &sums = state["stage_energies"];
-  const std::size_t begun = stages.size() / numbers_per_stage;
+  const std::size_t begun = stages_begun(state);
   if (begun < 1 || begun > stages_.size() || sums.size() != 3 ||
       state["stage_walls"].size() != 2 * stages_[begun - 1].scene.walls.size())
     refuse_state(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
