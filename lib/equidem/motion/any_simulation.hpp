@@ -44,6 +44,7 @@ class AnySimulation {
   [[nodiscard]] virtual std::int64_t milestone() const { return -1; }
   /// Whether there is nothing left to step.
   [[nodiscard]] virtual bool over() const { return false; }
+  [[nodiscard]] double time_step() const { return time_step_; }                           ///< s
   [[nodiscard]] double time() const { return static_cast<double>(step()) * time_step_; }  ///< s
   /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad. Their number does
   /// not change: bodies that a run adds or removes are not_there before or after.

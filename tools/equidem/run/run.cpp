@@ -148,10 +148,10 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from) {
   prepare(options);
   if (describes_grains(casefile::read_document(options.case_file, options.set))) {
-    const auto step = begin_from ? step_in(case_of_checkpoint(*begin_from)) : std::nullopt;
-    auto job = std::make_unique<GrainRun>(read_grain_case(options.case_file, options.set),
-                                          step ? std::optional(step->step) : std::nullopt);
-    if (begin_from) job->begin_from(*begin_from);
+    GrainCase resolved = read_grain_case(options.case_file, options.set);
+    if (!begin_from) return std::make_unique<GrainRun>(std::move(resolved));
+    auto job = std::make_unique<GrainRun>(std::move(resolved), step_of_stages(*begin_from));
+    job->begin_from(*begin_from);
     return job;
   }
   Case resolved = read_case(options);

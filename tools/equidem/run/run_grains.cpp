@@ -168,7 +168,20 @@ bool bodies_come_and_go(const GrainCase& resolved) {
   });
 }
 
+[[noreturn]] void refuse_beginning(const std::filesystem::path& checkpoint, const std::string& why,
+                                   const std::string& remedy) {
+  bad_input(fmt::format("cannot begin from '{}'", checkpoint.string()), why, remedy);
+}
+
 }  // namespace
+
+double step_of_stages(const std::filesystem::path& checkpoint) {
+  const std::string text = case_of_checkpoint(checkpoint);
+  const auto found = step_in(text);
+  if (found && stages_in(text) > 0) return found->step;
+  refuse_beginning(checkpoint, "it is of no run in stages",
+                   "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
+}
 
 GrainRun::GrainRun(GrainCase resolved, const std::optional<double>& kept_step)
     : case_(std::move(resolved)),
@@ -200,12 +213,9 @@ void GrainRun::begin_from(const std::filesystem::path& path) {
   const std::string there = case_of_checkpoint(path);
   const SavedState state = read_checkpoint(path, there).state;
   const std::size_t begun = StagedSimulation::stages_begun(state);
-  const auto refuse = [&](const std::string& why, const std::string& remedy) {
-    bad_input(fmt::format("cannot begin from '{}'", path.string()), why, remedy);
-  };
-  if (case_.stages.empty() || begun == 0 || stages_in(there) < begun)
-    refuse(case_.stages.empty() ? "this case is not in stages" : "it is of no run in stages",
-           "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
+  const auto refuse = [&](const std::string& why, const std::string& remedy) { refuse_beginning(path, why, remedy); };
+  if (case_.stages.empty() || stages_in(there) < begun)
+    refuse("this case is not in stages", "Give it the stages of that run, and what is to follow");
   if (begun > case_.stages.size())
     refuse(fmt::format("{} have begun in it, and this case has {}", counted(static_cast<long long>(begun), "stage"),
                        case_.stages.size()),

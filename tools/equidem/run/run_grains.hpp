@@ -13,6 +13,10 @@
 
 namespace equidem {
 
+/// The step of the run in stages that a checkpoint is of, s.
+/// \throws Error (bad_input) as case_of_checkpoint; a checkpoint of another run
+double step_of_stages(const std::filesystem::path& checkpoint);
+
 class GrainRun final : public RunJob {
  public:
   /// \param kept_step s, of a checkpoint: an automatic step is that one

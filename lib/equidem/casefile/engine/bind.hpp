@@ -309,6 +309,8 @@ class File<F>::Binder {
   void described(const std::vector<Key<S>>& keys) {
     for (const Key<S>& key : keys) describe(key.spec);
   }
+  /// A table that holds other tables alone.
+  void holds_tables() { file_.spec_.tables.push_back(spec_); }
 
   void keys(const std::vector<Key<Item>>& keys) {
     if constexpr (is_vector<T>) {

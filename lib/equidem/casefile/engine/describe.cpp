@@ -84,6 +84,7 @@ std::string describe_table(const FileSpec& spec, const TableSpec& table) {
 }
 
 std::string markdown_keys(const FileSpec& spec, std::string_view table) {
+  if (std::ranges::none_of(spec.keys, [&](const KeySpec& key) { return key.table == table; })) return {};
   std::string out = "\n| key | value | default | meaning |\n|---|---|---|---|\n";
   for (const KeySpec& key : spec.keys)
     if (key.table == table)

@@ -117,6 +117,7 @@ void bind_cell(File<GrainTables>& file) {
 }
 
 void bind_stage_cell(File<GrainTables>& file) {
+  file.table("stage.cell", "how the periodic cell deforms from now on").holds_tables();
   file.table("stage.cell.motion",
              "rates from now on, until the stage ends, 0 too; a component that is given keeps no stress")
       .described(cell_motion_keys());

@@ -80,8 +80,11 @@ GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::s
                     const GrainTables& tables) {
   GrainRows bodies;
   if (common.path) {
+    std::optional<Vec2> cell;
+    if (tables.cell_table && tables.cell_table->cell.along == PeriodicCell::Along::xy)
+      cell = Vec2{tables.cell_table->cell.width, tables.cell_table->cell.height};
     bodies = with_key(*holder.find("grains"), prefix + "grains", "path",
-                      [&] { return read_grains(*common.path, common.density, shapes); });
+                      [&] { return read_grains(*common.path, common.density, shapes, cell); });
     check_density_of_springs(root, tables, *common.path, bodies);
   }
   for (std::size_t k = 0; k < read.size(); ++k)

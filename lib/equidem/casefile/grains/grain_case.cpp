@@ -169,14 +169,16 @@ std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double ste
   std::vector<GrainStage> stages;
   if (resolved.stages.empty())
     stages.push_back({.name = "run", .scene = build_grain_scene(resolved, step), .steps = count_steps(resolved, step)});
-  for (const StageCase& stage : resolved.stages) {
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const StageCase& stage = resolved.stages[k];
     GrainStage& made =
         stages.emplace_back(GrainStage{.name = stage.name,
                                        .scene = stage.scene,
                                        .steps = stage.steps ? *stage.steps : count_steps(*stage.duration, step),
                                        .end = stage.end,
                                        .bodies = stage.bodies,
-                                       .bonds = stage.bonds});
+                                       .bonds = stage.bonds,
+                                       .place = repeated(resolved.document, "stage")[k].where()});
     made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);
   }
   return stages;

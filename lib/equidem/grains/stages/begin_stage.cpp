@@ -193,7 +193,7 @@ void StagedSimulation::begin_stage() {
                           {changed.origins, bond_origins(bonds_between(numbers(), bonds_).numbers,
                                                          bonds_between(start.bodies.numbers, bonds).numbers)});
   } catch (const Error& error) {
-    throw error.at(fmt::format("stage '{}'", stages_[next].name));
+    throw error.at(stages_[next].where());
   }
   keep_past_breaks(start.bodies.numbers);
   reports_.push_back({.name = stages_[next].name,

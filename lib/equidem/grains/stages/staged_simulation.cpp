@@ -190,7 +190,7 @@ void StagedSimulation::refuse_endless() const {
   throw Error(ErrorKind::computation_failed,
               fmt::format("it has not met its end in {:.6g} s", static_cast<double>(stage.steps) * options_.time_step),
               joined(missing), "Give it a longer duration and go on with --resume, or change what ends it",
-              fmt::format("stage '{}'", stage.name));
+              stage.where());
 }
 
 std::vector<BondBreak> StagedSimulation::breaks() const {

@@ -50,6 +50,9 @@ struct GrainStage {
   StageEnd end = {};
   StageBodies bodies = {};               ///< changed at its start; of the first stage not at all
   std::optional<StageBonds> bonds = {};  ///< made at its start, then
+  std::string place = {};                ///< in the user's input, for messages; empty: not known
+
+  [[nodiscard]] std::string where() const { return (place.empty() ? "" : place + ": ") + "stage '" + name + "'"; }
 };
 
 template <>
