@@ -202,8 +202,13 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
       },
       {"wall 'side'", "no line along x"});
   check_scene([](GrainScene& s) { s.gravity = {0, -1}; }, {"gravity", "no floor"});
-  check_scene([](GrainScene& s) { s.grains[3].short_half_axis = 0.5 * s.grains[3].radius; }, {"grain 3", "an ellipse"});
-  check_scene([](GrainScene& s) { s.bonds.push_back({.i = 0, .j = 1, .normal_dashpot = 1}); }, {"bonds"});
+  check_scene(
+      [](GrainScene& s) {
+        s.grains[3].short_half_axis = 0.5 * s.grains[3].radius, s.pairs[0].tangential_ratio = 0;
+        s.pairs[0].tangential_damping = 0;
+      },
+      {"without a tangential spring"});
+  check_scene([](GrainScene& s) { s.cell->shift = NAN; }, {"shift"});
   check_scene(
       [](GrainScene& s) {
         s.grains[1].position = s.grains[0].position + Vec2{3.99, 0};
@@ -217,6 +222,11 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
   check_scene([](GrainScene& s) { s.cell->servo = CellServo{.max_rate = 1}; }, {"keeps no stress"});
   check_scene([](GrainScene& s) { s.cell->servo = CellServo{.stress_yy = Schedule{.value = -1}}; }, {"max_rate"});
   check_cell_error([&] { GrainSimulation(good, options_of(NormalLaw::exact_flow, 0.01)); }, {"law exact_flow"});
+  GrainScene shaped = good;
+  shaped.grains[3].short_half_axis = 0.5 * shaped.grains[3].radius;
+  GrainOptions enlarged = options;
+  enlarged.ellipse_law = GrainOptions::EllipseLaw::enlarged_mended;
+  check_cell_error([&] { GrainSimulation(shaped, enlarged); }, {"enlarged", "exact contact"});
   GrainScene moving = good;
   moving.cell->rate_xy = {.value = 1};
   check_cell_error([&] { GrainSimulation(moving, options_of(NormalLaw::linear_dashpot, 0.01)); },

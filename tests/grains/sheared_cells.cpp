@@ -2,67 +2,17 @@
 /// \file
 /// Periodic cells that deform at a rate or keep a stress.
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include "grains/cell_scenes.hpp"
+#include "grains/plain_cell.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-/// Frictionless elastic discs in a sheared cell, all images compared with all, the period along y never taken back.
-class PlainCell {
- public:
-  PlainCell(const GrainScene& scene, double dt) : grains_(scene.grains), forces_(scene.grains.size()), dt_(dt) {
-    stiffness_ = scene.pairs[0].stiffness;
-    rate_ = scene.cell->rate_xy.value;
-    width_ = scene.cell->width;
-    height_ = scene.cell->height;
-    find_forces();
-  }
-  void step() {
-    const double middle = 0.5 * height_;
-    const auto kick = [&] {
-      for (std::size_t k = 0; k < grains_.size(); ++k)
-        grains_[k].velocity += 0.5 * dt_ / grains_[k].inertia.mass * forces_[k];
-    };
-    const auto turn = [&] {
-      for (Grain& grain : grains_) grain.velocity.x -= 0.5 * dt_ * rate_ * grain.velocity.y;
-    };
-    kick();
-    turn();
-    for (Grain& grain : grains_)
-      grain.position += dt_ * (grain.velocity + Vec2{rate_ * (grain.position.y - middle), 0});
-    shift_ += dt_ * rate_ * height_;
-    find_forces();
-    turn();
-    kick();
-  }
-  [[nodiscard]] const std::vector<Grain>& grains() const { return grains_; }
-  [[nodiscard]] double shift() const { return shift_; }
-
- private:
-  void find_forces() {
-    std::fill(forces_.begin(), forces_.end(), Vec2{});
-    for (std::size_t i = 0; i < grains_.size(); ++i)
-      for (std::size_t j = i + 1; j < grains_.size(); ++j)
-        for (int a = -9; a <= 9; ++a)
-          for (int b = -3; b <= 3; ++b) {
-            const Vec2 branch = grains_[j].position + Vec2{a * width_ + b * shift_, b * height_} - grains_[i].position;
-            const double overlap = grains_[i].radius + grains_[j].radius - norm(branch);
-            if (!(overlap > 0)) continue;
-            const Vec2 force = stiffness_ * overlap / norm(branch) * branch;
-            forces_[i] -= force;
-            forces_[j] += force;
-          }
-  }
-
-  std::vector<Grain> grains_;
-  std::vector<Vec2> forces_;
-  double dt_, stiffness_ = 0, rate_ = 0, width_ = 0, height_ = 0, shift_ = 0;
-};
 
 /// A square lattice of touching discs of radius 0.5, of mass 1.
 GrainScene square_cell(int columns, double overlap) {
@@ -95,12 +45,8 @@ TEST_CASE("a_cell_sheared_past_its_period_moves_as_one_whose_images_are_never_ta
   for (int k = 0; k < 800; ++k) {
     simulation.advance(1);
     plain.step();
-    const std::vector<Grain> grains = simulation.grains();
-    CellState cell = *simulation.cell();
-    for (std::size_t g = 0; g < grains.size(); ++g) {
-      apart = std::max(apart, distance_in_cell(grains[g].position, plain.grains()[g].position, cell));
-      apart = std::max(apart, norm(grains[g].velocity - plain.grains()[g].velocity));
-    }
+    const CellState cell = *simulation.cell();
+    apart = std::max(apart, distance_of_states(simulation.grains(), plain.grains(), cell));
     CAPTURE(k, apart, plain.shift(), cell.shift);
     REQUIRE(apart < 1e-7);  // round-off, and its growth in collisions
     REQUIRE(std::abs(std::remainder(plain.shift() - cell.shift, cell.width)) < 1e-9);
@@ -268,6 +214,35 @@ TEST_CASE("a_sheared_cell_goes_on_with_its_bits") {
     REQUIRE(resumed.energy().work_of_cell == whole.energy().work_of_cell);
     stepped.advance(steps);
   }
+}
+
+TEST_CASE("a_sheared_cell_has_the_same_bits_for_every_margin_and_number_of_threads") {
+  const NormalLaw law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);
+  const double rate = GENERATE(3.0, -0.4);
+  GrainScene scene = busy_cell(law, 6, 5, 29);
+  scene.cell->rate_xy = {.value = rate};
+  scene.cell->servo = CellServo{.stress_yy = Schedule{.value = -5}, .max_rate = 0.1};
+  GrainOptions options = options_of(Stepping{law, GrainIntegrator::velocity_verlet}, 0.002);
+  options.bodies_per_block = 7;
+  GrainSimulation whole(scene, options);
+  whole.advance(1100);
+  const Bits end = bits_of(whole);
+  CAPTURE(to_string(law), rate, whole.cell()->strain.xy, whole.counters().rebuilds);
+  CHECK(whole.counters().contacts > 50);
+  const int before = thread_count();
+  for (const double margin : {1e-3, 0.02, 0.3, 1.0, 6.0}) {
+    for (const int threads : {1, 2, 3, 4}) {
+      options.margin = margin;
+      set_thread_count(threads);
+      GrainSimulation other(scene, options);
+      other.advance(1100);
+      CAPTURE(margin, threads, other.counters().rebuilds);
+      CHECK(bits_of(other) == end);
+      CHECK(other.cell()->height == whole.cell()->height);
+      CHECK(other.energy().work_of_cell == whole.energy().work_of_cell);
+    }
+  }
+  set_thread_count(before);
 }
 
 TEST_CASE("a_cell_that_becomes_too_thin_is_refused") {

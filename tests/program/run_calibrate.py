@@ -114,6 +114,46 @@ class Calibrate(program.ProgramTest):
         self.check_done(equidem("calibrate", RANDOM, "--set", "material.weighting=voronoi", "--springs", file))
         self.assertIn('weighting = "voronoi"', file.read_text())
 
+    def test_bonds_of_a_width_are_calibrated_and_the_file_carries_it_to_the_other_verbs(self):
+        springs = self.folder / "springs.toml"
+        done = self.check_done(equidem("calibrate", RANDOM, "--set", "material.bond_width=1.2", "--springs", springs,
+                                       "--json", "-"))
+        found = parse_json(done.stdout)
+        self.assertIn("bond_width = 1.2", springs.read_text())
+        self.assertIn("pb_rmul = 1.2: it resists bending as these do", found["report"])
+        self.assertIn("without the bending springs", found["report"])
+        diameter = 2 * found["engines"]["radii"][0]
+        self.assertAlmostEqual(found["engines"]["pfc"]["pb_kn"][0] * 1.2 * diameter / found["kN"], 1, 12)
+        case = self.case_with_springs(RANDOM, "springs.toml")
+        cell = parse_json(self.check_done(equidem("homogenize", case, "--json", "-")).stdout)
+        self.check_close(cell["shear_modulus"], 1e9, 1e-10)
+        self.check_close(cell["poisson_ratio"]["plane_strain"], 0.2, 1e-10)
+        self.assertIn("bending springs", cell["effects"]["active"])
+        without = self.folder / "without.toml"
+        without.write_text(springs.read_text().replace("bond_width = 1.2\n", ""))
+        softer = parse_json(self.check_done(equidem("homogenize", case, "--set", f"springs={without}", "--json", "-")).stdout)
+        self.assertLess(softer["shear_modulus"], (1 - 1e-3) * cell["shear_modulus"])
+
+    def test_a_springs_file_with_a_bending_spring_means_the_same_as_the_table(self):
+        table = "[springs]\nkN = 2.0e9\nkT = 3.0e8\nkM = 4000.0\n"
+        (self.folder / "springs.toml").write_text('schema = "equidem-springs/1"\n' + table)
+        one, other = self.case_with_springs(RANDOM, "springs.toml"), self.folder / "other.toml"
+        other.write_text(re.sub(r"\[material\][^\[]*", table, RANDOM.read_text()))
+        read, given = (parse_json(self.check_done(equidem("homogenize", case, "--json", "-")).stdout) for case in (one, other))
+        self.assertEqual(read["stiffness"], given["stiffness"])
+        done = self.check_done(equidem("stability", one))
+        self.assertIn("not sought: bending springs resist rotations too", done.stdout)
+        self.check_error(equidem("quasistatic", one), 2, "springs.toml:", "springs.kM", "no bending springs")
+        for wrong, words in (("kM = -1.0", ("springs.toml:", "springs.kM", ">= 0")),
+                             ("kM = 1.0\nbond_width = 1.0", ("springs.toml:", "kM and bond_width are both given")),
+                             ("kM = 1.0\nkT = -1.0e8", ("kT is negative", "bending"))):
+            with self.subTest(wrong=wrong):
+                lines = table.replace("kM = 4000.0", wrong)
+                if "kT" in wrong:
+                    lines = lines.replace("kT = 3.0e8\n", "")
+                (self.folder / "springs.toml").write_text('schema = "equidem-springs/1"\n' + lines)
+                self.check_error(equidem("homogenize", one), 2, *words)
+
     def test_files_are_written_as_asked_and_never_replaced_unasked(self):
         out = self.folder / "out"
         first = self.check_done(equidem("calibrate", LATTICE, "--out", out))

@@ -78,6 +78,21 @@ class CellTest(RunTest):
         self.assertEqual((whole / "grains.csv").read_bytes(), (parts / "grains.csv").read_bytes())
         self.assertEqual((whole / "contacts.csv").read_bytes(), (parts / "contacts.csv").read_bytes())
 
+    def test_a_packing_with_periodic_sides_rests_in_a_cell_of_its_size(self):
+        packed = self.folder / "packed"
+        pack = equidem("pack", CASES / "pack_jammed.toml", "--set", "packing.grains=60", "--out", packed, "--quiet")
+        self.check_done(pack)
+        text = f'schema = "equidem/1"\n[grains]\ndensity = 2500.0\npath = "{packed}/grains.csv"\n' + \
+            DISCS[DISCS.index("[collisions]"):].replace("1.0e6", "1.0e8") + "[cell]\nwidth = 0.5\nheight = 0.5\n" + RUN
+        out = self.folder / "out"
+        result = self.run_case(self.write(text), "--out", out, *NO_PICTURE)
+        self.assertGreater(result["cell"]["coordination_number"], 3.5)  # across the sides too
+        self.assertLess(result["cell"]["stress_xx"], -1e3)
+        self.assertLess(result["energy"]["kinetic"], 1e-3 * result["energy"]["elastic"])
+        for wrong, words in ((text.replace("width = 0.5", "width = 0.6"), ("grains.csv:2", "width = 0.5 m", "[cell] has 0.6 m")),
+                             (text.replace("[cell]\nwidth = 0.5\nheight = 0.5\n", ""), ("grains.csv:1", "Add [cell]"))):
+            self.check_error(equidem("run", self.write(wrong)), 2, *words)
+
     def test_what_a_cell_cannot_be_is_refused_with_its_line(self):
         motion, servo = "[cell.motion]\nxy = 1.0\n", "[cell.servo]\nstress_yy = -1.0\nmax_rate = 1.0\n"
         x = CELL.replace("height = 0.1\n", 'periodic = "x"\n')
@@ -96,8 +111,8 @@ class CellTest(RunTest):
                 (CELL + servo.replace("stress_yy = -1.0\n", ""), ("keeps no stress",)),
                 (CELL + servo.replace("max_rate = 1.0\n", ""), ("cell.servo.max_rate",)),
                 (CELL + "[measures]\n", ("measures",)),
-                (CELL + '[[stage]]\nname = "a"\nduration = 1.0\n', ("stages",)),
-                (CELL + "[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", ("bonds in a periodic cell",))):
+                (x.replace("[cell]\n", "[cell]\nshift = 0.01\n") + FLOOR, ("shift = 0.01 m",)),
+                (CELL + '[[stage]]\nname = "a"\nduration = 1.0\n' + motion, ("cell.motion", "outside of the stages"))):
             with self.subTest(text=text):
                 run = RUN.replace("duration = 0.01\n", "") if "stage" in text else RUN
                 self.check_error(equidem("run", self.write(DISCS + text + run)), 2, "case.toml:", *words)

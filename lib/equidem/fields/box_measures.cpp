@@ -21,14 +21,19 @@ void check(const MeasureOptions& options, Body body) {
                  "Write it like [0.1, 0.1, 0.9, 0.5]");
 }
 
-BoxMeasures::BoxMeasures(const GrainScene& scene, MeasureOptions options, const std::optional<Shaking>& shaking)
+Vec2 BoxShaking::displacement(double time) const {
+  if (time < from) return {};
+  return shaking.motion.displacement.at(std::min(time, until) - from) * shaking.direction;
+}
+
+BoxMeasures::BoxMeasures(const GrainScene& scene, MeasureOptions options, std::size_t bodies,
+                         std::vector<BoxShaking> shakings)
     : scene_(scene),
       options_(std::move(options)),
-      shaking_(shaking),
       start_(box_of(scene.walls, scene.grains, 0)),
-      shaken_from_(shaking ? shaking->start() : 0),
       diameter_(equidem::mean_diameter(scene.grains, scene.clumps)),
-      throws_(scene.grains.size()) {
+      throws_(bodies) {
+  set_shakings(std::move(shakings));
   if (options_.cell) static_cast<void>(grid_over(start_.inside, *options_.cell));  // refused before the run
   if (options_.columns > 0) return;
   double largest = 0;
@@ -36,6 +41,11 @@ BoxMeasures::BoxMeasures(const GrainScene& scene, MeasureOptions options, const 
   constexpr double most = 10'000;
   const double fitting = (start_.inside.high.x - start_.inside.low.x) / (4 * largest);
   options_.columns = static_cast<std::size_t>(std::clamp(fitting, 2.0, most));
+}
+
+void BoxMeasures::set_shakings(std::vector<BoxShaking> shakings) {
+  shakings_ = std::move(shakings);
+  shaken_from_ = shakings_.empty() ? 0 : std::ranges::min(shakings_, {}, &BoxShaking::start).start();
 }
 
 SurfaceProfile BoxMeasures::empty_profile() const {
@@ -58,8 +68,9 @@ void BoxMeasures::restore(std::vector<MeasuredMoment> moments, const std::vector
 }
 
 const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const std::vector<Grain>& grains,
-                                          const std::vector<Wall>& walls) {
-  const Vec2 moved = shaking_ ? shaking_->motion.displacement.at(time) * shaking_->direction : Vec2{};
+                                          const std::vector<std::size_t>& numbers, const std::vector<Wall>& walls) {
+  Vec2 moved;
+  for (const BoxShaking& shaking : shakings_) moved += shaking.displacement(time);
   const GrainBox box = box_of(walls, grains, time);
   const std::vector<char> heap = heap_of(grains, options_.thrown_gap * diameter_);
   MeasuredMoment moment;
@@ -86,7 +97,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   for (std::size_t g = 0; g < grains.size(); ++g) {
     if (!heap[g]) {
       ++moment.thrown;
-      if (!throws_[g]) throws_[g] = FirstThrow{step, time};
+      if (auto& thrown = throws_[numbers[g]]; !thrown) thrown = FirstThrow{step, time};
     }
     const Vec2 x = grains[g].position;
     const bool in = x.x >= box.inside.low.x && x.x <= box.inside.high.x && x.y >= box.inside.low.y;
@@ -103,7 +114,9 @@ Sloshing BoxMeasures::sloshing() const {
   const double depth = before().surface.height - start_.inside.low.y, gravity = -scene_.gravity.y;
   if (gravity > 0 && depth > 0 && width > 0) result.theory = sloshing_period(width, depth, gravity);
   // Free motion is preferred to forced motion; two periods of it suffice.
-  const double end = shaking_ ? shaking_->end() : 0, last = moments_.back().time;
+  double end = 0;
+  for (const BoxShaking& shaking : shakings_) end = std::max(end, shaking.end());
+  const double last = moments_.back().time;
   const bool free = !std::isnan(result.theory) && last - end >= 2 * result.theory;
   result.from = free ? end : before().time;
   std::vector<double> times, slopes;

@@ -3,6 +3,7 @@
 /// Histories of bodies in a box while they move: void ratio, surface, bodies thrown, period of the surface.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -60,17 +61,32 @@ struct Sloshing {
   std::string missing = {};         ///< why there is no period
 };
 
+/// A shaking of the box in a part of a run.
+struct BoxShaking {
+  Shaking shaking;                                         ///< its times count from here:
+  double from = 0;                                         ///< s; infinite: not known yet
+  double until = std::numeric_limits<double>::infinity();  ///< s, where the box stops
+
+  [[nodiscard]] double start() const { return from + shaking.start(); }               ///< s
+  [[nodiscard]] double end() const { return std::min(from + shaking.end(), until); }  ///< s
+  [[nodiscard]] Vec2 displacement(double time) const;
+};
+
 class BoxMeasures {
  public:
   /// \param scene bodies at the start, walls and gravity; must outlive this
-  /// \param shaking of the walls of the scene; none: the box stands
+  /// \param bodies number of all that a run has at some time
+  /// \param shakings of the box, one after the other; none: it stands
   /// \throws Error (bad_input) as box_of, and as grid_over where the cells are too small
-  BoxMeasures(const GrainScene& scene, MeasureOptions options, const std::optional<Shaking>& shaking = {});
+  BoxMeasures(const GrainScene& scene, MeasureOptions options, std::size_t bodies,
+              std::vector<BoxShaking> shakings = {});
 
-  /// \param grains in the order of the scene
+  /// \param shakings as before, with the times that are known now
+  void set_shakings(std::vector<BoxShaking> shakings);
+  /// \param grains that are there; \param numbers of each in the run
   /// \param walls at their places (GrainSimulation::placed_walls)
   const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains,
-                               const std::vector<Wall>& walls);
+                               const std::vector<std::size_t>& numbers, const std::vector<Wall>& walls);
   /// Continue the history of an earlier run.
   /// \param moments at least one
   /// \param profiles of the surface at the moments
@@ -82,12 +98,12 @@ class BoxMeasures {
   /// The first column and its width at the start, heights unknown.
   [[nodiscard]] SurfaceProfile empty_profile() const;
   [[nodiscard]] const std::vector<MeasuredMoment>& moments() const { return moments_; }
-  /// The last moment before the shaking begins; without shaking the first. There is at least one.
+  /// The last moment before the first shaking begins; without shaking the first. There is at least one.
   [[nodiscard]] const MeasuredMoment& before() const;
   [[nodiscard]] const SurfaceProfile& surface_before() const { return before_; }
   [[nodiscard]] const SurfaceProfile& surface() const { return last_; }  ///< of the last moment
   [[nodiscard]] const std::vector<std::optional<FirstThrow>>& throws() const { return throws_; }  ///< of each body
-  /// Over the free motion after the shaking where it lasts two periods of theory, else from before() on.
+  /// Over the free motion after the last shaking where it lasts two periods of theory, else from before() on.
   [[nodiscard]] Sloshing sloshing() const;
   /// Fields over the inside of the box, below the surface where there is no lid; options().cell must be given.
   [[nodiscard]] CoarseFields fields(const GrainSimulation& simulation) const;
@@ -95,7 +111,7 @@ class BoxMeasures {
  private:
   const GrainScene& scene_;
   MeasureOptions options_;
-  std::optional<Shaking> shaking_;
+  std::vector<BoxShaking> shakings_;
   GrainBox start_;  ///< the box at t = 0
   double shaken_from_ = 0;
   double diameter_ = 0;

@@ -47,9 +47,6 @@ void begin_loads_of_walls(GrainSystem& system) {
 
 }  // namespace
 
-GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options)
-    : GrainSimulation(scene, options, std::vector<std::size_t>()) {}
-
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
                                  const std::vector<std::size_t>& order)
     : AnySimulation(BodyFamily::colliding, options.time_step), implementation_(hidden<Implementation>()) {
@@ -118,7 +115,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
       load = {.impulse = -2 * load.step_impulse,
               .step_impulse = 2 * load.step_impulse,
               .step_angular = 2 * load.step_angular};
-    if (system.cell.deforms) begin_cell_stress(system);
+    if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
   self.effects = effects_of(scene, options);
   self.potential_at_start = self.potential();
@@ -154,9 +151,9 @@ void GrainSimulation::Implementation::step_by_euler() {
 }
 
 void GrainSimulation::Implementation::step_by_verlet() {
-  count_opening_kick(system);
   const bool deforms = system.cell.deforms;
   if (deforms) steer_cell(system);
+  count_opening_kick(system);
   (deforms ? drift_in_cell : drift_of_verlet)(system);
   update_candidates();
   start_next_step();
@@ -186,6 +183,7 @@ void GrainSimulation::Implementation::start_next_step() {
   if (!system.walls.servos.empty()) steer_walls(system);
   place_walls(system);
   turn_axes(system);
+  if (system.meets_images()) turn_images(system);
   cover_joints(system);
 }
 
@@ -295,17 +293,29 @@ std::vector<GrainContact> GrainSimulation::contacts() const {
 }
 
 std::vector<BodyContact> GrainSimulation::body_contacts() const {
+  const GrainSystem& system = implementation_->system;
+  const auto shift_of = [&](const GrainContact& c) {
+    if (!system.cell.active || c.j < 0) return Vec2{};
+    const auto place = [&](std::int32_t grain) {
+      return system.bodies
+          .motions[static_cast<std::size_t>(system.bodies.place_of_grain[static_cast<std::size_t>(grain)])]
+          .position;
+    };
+    const Vec2 apart = place(c.j) - place(c.i);
+    return system.cell.now.shift(image_inside(system.cell.now, {}, apart));
+  };
   std::vector<BodyContact> result;
   for (const GrainContact& c : contacts()) {
     const Vec2 on_j = c.normal_force * c.normal + c.tangential_force * perpendicular(c.normal);
     result.push_back({.i = c.i,
                       .j = c.j,
                       .arm = c.arm_i,
+                      .shift = shift_of(c),
                       .force = -on_j,
                       .normal_force = c.normal_force,
                       .tangential_force = c.tangential_force});
   }
-  const std::vector<BodyContact> bonds = contacts_of_bonds(implementation_->system);
+  const std::vector<BodyContact> bonds = contacts_of_bonds(system);
   result.insert(result.end(), bonds.begin(), bonds.end());
   return result;
 }
@@ -350,6 +360,21 @@ std::vector<Wall> GrainSimulation::placed_walls() const {
     walls[system.walls.wall_of[w]] = std::move(wall);
   }
   return walls;
+}
+
+std::optional<PeriodicCell> GrainSimulation::placed_cell() const {
+  const GrainSystem& system = implementation_->system;
+  std::optional<PeriodicCell> cell = system.scene.cell;
+  if (!cell) return cell;
+  cell->width = system.cell.now.a.x;
+  cell->height = system.cell.now.b.y;
+  cell->shift = system.cell.now.b.x;
+  cell->corner = system.cell.centre - 0.5 * Vec2{cell->width, cell->height};
+  return cell;
+}
+
+const std::vector<std::size_t>& GrainSimulation::order() const {
+  return implementation_->system.bodies.grain_of;
 }
 
 std::vector<ServoReport> GrainSimulation::servos() const {

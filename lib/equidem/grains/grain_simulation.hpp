@@ -56,25 +56,27 @@ struct BondReport {
   double step_limit = 0;       ///< largest time step that the bonds allow, s; infinite: no limit
 };
 
+/// The numbers of bodies and bonds of a scene in another one; -1: they are new.
+struct SceneOrigins {
+  std::vector<std::int32_t> bodies, bonds;
+};
+
 struct BondBreak;
 
 class GrainSimulation final : public AnySimulation {
  public:
   /// Determines the effects and chooses the loop. Bodies and walls are sorted by position internally, so results do not
   /// depend on the caller's order.
+  /// \param order in which the loops take the bodies, as order(); empty: by position
   /// \throws Error as check(scene, options)
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options);
+  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order = {});
 
-  /// A simulation of the bodies of another one in a changed scene, for take_over() or restore().
-  /// \param scene its bodies are those of `before`, places and motions are not read; its bonds begin with those of
-  ///        `before`, and have their rest
-  /// \param places, velocities of the bodies
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const GrainSimulation& before,
-                  const std::vector<DiscMotion>& places, const std::vector<DiscMotion>& velocities);
-  /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with walls that are no
-  /// longer there end, and those of discs that are bonded now; the control of servo walls that both have goes on, and
-  /// their errors are counted anew.
-  void take_over(const GrainSimulation& before);
+  /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with bodies and walls that
+  /// are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin as at the start
+  /// of a simulation; the control of servo walls that both have goes on, and their errors are counted anew.
+  /// \param origins of the bodies and bonds of this scene in that of `before`; order() keeps the order of those that
+  ///        both have, and new ones follow
+  void take_over(const GrainSimulation& before, const SceneOrigins& origins);
 
   [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres
@@ -91,6 +93,10 @@ class GrainSimulation final : public AnySimulation {
   [[nodiscard]] std::optional<CellState> cell() const override;
   /// The walls at their present places, without motion, in the caller's order.
   [[nodiscard]] std::vector<Wall> placed_walls() const;
+  /// The periodic cell of the scene with its present periods, if there is one.
+  [[nodiscard]] std::optional<PeriodicCell> placed_cell() const;
+  /// Numbers of the bodies in the order of the loops.
+  [[nodiscard]] const std::vector<std::size_t>& order() const;
   /// One for each servo wall, in the caller's order.
   [[nodiscard]] std::vector<ServoReport> servos() const;
   [[nodiscard]] double bytes_per_body() const override;
@@ -115,8 +121,6 @@ class GrainSimulation final : public AnySimulation {
   void stop_all();
 
  private:
-  /// \param order caller's number of the k-th body; empty: by place
-  GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order);
   void go_back_to(const SavedState& state);
 
   struct Implementation;

@@ -9,13 +9,11 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/saved_contact.hpp"
 
 namespace equidem {
 namespace {
 
-/// The state of a contact as numbers: i, j, steps, mode, then the other members; for parts also their indices and arms.
-constexpr std::size_t numbers_per_plain_contact = 13;
-constexpr std::size_t numbers_per_pair_of_parts = 6;
 constexpr std::size_t numbers_per_image = 2;
 constexpr std::size_t numbers_per_impulse = 3;
 constexpr std::size_t numbers_per_bond = 3;
@@ -32,11 +30,6 @@ constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evalu
                                                            &GrainCounters::doubtful};
 static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
 
-std::size_t numbers_per_contact_of(const GrainSystem& system) {
-  return numbers_per_plain_contact + (system.shapes.parts.empty() ? 0 : numbers_per_pair_of_parts) +
-         (system.cell.active ? numbers_per_image : 0);
-}
-
 void append(std::vector<double>& numbers, const PartPair& pair) {
   for (const double number : {static_cast<double>(pair.i), static_cast<double>(pair.j), pair.arm_i.x, pair.arm_i.y,
                               pair.arm_j.x, pair.arm_j.y}) {
@@ -47,13 +40,6 @@ void append(std::vector<double>& numbers, const PartPair& pair) {
 void append(std::vector<double>& numbers, const PeriodicImage& image) {
   numbers.push_back(image.a);
   numbers.push_back(image.b);
-}
-
-PartPair parts_of_discs(const GrainSystem& system, const Candidate& candidate) {
-  PartPair pair;
-  pair.i = system.shapes.first_part[static_cast<std::size_t>(candidate.i)];
-  pair.j = system.shapes.first_part[static_cast<std::size_t>(candidate.j)];
-  return pair;
 }
 
 PartPair pair_of(const double* numbers) {
@@ -82,18 +68,19 @@ void append(std::vector<double>& numbers, const Candidate& candidate) {
 }
 
 void take(const double* numbers, Candidate& candidate) {
-  candidate.i = static_cast<std::int32_t>(numbers[0]);
-  candidate.j = static_cast<std::int32_t>(numbers[1]);
-  candidate.steps = static_cast<std::int64_t>(numbers[2]);
-  candidate.mode = static_cast<int>(numbers[3]);
-  candidate.stretch = numbers[4];
-  candidate.overlap = numbers[5];
-  candidate.closing = numbers[6];
-  candidate.normal = {numbers[7], numbers[8]};
-  candidate.impulse = numbers[9];
-  candidate.moment = numbers[10];
-  candidate.tangential_impulse = numbers[11];
-  candidate.parted = numbers[12] != 0;
+  using At = ContactColumns;
+  candidate.i = static_cast<std::int32_t>(numbers[At::i]);
+  candidate.j = static_cast<std::int32_t>(numbers[At::j]);
+  candidate.steps = static_cast<std::int64_t>(numbers[At::steps]);
+  candidate.mode = static_cast<int>(numbers[At::mode]);
+  candidate.stretch = numbers[At::stretch];
+  candidate.overlap = numbers[At::overlap];
+  candidate.closing = numbers[At::closing];
+  candidate.normal = {numbers[At::normal], numbers[At::normal + 1]};
+  candidate.impulse = numbers[At::impulse];
+  candidate.moment = numbers[At::moment];
+  candidate.tangential_impulse = numbers[At::tangential_impulse];
+  candidate.parted = numbers[At::parted] != 0;
   candidate.touching = true;
 }
 
@@ -102,23 +89,24 @@ void take(const double* numbers, Candidate& candidate) {
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
   std::vector<double> contacts, losses, counts, impulses, bonds, walls, servos;
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      Candidate candidate = candidate_of(system, block, p);
-      const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
-      candidate.j = image.body;
-      append(contacts, candidate);
-      if (system.cell.active) append(contacts, image);
-      if (!system.shapes.parts.empty()) append(contacts, parts_of_discs(system, candidate));
-    }
-  }
+  const auto append_imaged = [&](Candidate candidate, PartPair pair) {
+    const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
+    candidate.j = image.body;
+    append(contacts, candidate);
+    if (system.cell.active) append(contacts, image);
+    if (system.shapes.parts.empty()) return;
+    pair.j = system.own_part(pair.j);
+    append(contacts, pair);
+  };
+  for (const PairBlock& block : system.contacts.near.blocks)
+    for (std::size_t p = 0; p < block.count; ++p)
+      if (block.touching(p))
+        append_imaged(candidate_of(system, block, p), parts_of_discs(system, block.first(p), block.second(p)));
   each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
       const auto [candidate, pair] = candidate_of(system, list, p);
-      append(contacts, candidate);
-      append(contacts, pair);
+      append_imaged(candidate, pair);
     }
   });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
@@ -147,7 +135,7 @@ SavedState GrainSimulation::save() const {
   SavedState state{.step = system.step,
                    .arrays = {{"motions", 3, numbers_of(motions())},
                               {"velocities", 3, numbers_of(velocities())},
-                              {"contacts", numbers_per_contact_of(system), std::move(contacts)},
+                              {"contacts", ContactColumns(system).count, std::move(contacts)},
                               {"impulses", numbers_per_impulse, std::move(impulses)},
                               {"bonds", numbers_per_bond, std::move(bonds)},
                               {"losses", 1, std::move(losses)},
@@ -189,7 +177,7 @@ void GrainSimulation::restore(const SavedState& state) {
 
 void GrainSimulation::go_back_to(const SavedState& state) {
   GrainSystem& system = implementation_->system;
-  const std::size_t numbers_per_contact = numbers_per_contact_of(system);
+  const ContactColumns columns(system);
   const bool shapes = !system.shapes.parts.empty();
   const std::size_t impulses =
       implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
@@ -204,9 +192,8 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % numbers_per_contact != 0 || state["impulses"].size() != impulses ||
-      state["bonds"].size() != bonds || losses.size() != energy_terms(BodyFamily::colliding).size() ||
-      counts.size() != std::size(counters_saved) ||
+      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses || state["bonds"].size() != bonds ||
+      losses.size() != energy_terms(BodyFamily::colliding).size() || counts.size() != std::size(counters_saved) ||
       state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
       state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {
     bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
@@ -249,46 +236,46 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     for (const auto number : servo_saved) servo.*number = *servo_number++;
   system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
+  find_images_of_bonds(system);
   place_walls(system);
   turn_axes(system);
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
   system.contacts.part_pairs.clear();
   std::vector<Candidate> near;
-  std::vector<std::pair<Candidate, PeriodicImage>> imaged;
+  std::vector<ImagedContact> imaged;
   std::vector<std::pair<Candidate, PartPair>> near_parts;
   std::vector<const double*> others;
-  for (std::size_t at = 0; at < contacts.size(); at += numbers_per_contact) {
+  for (std::size_t at = 0; at < contacts.size(); at += columns.count) {
     Candidate contact;
     take(contacts.data() + at, contact);
     const double* numbers = contacts.data() + at;
-    if (contact.j >= 0 && are_discs(system, contact.i, contact.j) && system.contacts.near.active) {
-      if (system.cell.active) {
-        imaged.emplace_back(contact, image_of(numbers + numbers_per_plain_contact, contact.j));
-      } else {
-        near.push_back(contact);
-      }
-    } else if (contact.j >= 0 && !are_discs(system, contact.i, contact.j) && system.contacts.near_parts.active) {
-      near_parts.emplace_back(contact, pair_of(numbers + numbers_per_plain_contact));
+    const bool discs = contact.j >= 0 && are_discs(system, contact.i, contact.j);
+    const bool listed = contact.j >= 0 && (discs ? system.contacts.near.active : system.contacts.near_parts.active);
+    if (listed && system.cell.active) {
+      imaged.push_back({contact, shapes ? pair_of(numbers + columns.part) : PartPair{},
+                        image_of(numbers + columns.image, contact.j)});
+    } else if (listed && discs) {
+      near.push_back(contact);
+    } else if (listed) {
+      near_parts.emplace_back(contact, pair_of(numbers + columns.part));
     } else {
       others.push_back(numbers);
     }
   }
-  if (system.contacts.near.active) {
-    load_pair_bodies(system);
-    if (system.cell.active) {
-      list_contacts(system, imaged);
-    } else {
-      take_near_pairs(system, near);
-    }
+  if (system.contacts.near.active) load_pair_bodies(system);
+  if (system.meets_images()) {
+    list_contacts(system, imaged);
+  } else {
+    if (system.contacts.near.active) take_near_pairs(system, near);
+    if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   }
-  if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
   find_candidates(system);
   std::size_t c = 0;
   for (const double* contact : others) {
     const auto i = static_cast<std::int32_t>(contact[0]);
     const auto j = static_cast<std::int32_t>(contact[1]);
-    const double* numbers = contact + numbers_per_plain_contact;
+    const double* numbers = contact + columns.part;
     const auto is_it = [&] {
       if (system.contacts.candidates[c].i != i || system.contacts.candidates[c].j != j) return false;
       return !shapes || is_of(numbers, system.contacts.part_pairs[c]);

@@ -61,6 +61,14 @@ struct Candidate {
   Sliding sliding;       // constant
 };
 
+/// A contact of two bodies of a periodic cell, i < j, with their parts where there are shapes, and the image of j that
+/// i meets.
+struct ImagedContact {
+  Candidate contact;
+  PartPair parts;
+  PeriodicImage image;
+};
+
 /// Displacement and velocity of a wall in the present step.
 struct WallPlace {
   Vec2 displacement;
@@ -94,6 +102,8 @@ struct ServoState {
   double errors = 0, steps = 0;              ///< sum of |F - W| over largest_wanted, number of its steps
   double touched = 0, reached = 0;           ///< 0 or 1
   double side = 0;                           ///< 1, -1: the force began above or below the wanted one; 0: not known yet
+
+  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
 };
 
 /// The bodies sorted by position.
@@ -113,10 +123,11 @@ struct GrainBodies {
   std::vector<std::int32_t> place_of_grain;  ///< its inverse
 };
 
-/// Ellipses and clumps; all empty in scenes of discs alone.
+/// Ellipses and clumps; all empty in scenes of discs alone. In a periodic cell the images follow as bodies of their own
+/// (periodic_images.hpp).
 struct Shapes {
   std::vector<GrainPart> parts;          ///< parts of body k: first_part[k] .. first_part[k + 1] - 1
-  std::vector<std::int32_t> first_part;  ///< bodies + 1 entries
+  std::vector<std::int32_t> first_part;  ///< an entry more than there are bodies
   std::vector<std::int32_t> body_of_part;
   std::vector<std::int32_t> shaped;  ///< bodies that are not discs
   std::vector<Vec2> axes;            ///< present x-axis of each body
@@ -181,7 +192,7 @@ struct GrainSystem {
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
-    const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(candidate.j)].kind
+    const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(body_of(candidate.j))].kind
                                        : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
     return scene.between(bodies.constants[static_cast<std::size_t>(candidate.i)].kind, other);
   }
@@ -194,6 +205,16 @@ struct GrainSystem {
   }
   /// The body of a partner in a near pair: itself, or that of which it is an image.
   [[nodiscard]] std::int32_t body_of(std::int32_t j) const { return is_image(j) ? image(j).body : j; }
+  /// The part that a part of an image stands for; itself otherwise.
+  [[nodiscard]] std::int32_t own_part(std::int32_t part) const {
+    const std::int32_t holder = shapes.body_of_part[static_cast<std::size_t>(part)];
+    return part + shapes.first_part[static_cast<std::size_t>(body_of(holder))] -
+           shapes.first_part[static_cast<std::size_t>(holder)];
+  }
+  /// Whether bodies meet images of others.
+  [[nodiscard]] bool meets_images() const {
+    return cell.active && (contacts.near.active || contacts.near_parts.active);
+  }
   /// Place of a body or an image at the start of the step.
   [[nodiscard]] Vec2 position_of(std::int32_t j) const {
     const Vec2 own = bodies.motions[static_cast<std::size_t>(body_of(j))].position;

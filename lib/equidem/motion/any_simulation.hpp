@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,6 +19,14 @@
 #include "equidem/motion/wall.hpp"
 
 namespace equidem {
+
+/// Stands for the motion of a body that is not there.
+inline constexpr DiscMotion not_there{
+    {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()},
+    std::numeric_limits<double>::quiet_NaN()};
+constexpr bool is_there(const DiscMotion& motion) {
+  return motion.u.x == motion.u.x;
+}
 
 /// Simulation (bonded discs) and GrainSimulation (colliding bodies). Bodies are in the caller's order.
 class AnySimulation {
@@ -35,8 +44,10 @@ class AnySimulation {
   [[nodiscard]] virtual std::int64_t milestone() const { return -1; }
   /// Whether there is nothing left to step.
   [[nodiscard]] virtual bool over() const { return false; }
+  [[nodiscard]] double time_step() const { return time_step_; }                           ///< s
   [[nodiscard]] double time() const { return static_cast<double>(step()) * time_step_; }  ///< s
-  /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad.
+  /// Displacements and rotations of bonded discs, positions and angles of colliding bodies; m, rad. Their number does
+  /// not change: bodies that a run adds or removes are not_there before or after.
   [[nodiscard]] virtual std::vector<DiscMotion> motions() const = 0;
   [[nodiscard]] virtual std::vector<DiscMotion> velocities() const = 0;  ///< m/s, rad/s
   /// Contacts with their forces. Bonded discs: all bonds, then walls that push; forces of springs at motions(), without

@@ -180,7 +180,7 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   if (guess) add_mean_field(out, *guess, wanted);
   if (const auto density = disc_density(resolved, problem.assembly); density && k.kT >= 0)
     add_motion(out, problem, *density, wanted);
-  out.append(engine_springs_results(problem.assembly, problem.springs.springs, k));
+  out.append(engine_springs_results(problem.assembly, problem.springs.springs, k, problem.resolved.bending.bond_width));
   const Lattice* lattice = resolved.assembly.arrangement;
   if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)
     add_operator(out, wanted, *lattice->restrained);

@@ -25,7 +25,8 @@ Results engine_row(const std::string& engine, const std::string& normal, const s
 
 }  // namespace
 
-Results engine_springs_results(const Assembly& assembly, const ContactSprings& springs, const SpringConstants& k) {
+Results engine_springs_results(const Assembly& assembly, const ContactSprings& springs, const SpringConstants& k,
+                               std::optional<double> bond_width) {
   Results out;
   if (!springs.uniform() || k.kT < 0) {
     out.line("other programs", k.kT < 0 ? "kT < 0: they have no such springs"
@@ -35,7 +36,12 @@ Results engine_springs_results(const Assembly& assembly, const ContactSprings& s
   const auto [least, most] = std::ranges::minmax(assembly.radii);
   const double force = engine_depth;  // N/m of a spring of 1 Pa
   const YadeMaterial small = yade_material(k, least), large = yade_material(k, most);
-  const SpringConstants of_small = pfc_parallel_bond(k, least, least), of_large = pfc_parallel_bond(k, most, most);
+  const bool bends = springs.bends() && bond_width.value_or(0) > 0;
+  const double width = bends ? *bond_width : 1;  // of the bonds, over the diameter of the smaller disc
+  const SpringConstants per_area{k.kN / width, k.kT / width};
+  const SpringConstants of_small = pfc_parallel_bond(per_area, least, least),
+                        of_large = pfc_parallel_bond(per_area, most, most);
+  const std::string left_out = bends ? "; without the bending springs" : "";
   const auto pair = [&](const char* normal, const char* tangential) {
     return std::pair(fmt::format("{} = {:.9g}", normal, force * k.kN),
                      fmt::format("{} = {:.9g}", tangential, force * k.kT));
@@ -46,21 +52,26 @@ Results engine_springs_results(const Assembly& assembly, const ContactSprings& s
   const bool alike = least == most;
   std::vector<Results> rows;
   rows.push_back(engine_row("LAMMPS bond_coeff, bpm/rotational", k_r, k_s, "N/m",
-                            "k_t = k_b = 0; contact points in the middle of the branch"));
-  rows.push_back(engine_row("LAMMPS gran/hooke/history", kn, kt, "N/m", "contacts that may open"));
+                            "k_t = k_b = 0; contact points in the middle of the branch" + left_out));
+  rows.push_back(engine_row("LAMMPS gran/hooke/history", kn, kt, "N/m", "contacts that may open" + left_out));
   rows.push_back(engine_row("YADE CohFrictMat, FrictMat",
                             fmt::format("young = {}", range_text(large.young, small.young)),
                             fmt::format("poisson = {:.9g}", small.poisson), "Pa, 1",
-                            alike ? "of both bodies"
-                                  : fmt::format("young = {:.9g}/r of each body of radius r (m): one material for each "
-                                                "radius",
-                                                force * k.kN)));
-  rows.push_back(engine_row("PFC linear, linearcbond", pfc_kn, pfc_ks, "N/m", "per bond"));
+                            (alike ? "of both bodies"
+                                   : fmt::format("young = {:.9g}/r of each body of radius r (m): one material for each "
+                                                 "radius",
+                                                 force * k.kN)) +
+                                left_out));
+  rows.push_back(engine_row("PFC linear, linearcbond", pfc_kn, pfc_ks, "N/m", "per bond" + left_out));
   rows.push_back(engine_row(
       "PFC linearpbond", fmt::format("pb_kn = {}", range_text(of_large.kN, of_small.kN)),
       fmt::format("pb_ks = {}", range_text(of_large.kT, of_small.kT)), "Pa/m",
-      fmt::format("per area of bond{}; it also resists bending, which these springs do not",
-                  alike ? "" : fmt::format(", kN/(2 r) and kT/(2 r) with the smaller radius r of each pair"))));
+      fmt::format(
+          "per area of bond{}{}",
+          alike ? ""
+                : fmt::format(", kN/({0:.6g} r) and kT/({0:.6g} r) with the smaller radius r of each pair", 2 * width),
+          bends ? fmt::format("; pb_rmul = {:.6g}: it resists bending as these do", width)
+                : "; it also resists bending, which these springs do not")));
   out.table("", rows);
   out.set("engines/depth", engine_depth);
   out.set("engines/lammps/k_r", force * k.kN).set("engines/lammps/k_s", force * k.kT);
@@ -70,6 +81,7 @@ Results engine_springs_results(const Assembly& assembly, const ContactSprings& s
   out.set("engines/pfc/kn", force * k.kN).set("engines/pfc/ks", force * k.kT);
   out.set("engines/pfc/pb_kn", std::vector<double>{of_large.kN, of_small.kN});
   out.set("engines/pfc/pb_ks", std::vector<double>{of_large.kT, of_small.kT});
+  if (bends) out.set("engines/pfc/pb_rmul", width);
   out.set("engines/radii", std::vector<double>{most, least});
   return out;
 }

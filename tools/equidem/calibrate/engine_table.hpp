@@ -3,6 +3,8 @@
 /// Calibrated springs as a table of the parameters of other programs.
 #pragma once
 
+#include <optional>
+
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/output/results.hpp"
@@ -11,6 +13,8 @@ namespace equidem {
 
 /// LAMMPS, YADE and PFC, with units, depth and what does not hold. Without a table where springs differ from contact to
 /// contact or kT is negative.
-Results engine_springs_results(const Assembly& assembly, const ContactSprings& springs, const SpringConstants& k);
+/// \param bond_width as BendingOptions, of springs that bend
+Results engine_springs_results(const Assembly& assembly, const ContactSprings& springs, const SpringConstants& k,
+                               std::optional<double> bond_width);
 
 }  // namespace equidem

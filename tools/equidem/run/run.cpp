@@ -9,10 +9,12 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 
 #include "command.hpp"
 #include "run/run_accuracy.hpp"
 #include "run/run_bonded.hpp"
+#include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
 #include "run/run_grains.hpp"
 #include "run/run_results.hpp"
@@ -24,6 +26,7 @@ namespace {
 struct RunVerb {
   CommonOptions common;
   bool resume = false;
+  std::optional<std::filesystem::path> begin_from;
   std::optional<double> accuracy;
 };
 
@@ -114,6 +117,11 @@ void check_options(const RunVerb& options, bool collide) {
   if (options.accuracy && options.resume)
     bad_input("--resume and --accuracy exclude each other", "the step is that of the checkpoint",
               "Leave one of them out");
+  if (options.begin_from && options.resume)
+    bad_input("--begin-from and --resume exclude each other", "a run begins once", "Leave one of them out");
+  if (options.begin_from && !collide)
+    bad_input("--begin-from of bonded discs", "only runs of grains are in stages, with a checkpoint at the end of each",
+              "Leave it out; --resume goes on with a longer duration");
   if (common.seed && collide) bad_input("--seed", "nothing in a case of grains is random", "Leave it out");
 }
 
@@ -121,7 +129,7 @@ int run(const RunVerb& options) {
   const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
   if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
-  const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume);
+  const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume, options.begin_from);
   check_outputs(options, *job);
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
@@ -136,10 +144,16 @@ int run(const RunVerb& options) {
 
 }  // namespace
 
-std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume) {
+std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
+                                     const std::optional<std::filesystem::path>& begin_from) {
   prepare(options);
-  if (describes_grains(casefile::read_document(options.case_file, options.set)))
-    return std::make_unique<GrainRun>(read_grain_case(options.case_file, options.set));
+  if (describes_grains(casefile::read_document(options.case_file, options.set))) {
+    GrainCase resolved = read_grain_case(options.case_file, options.set);
+    if (!begin_from) return std::make_unique<GrainRun>(std::move(resolved));
+    auto job = std::make_unique<GrainRun>(std::move(resolved), step_of_stages(*begin_from));
+    job->begin_from(*begin_from);
+    return job;
+  }
   Case resolved = read_case(options);
   const bool continues = resume && resolved.run && resolved.run->duration;
   return std::make_unique<BondedRun>(
@@ -150,6 +164,11 @@ Run declare_run(CLI::App& command) {
   const auto options = std::make_shared<RunVerb>();
   add_common_options(command, options->common);
   command.add_flag("--resume", options->resume, "go on from the checkpoint in --out");
+  command
+      .add_option("--begin-from", options->begin_from,
+                  "grains in stages: begin with the state in a checkpoint of another run, run.STAGE.checkpoint.h5, "
+                  "with which the case agrees until the end of that stage")
+      ->type_name("FILE");
   add_accuracy_option(command, options->accuracy,
                       "bonded discs: the step that tells the displacements at the end to X");
   command.footer(

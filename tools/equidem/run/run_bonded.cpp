@@ -27,7 +27,7 @@ namespace equidem {
 namespace {
 
 /// Line of the fingerprint: "# step 1e-06 s, rule lanczos".
-constexpr std::string_view step_line = "\n# step ", step_rule = " s, rule ";
+constexpr std::string_view step_rule = " s, rule ";
 
 Case with_run(Case resolved) {
   if (!resolved.run) {
@@ -161,17 +161,8 @@ std::vector<ContactForce> forces_of(const Scene& scene, LoopKind::Motion motion,
 
 KeptStep kept_step(const std::filesystem::path& checkpoint) {
   const std::string text = case_of_checkpoint(checkpoint);
-  KeptStep kept;
-  const std::size_t at = text.rfind(step_line);
-  if (at != std::string::npos) {
-    const char* begin = text.data() + at + step_line.size();
-    const auto [end, failed] = std::from_chars(begin, text.data() + text.size(), kept.step);
-    const std::string_view rest(end, text.data() + text.size());
-    if (failed == std::errc() && rest.starts_with(step_rule)) {
-      kept.rule = rest.substr(step_rule.size(), rest.find('\n') - step_rule.size());
-      return kept;
-    }
-  }
+  if (const auto found = step_in(text); found && found->rest.starts_with(step_rule))
+    return {found->step, std::string(found->rest.substr(step_rule.size()))};
   bad_input(fmt::format("cannot go on from '{}'", checkpoint.string()), "its case does not name the time step",
             "Start the run afresh");
 }

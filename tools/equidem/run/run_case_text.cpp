@@ -2,6 +2,8 @@
 #include "run/run_case_text.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -14,7 +16,22 @@ void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names)
 }
 
 void add(Checksum& sum, const Schedule& schedule) {
+  for (const double number :
+       {static_cast<double>(schedule.kind), schedule.value, schedule.start, schedule.end, schedule.frequency})
+    sum.add(number);
   for (const auto* numbers : {&schedule.times, &schedule.values, &schedule.rates}) sum.add(*numbers);
+}
+
+std::optional<StepInText> step_in(std::string_view text) {
+  const std::size_t at = text.rfind(step_line);
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + step_line.size());
+  StepInText found;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), found.step);
+  if (failed != std::errc()) return {};
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  found.rest = text.substr(0, text.find('\n'));
+  return found;
 }
 
 MissedEvent check_event(const Schedule& schedule, double step, double duration, const std::string& where) {

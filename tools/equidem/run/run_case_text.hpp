@@ -4,6 +4,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,15 @@ namespace equidem {
 
 void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names);
 void add(Checksum& sum, const Schedule& schedule);
+
+/// Begins the line of a case text that names the time step, in s.
+inline constexpr std::string_view step_line = "\n# step ";
+struct StepInText {
+  double step = 0;        ///< s
+  std::string_view rest;  ///< of its line
+};
+/// The step that a case text names.
+std::optional<StepInText> step_in(std::string_view text);
 
 /// \param where the user wrote the schedule
 /// \return the event of the schedule that steps miss the most of

@@ -71,9 +71,10 @@ void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<
     }
     shown.walls = frame.walls;
   }
+  const std::vector<Grain> bodies = resolved.bodies();
   add_player({.title = resolved.title,
               .caption = "The line in a body shows how it turns",
-              .shapes = resolved.scene.grains,
+              .shapes = bodies,
               .clumps = resolved.scene.clumps,
               .groups = colours,
               .walls = walls},

@@ -10,6 +10,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/grain_frames.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
@@ -17,6 +18,7 @@
 #include "run/break_files.hpp"
 #include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
+#include "run/run_grains_text.hpp"
 #include "run/run_results.hpp"
 
 namespace equidem {
@@ -25,63 +27,32 @@ namespace {
 constexpr std::int64_t energy_samples = 200,
                        samples_of_few = 1000;  // of the energies, the latter where paths are drawn
 
-/// Tells whether files that a case names are still what they were.
-std::string checksum_of(const GrainCase& resolved) {
-  Checksum sum;
-  for (std::size_t g = 0; g < resolved.scene.grains.size(); ++g) {
-    const Grain& grain = resolved.scene.grains[g];
-    for (const double value : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
-                               grain.spin, grain.angle, resolved.densities[g], static_cast<double>(grain.kind),
-                               grain.short_half_axis, static_cast<double>(grain.clump)})
-      sum.add(value);
-  }
-  for (const GrainBond& bond : resolved.scene.bonds)
-    for (const double value :
-         {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
-          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring, bond.bending_spring})
-      sum.add(value);
-  if (const auto& strengths = resolved.scene.strengths)
-    for (std::size_t b = 0; b < strengths->tension.size(); ++b)
-      sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
-  for (const Clump& clump : resolved.scene.clumps)
-    for (const Clump::Disc& disc : clump.discs)
-      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
-  const auto add_walls = [&](const std::vector<Wall>& walls) {
-    for (const Wall& wall : walls) {
-      add(sum, wall.move_x), add(sum, wall.move_y);
-      if (wall.servo) add(sum, wall.servo->wanted);
-    }
-  };
-  add_walls(resolved.scene.walls);
-  if (const auto& cell = resolved.scene.cell) {
-    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy}) add(sum, *rate);
-    if (cell->servo)
-      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
-        if (*stress) add(sum, **stress);
-  }
-  for (const StageCase& stage : resolved.stages) add_walls(stage.scene.walls);
-  return sum.text();
-}
-
 void check_events(const GrainCase& resolved, double step) {
   const auto length_of = [&](const StageCase& stage) {
     return stage.duration ? *stage.duration : static_cast<double>(*stage.steps) * step;
   };
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    for (const Wall& wall : resolved.stages[k].scene.walls)
-      for (const Schedule* motion : {&wall.move_x, &wall.move_y})
-        check_event(*motion, step, length_of(resolved.stages[k]), resolved.where(fmt::format("stage.{}", k)));
-  if (const auto& cell = resolved.scene.cell) {
-    for (const Schedule* rate : {&cell->rate_xx, &cell->rate_yy, &cell->rate_xy})
-      check_event(*rate, step, resolved.duration, resolved.where("cell.motion"));
-    if (cell->servo)
-      for (const auto* stress : {&cell->servo->stress_xx, &cell->servo->stress_yy})
-        if (*stress) check_event(**stress, step, resolved.duration, resolved.where("cell.servo"));
+  const auto check_all = [&](const GrainScene& scene, double length, const auto& place_of_wall,
+                             const std::string& place_of_cell) {
+    for (std::size_t w = 0; w < scene.walls.size(); ++w)
+      for (const Schedule* motion : {&scene.walls[w].move_x, &scene.walls[w].move_y})
+        check_event(*motion, step, length, place_of_wall(w));
+    if (!scene.cell) return;
+    for (const Schedule* rate : {&scene.cell->rate_xx, &scene.cell->rate_yy, &scene.cell->rate_xy})
+      check_event(*rate, step, length, resolved.where(place_of_cell + ".motion"));
+    if (scene.cell->servo)
+      for (const auto* stress : {&scene.cell->servo->stress_xx, &scene.cell->servo->stress_yy})
+        if (*stress) check_event(**stress, step, length, resolved.where(place_of_cell + ".servo"));
+  };
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const std::string place = fmt::format("stage.{}", k);
+    check_all(
+        resolved.stages[k].scene, length_of(resolved.stages[k]), [&](std::size_t) { return resolved.where(place); },
+        place + ".cell");
   }
   if (!resolved.stages.empty()) return;
-  for (std::size_t k = 0; k < resolved.scene.walls.size(); ++k)
-    for (const Schedule* motion : {&resolved.scene.walls[k].move_x, &resolved.scene.walls[k].move_y})
-      check_event(*motion, step, resolved.duration, resolved.where(fmt::format("wall.{}.schedule", k)));
+  check_all(
+      resolved.scene, resolved.duration,
+      [&](std::size_t wall) { return resolved.where(fmt::format("wall.{}.schedule", wall)); }, "cell");
 }
 
 StagedSimulation simulation_of(const GrainCase& resolved, double step) {
@@ -93,13 +64,22 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   } catch (const Error& error) {
     throw error.at(resolved.where("collisions"));
   }
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    casefile::with_place(resolved.where(fmt::format("stage.{}", k)),
-                         [&] { check_servos(resolved.stages[k].scene, options.law); });
-  for (std::size_t k = 0; k < resolved.stages.size(); ++k)
-    if (const auto& bonds = resolved.stages[k].bonds)
-      casefile::with_place(resolved.where(fmt::format("stage.{}.bonds", k)),
-                           [&] { check(*bonds, scene.grains, options); });
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const StageCase& stage = resolved.stages[k];
+    const std::string place = fmt::format("stage.{}", k);
+    casefile::with_place(resolved.where(place), [&] { check_servos(stage.scene, options.law); });
+    if (k > 0 && stage.scene.cell)
+      casefile::with_place(resolved.where(place + ".cell"), [&] { check_cell(stage.scene, options); });
+    if (!stage.bodies.added.empty()) {
+      GrainScene added = stage.scene;  // among themselves: where the others will be is not known yet
+      added.grains = stage.bodies.added;
+      added.pairs = pairs_at(stage.contacts, options.law, step);
+      added.walls.clear();
+      casefile::with_place(resolved.where(place), [&] { check(added, options); });
+    }
+    if (stage.bonds)
+      casefile::with_place(resolved.where(place + ".bonds"), [&] { check(*stage.bonds, scene.grains, options); });
+  }
   return {build_grain_stages(resolved, step), options};
 }
 
@@ -116,20 +96,6 @@ std::vector<Wall> all_walls(const GrainCase& resolved) {
     for (const Wall& wall : stage.scene.walls)
       if (std::ranges::find(walls, wall.name, &Wall::name) == walls.end()) walls.push_back(wall);
   return walls;
-}
-
-/// Strengths of the bonds that have not broken, in their order. \param strengths null: none
-ContactStrengths strengths_left(const ContactStrengths* strengths, std::span<const BondBreak> breaks) {
-  ContactStrengths left;
-  if (strengths == nullptr) return left;
-  std::vector<char> broken(strengths->tension.size(), 0);
-  for (const BondBreak& event : breaks) broken[event.bond] = 1;
-  for (std::size_t b = 0; b < broken.size(); ++b) {
-    if (broken[b] != 0) continue;
-    left.tension.push_back(strengths->tension[b]);
-    left.shear.push_back(strengths->shear[b]);
-  }
-  return left;
 }
 
 /// Possible error of kinetic and potential energy by the rounding of positions.
@@ -177,11 +143,49 @@ void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simul
   }
 }
 
+/// \param kept of the checkpoint with which the run begins: an automatic step gives way to it
+GrainTimeStep step_of(const GrainCase& resolved, const std::optional<double>& kept) {
+  const GrainTimeStep chosen = choose_grain_step(resolved);
+  if (!kept || !chosen.automatic) return chosen;
+  if (*kept > chosen.step * (1 + 1e-9))
+    bad_input_at(resolved.where("run"),
+                 fmt::format("the checkpoint has steps of {:.6g} s, and this case needs {:.6g} s", *kept, chosen.step),
+                 "a run keeps its step through all stages",
+                 fmt::format("Run the stages before with time_step = {:.6g}, or give time_step = {:.6g} here to go on "
+                             "with the longer one",
+                             chosen.step, *kept));
+  GrainCase with_step = resolved;
+  with_step.step.time_step = *kept;
+  with_step.step.steps_per_contact.reset();
+  GrainTimeStep step = choose_grain_step(with_step);
+  step.automatic = true;
+  return step;
+}
+
+bool bodies_come_and_go(const GrainCase& resolved) {
+  return std::ranges::any_of(resolved.stages, [](const StageCase& stage) {
+    return !stage.bodies.removed.empty() || !stage.bodies.added.empty();
+  });
+}
+
+[[noreturn]] void refuse_beginning(const std::filesystem::path& checkpoint, const std::string& why,
+                                   const std::string& remedy) {
+  bad_input(fmt::format("cannot begin from '{}'", checkpoint.string()), why, remedy);
+}
+
 }  // namespace
 
-GrainRun::GrainRun(GrainCase resolved)
+double step_of_stages(const std::filesystem::path& checkpoint) {
+  const std::string text = case_of_checkpoint(checkpoint);
+  const auto found = step_in(text);
+  if (found && stages_in(text) > 0) return found->step;
+  refuse_beginning(checkpoint, "it is of no run in stages",
+                   "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
+}
+
+GrainRun::GrainRun(GrainCase resolved, const std::optional<double>& kept_step)
     : case_(std::move(resolved)),
-      step_(choose_grain_step(case_)),
+      step_(step_of(case_, kept_step)),
       steps_(count_all_steps(case_, step_.step)),
       walls_(all_walls(case_)),
       simulation_(simulation_of(case_, step_.step)) {
@@ -192,7 +196,7 @@ GrainRun::GrainRun(GrainCase resolved)
   frames_.moments =
       std::ranges::any_of(case_.scene.bonds, bends) ||
       std::ranges::any_of(case_.stages, [&](const StageCase& s) { return s.bonds && bends(s.bonds->like); });
-  frame_discs_ = discs_of_frames(case_.scene.grains, case_.scene.clumps, frames_);
+  frame_discs_ = discs_of_frames(case_.bodies(), case_.scene.clumps, bodies_come_and_go(case_), frames_);
 }
 
 std::vector<std::string> GrainRun::files() const {
@@ -205,11 +209,34 @@ std::vector<std::string> GrainRun::files() const {
   return names;
 }
 
+void GrainRun::begin_from(const std::filesystem::path& path) {
+  const std::string there = case_of_checkpoint(path);
+  const SavedState state = read_checkpoint(path, there).state;
+  const std::size_t begun = StagedSimulation::stages_begun(state);
+  const auto refuse = [&](const std::string& why, const std::string& remedy) { refuse_beginning(path, why, remedy); };
+  if (case_.stages.empty() || stages_in(there) < begun)
+    refuse("this case is not in stages", "Give it the stages of that run, and what is to follow");
+  if (begun > case_.stages.size())
+    refuse(fmt::format("{} have begun in it, and this case has {}", counted(static_cast<long long>(begun), "stage"),
+                       case_.stages.size()),
+           "Give this case those stages, and what is to follow");
+  const std::string& last = case_.stages[begun - 1].name;
+  const std::string before = until_stage(there, begun), here = until_stage(case_text_of(case_, step_.step), begun);
+  if (before != here)
+    refuse(fmt::format("until the end of the stage '{}' its case is another one: {}", last,
+                       first_differences(before, here)),
+           "Change later stages only, or run all of this case");
+  simulation_.restore(state);
+  if (simulation_.over())
+    refuse(fmt::format("the stage '{}' is over, and this case has no other", last), "Add the stages that follow");
+  begun_from_ = path.string();
+}
+
 RunPlan GrainRun::plan() {
-  const bool draws_paths = case_.scene.grains.size() <= most_drawn_paths;
+  const bool draws_paths = case_.bodies().size() <= most_drawn_paths;
   return {.steps = steps_,
           .time_step = step_.step,
-          .case_text = fingerprint(),
+          .case_text = case_text_of(case_, step_.step),
           .frame_interval = case_.output.frame_interval,
           .probe_interval = case_.output.probe_interval,
           .checkpoint_interval = case_.output.checkpoint_interval,
@@ -231,15 +258,14 @@ RunPlan GrainRun::plan() {
           .step_place = case_.where("run.time_step")};
 }
 
-std::string GrainRun::fingerprint() const {
-  TomlValue known = case_.document;
-  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
-  if (TomlValue* stages = known.find("stage"))
-    for (TomlValue& stage : stages->items)
-      if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
-  erase_keys(known, {"title", "output", "probe", "measures"});
-  return to_toml(std::move(known), {}) + fmt::format("\n# step {} s\n# checksum of grains and schedules {}\n",
-                                                     toml_number(step_.step), checksum_of(case_));
+const ContactTable& GrainRun::present_contacts() const {
+  return case_.stages.empty() ? case_.contacts : case_.stages[simulation_.reports().size() - 1].contacts;
+}
+
+/// The same in all stages: the first kind of the group. Kinds of one group may differ by radius.
+int GrainRun::colour_of(const std::string& group) const {
+  const std::vector<std::string>& kinds = (case_.stages.empty() ? case_.contacts : case_.stages.back().contacts).kinds;
+  return static_cast<int>(std::ranges::find(kinds, group) - kinds.begin());
 }
 
 void GrainRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
@@ -257,39 +283,51 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
   const GrainCase& resolved = case_;
   const std::vector<Grain> grains = simulation_.present().grains();
   const std::vector<Wall> walls = simulation_.present().placed_walls();
+  const std::vector<std::size_t>& numbers = simulation_.numbers();
+  const std::vector<std::string>& kinds = present_contacts().kinds;
   std::vector<std::string> groups;
+  std::vector<double> densities;
   std::vector<int> colours;
-  for (const Grain& grain : grains) {
-    groups.push_back(resolved.contacts.kinds[static_cast<std::size_t>(grain.kind)]);
-    // Kinds of one group may differ by radius: the first of them lends its colour.
-    colours.push_back(
-        static_cast<int>(std::find(resolved.contacts.kinds.begin(), resolved.contacts.kinds.end(), groups.back()) -
-                         resolved.contacts.kinds.begin()));
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    groups.push_back(kinds[static_cast<std::size_t>(grains[k].kind)]);
+    densities.push_back(resolved.densities[numbers[k]]);
+    colours.push_back(colour_of(groups.back()));
   }
   if (resolved.output.csv) {
-    write_grain_csv(folder / "grains.csv", {grains, resolved.scene.clumps, groups, resolved.densities}, overwrite);
+    const std::span<const std::size_t> told = bodies_come_and_go(resolved) ? numbers : std::span<const std::size_t>();
+    write_grain_csv(
+        folder / "grains.csv",
+        {.grains = grains, .clumps = resolved.scene.clumps, .groups = groups, .densities = densities, .numbers = told},
+        overwrite);
     write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
   }
-  const std::vector<BondBreak> breaks = simulation_.present().breaks();
-  const std::vector<GrainBond> bonds = bonds_left(simulation_.bonds(), breaks);
+  const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
   if (resolved.output.csv && !simulation_.bonds().empty())
-    write_bond_csv(folder / "bonds.csv", bonds, simulation_.present().bond_drifts(),
-                   strengths_left(simulation_.strengths(), breaks), overwrite);
+    write_bond_csv(folder / "bonds.csv", holding.bonds, simulation_.present().bond_drifts(), holding.strengths,
+                   overwrite);
+  const std::vector<BondBreak> breaks = simulation_.breaks();
   write_breaks(folder, resolved, {simulation_.bonds(), breaks}, step_.step, overwrite);
   if (resolved.output.picture) {
+    std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
+    for (const std::vector<Vec2>& places : result.record.paths) {
+      std::vector<Vec2>& shown = paths.emplace_back();
+      for (const std::size_t number : numbers) shown.push_back(places[number]);
+    }
     write_grain_picture(folder, "picture",
                         {.title = resolved.title,
                          .time = simulation_.time(),
                          .grains = grains,
                          .clumps = resolved.scene.clumps,
                          .groups = colours,
-                         .bonds = bonds,
+                         .bonds = holding.bonds,
                          .walls = walls,
-                         .paths = result.record.paths},
+                         .paths = paths},
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
-    add_film(resolved, walls_, colours, result.record.film);
+    std::vector<int> first_colours;
+    for (const std::string& group : resolved.groups) first_colours.push_back(colour_of(group));
+    add_film(resolved, walls_, first_colours, result.record.film);
   }
   write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);

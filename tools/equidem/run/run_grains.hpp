@@ -13,12 +13,22 @@
 
 namespace equidem {
 
+/// The step of the run in stages that a checkpoint is of, s.
+/// \throws Error (bad_input) as case_of_checkpoint; a checkpoint of another run
+double step_of_stages(const std::filesystem::path& checkpoint);
+
 class GrainRun final : public RunJob {
  public:
-  /// \throws Error (bad_input) as GrainSimulation does, with its place in the case
-  explicit GrainRun(GrainCase resolved);
+  /// \param kept_step s, of a checkpoint: an automatic step is that one
+  /// \throws Error (bad_input) as GrainSimulation does, with its place in the case; a kept step that is too long
+  explicit GrainRun(GrainCase resolved, const std::optional<double>& kept_step = {});
   GrainRun(const GrainRun&) = delete;  // measures refer to case and simulation
   GrainRun& operator=(const GrainRun&) = delete;
+
+  /// Begin with the state of a checkpoint of another run, with which this case agrees until then.
+  /// \throws Error (bad_input) as read_checkpoint; a run that is not in stages, a case that is another one until then, or
+  ///         has nothing to follow
+  void begin_from(const std::filesystem::path& path);
 
   [[nodiscard]] AnySimulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
@@ -31,9 +41,9 @@ class GrainRun final : public RunJob {
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
 
  private:
-  /// The case text in a checkpoint: all data that affect the motion, including files that it names, without how long it
-  /// lasts and what is written.
-  [[nodiscard]] std::string fingerprint() const;
+  /// Of the present stage.
+  [[nodiscard]] const ContactTable& present_contacts() const;
+  [[nodiscard]] int colour_of(const std::string& group) const;
 
   GrainCase case_;
   GrainTimeStep step_;
@@ -43,6 +53,7 @@ class GrainRun final : public RunJob {
   std::optional<GrainMeasures> measures_;
   FrameOptions frames_;
   Assembly frame_discs_;
+  std::string begun_from_;  ///< checkpoint of another run; empty: none
 };
 
 }  // namespace equidem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/run_grains_measures.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -54,9 +55,26 @@ std::vector<std::vector<double>> rows_of(const std::filesystem::path& folder, co
   return rows;
 }
 
+/// The shakings of a case, with the times of those that have begun.
+std::vector<BoxShaking> shakings_of(const GrainCase& resolved, const StagedSimulation* simulation) {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  if (resolved.shaking) return {{.shaking = *resolved.shaking}};
+  std::vector<BoxShaking> shakings;
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    if (!resolved.stages[k].shaking) continue;
+    BoxShaking& shaking = shakings.emplace_back(BoxShaking{.shaking = *resolved.stages[k].shaking, .from = unknown});
+    if (simulation == nullptr || k >= simulation->reports().size()) continue;
+    const StageReport& report = simulation->reports()[k];
+    const double step = simulation->time_step();
+    shaking.from = static_cast<double>(report.first) * step;
+    if (report.over) shaking.until = static_cast<double>(report.last) * step;
+  }
+  return shakings;
+}
+
 BoxMeasures measures_of(const GrainCase& resolved) {
   try {
-    return {resolved.scene, *resolved.measures, resolved.shaking};
+    return {resolved.scene, *resolved.measures, resolved.groups.size(), shakings_of(resolved, nullptr)};
   } catch (const Error& error) {
     throw error.at(resolved.where(resolved.measures->cell ? "measures.cell" : "measures"));
   }
@@ -106,12 +124,15 @@ void GrainMeasures::go_on(const Checkpoint& from) {
     profiles.push_back(measures_.empty_profile());
     profiles.back().heights = {row.begin() + 2, row.end()};
   }
+  measures_.set_shakings(shakings_of(resolved_, &simulation_));
   measures_.restore(std::move(moments), profiles, std::move(throws));
 }
 
 void GrainMeasures::record(std::int64_t step, double time, bool regular) {
+  measures_.set_shakings(shakings_of(resolved_, &simulation_));
+  const GrainSimulation& present = simulation_.present();
   const MeasuredMoment& moment =
-      measures_.record(step, time, simulation_.present().grains(), simulation_.present().placed_walls());
+      measures_.record(step, time, present.grains(), simulation_.numbers(), present.placed_walls());
   if (!table_) return;
   table_->add(step, cells_of(moment), regular);
   std::vector<double> cells{time};

@@ -50,7 +50,10 @@ Results GrainMeasures::results() const {
   const MeasuredMoment& after = measures_.moments().back();
   Results out;
   out.set("mean_diameter", measures_.mean_diameter());
-  if (resolved_.shaking) {
+  const bool shakes = resolved_.shaking || std::ranges::any_of(resolved_.stages, [](const StageCase& stage) {
+                        return stage.shaking.has_value();
+                      });
+  if (shakes) {
     out.line("measured", "before, at ")
         .add("time/before", "t =", before.time, "s", {.digits = 4})
         .note(", and after, at ")

@@ -12,6 +12,7 @@
 
 #include "run/break_files.hpp"
 #include "run/run_grains.hpp"
+#include "run/run_grains_stages_results.hpp"
 #include "run/run_results.hpp"
 
 namespace equidem {
@@ -58,6 +59,8 @@ void add_bodies(Results& out, const GrainCase& resolved) {
   }
   out.add("", ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest), "m")
       .add("", "", mass, resolved.body == Body::disc ? "kg per m of depth in all" : "kg in all");
+  if (const std::size_t later = resolved.groups.size() - resolved.scene.grains.size(); later > 0)
+    out.line("").add("added_in_stages", "stages add", later, "more", {Shown::count});
   if (clumps > 0) {
     const auto [fewest, most] =
         std::ranges::minmax(resolved.scene.clumps, {}, [](const Clump& clump) { return clump.discs.size(); });
@@ -187,36 +190,6 @@ void add_drifts(Results& out, const BondReport& bonds) {
   out.note(" rad");
 }
 
-void add_shaking(Results& out, const Shaking& shaking) {
-  const GroundMotion& motion = shaking.motion;
-  Results lines;
-  lines.line("shaking")
-      .add("peak_acceleration", "", motion.peak_acceleration, "m/s²", {.digits = 4})
-      .note(fmt::format(" ({:.4g} gal) at most along ({:.4g}, {:.4g})", motion.peak_acceleration / gal,
-                        shaking.direction.x, shaking.direction.y));
-  if (shaking.recorded) {
-    lines.note(fmt::format(", a record of {} points from {:.4g} s to {:.4g} s", motion.displacement.times.size(),
-                           motion.displacement.times.front(), motion.displacement.times.back()));
-  } else {
-    lines.note(fmt::format(", {} Hz, {} from {:.4g} s to {:.4g} s", shaking.frequency,
-                           counted(static_cast<long long>(shaking.cycles), "cycle"), motion.displacement.start,
-                           motion.displacement.end));
-  }
-  lines.line("")
-      .add("peak_velocity", "at most", motion.peak_velocity, "m/s", {.digits = 4})
-      .add("peak_displacement", "", motion.peak_displacement, "m", {.digits = 4});
-  if (shaking.recorded && motion.correction > 0) {
-    lines.line("", fmt::format("baseline: up to {:.3g} of that acceleration taken away",
-                               motion.correction / motion.peak_acceleration));
-  }
-  if (motion.final_displacement != 0 && std::abs(motion.final_displacement) > 1e-9 * motion.peak_displacement)
-    lines.line("", fmt::format("the box ends {:.4g} m from where it began", motion.final_displacement));
-  lines.set("direction", shaking.direction)
-      .set("final_displacement", motion.final_displacement)
-      .set("baseline_correction", motion.correction);
-  out.append(lines.under("shaking"));
-}
-
 /// Likely cause of a large error of the balance, and the remedy.
 std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& simulation,
                               const EnergyLedger& ledger) {
@@ -246,7 +219,9 @@ Results GrainRun::scene() const {
   add_effects(out, simulation_.effects());
   add_law(out, case_);
   add_pairs(out, case_);
-  if (case_.shaking) add_shaking(out, *case_.shaking);
+  if (case_.shaking) out.append(shaking_results(*case_.shaking).under("shaking"));
+  for (const StageCase& stage : case_.stages)
+    if (stage.shaking) out.line("shaking", fmt::format("in the stage '{}': {}", stage.name, describe(*stage.shaking)));
   add_bonds(out, case_, step_);
   return out;
 }
@@ -256,6 +231,10 @@ Results GrainRun::step() const {
   Results out;
   out.line("time step").add("time_step", "", step_.step, "s").note(step_.automatic ? ", automatic" : "");
   out.set("time_step_automatic", step_.automatic);
+  if (!begun_from_.empty()) {
+    const StageReport& stage = simulation_.reports().back();
+    out.line("begun with").add("begun_from", "the state in", begun_from_).note(fmt::format(", stage '{}'", stage.name));
+  }
   if (step_.contact > 0) {
     out.line("")
         .add("contact_duration", "the shortest contact lasts", step_.contact, "s", {.digits = 4})
@@ -284,66 +263,11 @@ Results GrainRun::step() const {
                  limited ? ResultValue(step_.step * step_.limit / step_.omega_step) : ResultValue(nullptr));
 }
 
-namespace {
-
-/// stages: a list with name, start, end, steps, end_reason, effects.
-void add_stages(Results& out, const std::vector<StageReport>& stages, double step) {
-  std::vector<Results> rows;
-  for (const StageReport& stage : stages) {
-    const char* reason = stage.ended ? "met its end" : stage.over ? "duration" : "not over";
-    std::vector<std::string> active;
-    for (const Effects::Entry& entry : stage.effects.entries)
-      if (entry.active) active.push_back(entry.name);
-    Results& row = rows.emplace_back();
-    row.add("name", "stage", stage.name)
-        .add("start", "from, s", static_cast<double>(stage.first) * step)
-        .add("end", "to, s", static_cast<double>(stage.last) * step)
-        .add("steps", "steps", stage.last - stage.first)
-        .add("ended_by", "ended by", reason)
-        .set("effects", active);
-    if (stage.kinetic > 0 || stage.unbalanced > 0)
-      row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
-    if (stage.bonds_made > 0) row.set("bonds_made", stage.bonds_made);
-    if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
-    if (stage.displacement > 0)
-      row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
-  }
-  out.line("stages", "what changes the energies of the scene between them is in the ledger:");
-  out.table("stages", std::move(rows));
-}
-
-/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error, and stage where there are some.
-/// \param present of the last stage
-void add_servos(Results& out, const std::vector<StageReport>& stages, const std::vector<ServoReport>& present,
-                bool in_stages, Body body) {
-  const char* force = body == Body::disc ? "N/m" : "N";
-  std::vector<Results> rows;
-  const auto add = [&](const std::string& stage, const ServoReport& servo) {
-    Results& row = rows.emplace_back();
-    if (in_stages) row.add("stage", "stage", stage);
-    row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
-        .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
-        .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
-        .set("reached", servo.reached);
-    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
-    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
-    row.add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
-        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
-  };
-  for (const StageReport& stage : stages)
-    for (const ServoReport& servo : &stage == &stages.back() ? present : stage.servos) add(stage.name, servo);
-  if (rows.empty()) return;
-  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in its stage:");
-  out.table("servos", std::move(rows));
-}
-
-}  // namespace
-
 Results GrainRun::events() const {
   const GrainCounters& counters = simulation_.present().counters();
   Results out = measures_ ? measures_->results() : Results();
-  if (!case_.stages.empty()) add_stages(out, simulation_.reports(), step_.step);
-  add_servos(out, simulation_.reports(), simulation_.present().servos(), !case_.stages.empty(), case_.body);
+  if (!case_.stages.empty()) out.append(stage_results(case_, simulation_.reports(), step_.step));
+  out.append(servo_results(case_, simulation_.reports(), simulation_.present().servos()));
   if (const auto cell = simulation_.cell()) out.append(cell_results(*cell));
   out.line("collisions")
       .add("contacts", "", counters.contacts, "contact", {Shown::count})
@@ -352,7 +276,7 @@ Results GrainRun::events() const {
       .add("evaluations", "", counters.evaluations, "evaluation", {Shown::count})
       .note(" of the law");
   if (const auto contacts = simulation_.present().contacts(); !contacts.empty()) {
-    const auto& grains = case_.scene.grains;
+    const std::vector<Grain> grains = simulation_.present().grains();
     double largest = 0;
     for (const GrainContact& contact : contacts) {
       const auto radius = [&](std::int32_t body) { return grains[static_cast<std::size_t>(body)].radius; };
@@ -365,7 +289,7 @@ Results GrainRun::events() const {
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
   add_drifts(out, simulation_.present().bonds());
-  const std::vector<BondBreak> breaks = simulation_.present().breaks();
+  const std::vector<BondBreak> breaks = simulation_.breaks();
   add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,9 @@ class RunJob {
 
 /// The run of a case of bonded discs or of bodies that collide.
 /// \param resume whether an automatic time step is that of the checkpoint in --out
-/// \throws Error (bad_input) as the readers of the cases and the constructors of the runs
-std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume);
+/// \param begin_from checkpoint with whose state a run of grains begins
+/// \throws Error (bad_input) as the readers of the cases, the constructors of the runs, and GrainRun::begin_from
+std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
+                                     const std::optional<std::filesystem::path>& begin_from = {});
 
 }  // namespace equidem

@@ -243,6 +243,14 @@ void read_table(const std::vector<Key<S>>& keys, TomlValue table, S& into) {
     if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, {});
 }
 
+/// Likewise; paths of the table, relative to a folder, become those that the program opens.
+template <class S>
+void read_table_in_place(const std::vector<Key<S>>& keys, TomlValue& table, const std::filesystem::path& folder,
+                         S& into) {
+  for (const Key<S>& key : keys)
+    if (TomlValue* value = table.find(key.spec.name); value != nullptr && key.read) key.read(into, *value, folder);
+}
+
 template <class T>
 struct ItemOf {
   using type = T;
@@ -317,6 +325,8 @@ class File<F>::Binder {
   void described(const std::vector<Key<S>>& keys) {
     for (const Key<S>& key : keys) describe(key.spec);
   }
+  /// A table that holds other tables alone.
+  void holds_tables() { file_.spec_.tables.push_back(spec_); }
 
   void keys(const std::vector<Key<Item>>& keys) {
     if constexpr (is_vector<T>) {

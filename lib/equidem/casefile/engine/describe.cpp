@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/core/text.hpp"
 
@@ -84,6 +86,7 @@ std::string describe_table(const FileSpec& spec, const TableSpec& table) {
 }
 
 std::string markdown_keys(const FileSpec& spec, std::string_view table) {
+  if (std::ranges::none_of(spec.keys, [&](const KeySpec& key) { return key.table == table; })) return {};
   std::string out = "\n| key | value | default | meaning |\n|---|---|---|---|\n";
   for (const KeySpec& key : spec.keys)
     if (key.table == table)

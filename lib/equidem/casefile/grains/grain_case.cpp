@@ -15,23 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace casefile;
 
-/// Names by which pairs are chosen mean one thing each.
-void check_names_of_kinds(const TomlValue& root, const std::vector<std::string>& groups) {
-  constexpr const char* reserved = "walls";
-  for (const TomlValue& wall : repeated(root, "wall")) {
-    const TomlValue& name = *wall.find("name");
-    if (name.text == reserved)
-      fail_at(name, "wall.name", "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
-    if (std::find(groups.begin(), groups.end(), name.text) != groups.end())
-      fail_at(name, "wall.name", fmt::format("a wall and a group of grains are both called '{}'", name.text),
-              "[[collisions.pair]] chooses them by name", "Rename one of them");
-  }
-  for (const TomlValue& grain : repeated(root, "grain"))
-    if (grain.find("group")->text == reserved)
-      fail_at(*grain.find("group"), "grain.group", "a group of grains is called 'walls'",
-              "the name stands for all walls", "Name it otherwise");
-}
-
 void check_stress(const TomlValue& table, const GrainTables& tables, const Probe& probe) {
   if (!has_stress(probe)) return;
   const auto refuse = [&](const char* what, const char* why, const char* advice) {
@@ -58,7 +41,8 @@ void choose_bodies(const TomlValue& table, const std::vector<std::string>& group
   if (!probe.bodies.empty()) return;
   const auto meant = nearest(probe.group, groups);
   fail_at(*group, "probe.group", fmt::format("there are no grains of the group {}", group->shown()), "",
-          meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name a group of [[grain]]");
+          meant ? fmt::format("Did you mean \"{}\"?", *meant)
+                : "Name a group that grains have where the run, or a stage that adds them, begins");
 }
 
 void check_ellipse_contact(const TomlValue& collisions, const GrainScene& scene) {
@@ -120,6 +104,12 @@ bool describes_grains(const TomlValue& root) {
   return false;
 }
 
+std::vector<Grain> GrainCase::bodies() const {
+  std::vector<Grain> all = scene.grains;
+  for (const StageCase& stage : stages) all.insert(all.end(), stage.bodies.added.begin(), stage.bodies.added.end());
+  return all;
+}
+
 std::string GrainCase::where_grain(std::size_t grain) const {
   if (grain < grain_lines.size()) return fmt::format("{}:{}", grain_file, grain_lines[grain]);
   return fmt::format("{}: grain", repeated(document, "grain")[grain - grain_lines.size()].where());
@@ -132,18 +122,19 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   GrainTables tables = grain_file().read(root, folder);
   tables.common.density = one_density(
       root, {{"grains", tables.common.density}, {"springs", tables.springs ? tables.springs->density : std::nullopt}});
-  const std::vector<std::string> groups = complete_bodies(root, tables);
+  GrainShapes shapes(tables.body);
+  tables.groups = complete_bodies(root, shapes, tables);
   complete_bonds(root, tables);
-  check_names_of_kinds(root, groups);
+  check_names_of_walls(root, "wall", tables.groups);
   const auto schedules = read_schedules(root, tables.schedule_tables);
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   complete_cell(root, schedules, tables);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
-  const std::vector<Wall> all_walls = read_stages(root, schedules, tables);
+  const std::vector<Wall> all_walls = read_stages(root, folder, schedules, tables);
   if (tables.stages.empty()) {
-    complete_collisions(root, groups, tables);
+    complete_collisions(root, tables.groups, tables);
   } else {
-    complete_stages(root, groups, all_walls, tables);
+    complete_stages(root, folder, tables.groups, all_walls, shapes, tables);
   }
   check_stresses(root, tables);
   complete_run(*root.find("run"), tables);
@@ -152,7 +143,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   check_probes(root);
   for (std::size_t k = 0; k < tables.probes.size(); ++k) {
     const TomlValue& table = repeated(root, "probe")[k];
-    choose_bodies(table, groups, tables.probes[k]);
+    choose_bodies(table, tables.groups, tables.probes[k]);
     check_stress(table, tables, tables.probes[k]);
   }
   tables.document = std::move(root);
@@ -166,8 +157,10 @@ GrainCase read_grain_case(const fs::path& path, std::span<const std::string> ove
 GrainTimeStep choose_grain_step(const GrainCase& resolved) {
   try {
     GrainTimeStep chosen = choose_time_step(resolved.scene, resolved.contacts, resolved.options, resolved.step);
+    GrainOptions options = resolved.options;
+    options.reference_length = reference_length(resolved.scene, options);
     for (const StageCase& stage : resolved.stages) {
-      const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, resolved.options, resolved.step);
+      const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, options, resolved.step);
       if (other.step < chosen.step) chosen = other;
       if (!stage.bonds) continue;
       const double limit = likely_step_limit(stage.scene.grains, *stage.bonds, resolved.options.bond_step);
@@ -194,13 +187,16 @@ std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double ste
   std::vector<GrainStage> stages;
   if (resolved.stages.empty())
     stages.push_back({.name = "run", .scene = build_grain_scene(resolved, step), .steps = count_steps(resolved, step)});
-  for (const StageCase& stage : resolved.stages) {
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    const StageCase& stage = resolved.stages[k];
     GrainStage& made =
         stages.emplace_back(GrainStage{.name = stage.name,
                                        .scene = stage.scene,
                                        .steps = stage.steps ? *stage.steps : count_steps(*stage.duration, step),
                                        .end = stage.end,
-                                       .bonds = stage.bonds});
+                                       .bodies = stage.bodies,
+                                       .bonds = stage.bonds,
+                                       .place = repeated(resolved.document, "stage")[k].where()});
     made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);
   }
   return stages;

@@ -27,19 +27,23 @@ struct StageCase {
   std::optional<double> duration;     ///< s; with an end its limit
   std::optional<std::int64_t> steps;  ///< instead
   StageEnd end;
+  StageBodies bodies;
   std::optional<StageBonds> bonds;
-  GrainScene scene;  ///< as GrainStage::scene; `pairs` is not set
+  /// As GrainStage::scene; `pairs` is not set. Its bodies are all that the run may have until then, with every group.
+  GrainScene scene;
   ContactTable contacts;
+  std::optional<Shaking> shaking;  ///< from the start of the stage; also set in the walls
 };
 
 /// A checked case: complete, in range and without contradiction; conditions on all bodies together are checked at the
 /// start of the simulation.
 struct GrainCase : CaseDocument {
   Body body = Body::disc;
-  GrainScene scene;               ///< bodies of the file, then those of the case; `pairs` is not set
-  std::vector<double> densities;  ///< kg/m³, of each grain
-  std::string grain_file;         ///< file of [grains] path; empty: none
-  std::vector<int> grain_lines;   ///< line numbers of the grains in that file
+  GrainScene scene;                 ///< bodies of the file, then those of the case; `pairs` is not set
+  std::vector<std::string> groups;  ///< of all bodies of the run, as it has them first
+  std::vector<double> densities;    ///< kg/m³, likewise
+  std::string grain_file;           ///< file of [grains] path; empty: none
+  std::vector<int> grain_lines;     ///< line numbers of the grains in that file
   ContactTable contacts;
   GrainOptions options;            ///< without its time step
   GrainStepOptions step;           ///< options of its choice
@@ -50,6 +54,8 @@ struct GrainCase : CaseDocument {
   std::vector<Probe> probes;  ///< with the bodies of their groups
   OutputCase output;
 
+  /// All bodies of the run by their numbers: those of the scene, then those that stages add.
+  [[nodiscard]] std::vector<Grain> bodies() const;
   /// Place of a grain in the user's input: "cases/a.toml:12: grain", "cases/grains.csv:3".
   [[nodiscard]] std::string where_grain(std::size_t grain) const;
 };

@@ -7,33 +7,11 @@ namespace equidem::casefile {
 namespace {
 
 void bind_bodies(File<GrainTables>& file) {
-  using C = CommonBodyTable;
   file.table("grains", completed, "properties of all grains")
       .keys({key_in<GrainTables>("body", &GrainCase::body,
                                  "disc: a cylinder, kg and N per metre of depth; sphere: kg and N")});
-  file.table("grains", &GrainTables::common)
-      .keys({key("density", &C::density, unit("kg/m³"), positive, "density of every grain that has none of its own"),
-             key("path", &C::path,
-                 "a CSV file of grains: the columns x, y, radius and, where wanted, short_half_axis (of an ellipse, "
-                 "radius being the long one), discs (of a clump: x y r; x y r), vx, vy, spin, angle, density, group; "
-                 "grains.csv of run and pack can be read back")});
-  using G = GrainTable;
-  file.table("grain", &GrainTables::grain_tables, "one body")
-      .keys({key("position", &G::grain, &Grain::position, required, unit("m"), "place of the mass centre"),
-             key("radius", &G::radius, unit("m"), positive,
-                 or_instead({"half_axes", "discs"},
-                            "a body has one shape: radius is for a disc, half_axes for an ellipse, discs for a clump"),
-                 "radius of a disc or sphere"),
-             key("half_axes", &G::half_axes, unit("m"), positive,
-                 "[a, b] of an ellipse, the long one first: it lies along x at angle 0"),
-             key("discs", &G::discs, optional, unit("m"),
-                 "discs of a clump, tied rigidly, in the frame of the body at angle 0; they may overlap, areas that "
-                 "two share count once; all are shifted so that their mass centre is the origin"),
-             key("velocity", &G::grain, &Grain::velocity, unit("m/s")),
-             key("spin", &G::grain, &Grain::spin, unit("rad/s"), "counter-clockwise"),
-             key("angle", &G::grain, &Grain::angle, unit("rad")),
-             key("density", &G::density, unit("kg/m³"), positive, "instead of that of [grains]"),
-             key("group", &G::group, "for [[collisions.pair]] and [[probe]]")});
+  file.table("grains", &GrainTables::common).keys(common_body_keys());
+  file.table("grain", &GrainTables::grain_tables, "one body").keys(grain_keys());
 }
 
 void bind_run(File<GrainTables>& file) {
@@ -74,6 +52,34 @@ void bind_run(File<GrainTables>& file) {
 }
 
 }  // namespace
+
+std::vector<Key<CommonBodyTable>> common_body_keys() {
+  using C = CommonBodyTable;
+  return {key("density", &C::density, unit("kg/m³"), positive, "density of every grain that has none of its own"),
+          key("path", &C::path,
+              "a CSV file of grains: the columns x, y, radius and, where wanted, short_half_axis (of an ellipse, "
+              "radius being the long one), discs (of a clump: x y r; x y r), vx, vy, spin, angle, density, group; "
+              "grains.csv of run and pack can be read back")};
+}
+
+std::vector<Key<GrainTable>> grain_keys() {
+  using G = GrainTable;
+  return {key("position", &G::grain, &Grain::position, required, unit("m"), "place of the mass centre"),
+          key("radius", &G::radius, unit("m"), positive,
+              or_instead({"half_axes", "discs"},
+                         "a body has one shape: radius is for a disc, half_axes for an ellipse, discs for a clump"),
+              "radius of a disc or sphere"),
+          key("half_axes", &G::half_axes, unit("m"), positive,
+              "[a, b] of an ellipse, the long one first: it lies along x at angle 0"),
+          key("discs", &G::discs, optional, unit("m"),
+              "discs of a clump, tied rigidly, in the frame of the body at angle 0; they may overlap, areas that "
+              "two share count once; all are shifted so that their mass centre is the origin"),
+          key("velocity", &G::grain, &Grain::velocity, unit("m/s")),
+          key("spin", &G::grain, &Grain::spin, unit("rad/s"), "counter-clockwise"),
+          key("angle", &G::grain, &Grain::angle, unit("rad")),
+          key("density", &G::density, unit("kg/m³"), positive, "instead of that of [grains]"),
+          key("group", &G::group, "for [[collisions.pair]] and [[probe]]")};
+}
 
 const File<GrainTables>& grain_file() {
   static const File<GrainTables> file = [] {

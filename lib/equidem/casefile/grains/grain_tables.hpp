@@ -13,6 +13,8 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/casefile/springs_table.hpp"
+#include "equidem/grains/scene/grain_file.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem::casefile {
 
@@ -88,6 +90,7 @@ void bind_collisions(File<GrainTables>& file);
 void bind_bonds(File<GrainTables>& file);
 void bind_cell(File<GrainTables>& file);
 void bind_shaking(File<GrainTables>& file);
+void bind_stage_cell(File<GrainTables>& file);
 void bind_stages(File<GrainTables>& file);
 
 /// The keys of a contact that may differ from [collisions].
@@ -95,10 +98,32 @@ std::vector<Key<PairOptions>> changed_contact_keys();
 /// [[collisions.pair]].
 std::vector<Key<PairOptions>> pair_keys();
 
-/// Build the bodies of [grains] and [[grain]].
+/// [grains], without `body`.
+std::vector<Key<CommonBodyTable>> common_body_keys();
+/// [[grain]].
+std::vector<Key<GrainTable>> grain_keys();
+
+/// Stands for all walls where a group and a wall meet.
+inline constexpr const char* name_of_all_walls = "walls";
+/// \throws Error (bad_input) with line and key: a name that is empty, not plain, or that of all walls
+void check_group_name(const TomlValue& group, const std::string& key);
+/// Names by which pairs are chosen mean one thing each.
+/// \param holder the case, or a stage; \param path of its walls
+/// \throws Error (bad_input) with line and key: a wall that is called like a group, or like all walls
+void check_names_of_walls(const TomlValue& holder, const std::string& path, const std::vector<std::string>& groups);
+
+/// Build the bodies of [grains] and [[grain]], or of those of a stage.
+/// \param holder the table that has them; \param prefix of its path: "", "stage."
+/// \param common, read what is read of them
+/// \throws Error (bad_input) with line and key: no density, a file that is not a table of grains
+GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::string& prefix,
+                    const CommonBodyTable& common, const std::vector<GrainTable>& read, GrainShapes& shapes,
+                    const GrainTables& tables);
+
+/// Set the bodies of the case.
 /// \return group of each grain
-/// \throws Error (bad_input) with line and key: no grains, no density, a file that is not a table of grains
-std::vector<std::string> complete_bodies(const TomlValue& root, GrainTables& tables);
+/// \throws Error (bad_input) with line and key as bodies_of; no grains
+std::vector<std::string> complete_bodies(const TomlValue& root, GrainShapes& shapes, GrainTables& tables);
 
 /// Set the kinds of grains and walls, and the contact properties of every two kinds.
 /// \param groups of each grain
@@ -119,23 +144,44 @@ std::vector<Key<StageBonds>> stage_bond_keys();
 StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage);
 
 /// Set the periodic cell of the scene.
-/// \throws Error (bad_input) with line and key: a height that is missing, stages, [measures], spheres in a cell along x
-///         and y, a deformation of one that repeats along x alone, a schedule that is not there
+/// \throws Error (bad_input) with line and key: a height that is missing, [measures], spheres in a cell along x and y, a
+///         deformation of one that repeats along x alone, a schedule that is not there, or that counts from the start
+///         of the run beside stages
 void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
+
+/// The cell of a stage, from that of the stage before: rates end with their stage; a component keeps its stress unless
+/// the stage gives it a rate or another stress.
+/// \throws Error (bad_input) with line and key as complete_cell; a stage that deforms a cell that is not there
+std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
+                                          std::optional<PeriodicCell> cell);
+
+/// [stage.shaking].
+std::vector<Key<ShakingTable>> shaking_keys();
+/// The shaking of a table.
+/// \param path of the table; \param[in,out] table a record becomes the path that the program opens
+/// \param duration of the run or of the stage, s; none: not known in seconds
+/// \throws Error (bad_input) with line and key: a duration of no whole cycles, a record that is no table
+Shaking read_shaking(const TomlValue& table, const std::string& path, const ShakingTable& given,
+                     std::optional<double> duration);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls
 /// \return the walls of all stages, one of each name
+/// \param[in,out] root records of [stage.shaking] become the paths that the program opens
 /// \throws Error (bad_input) with line and key: a motion of walls outside of the stages, a wall that is not there or
 ///         needed by the servo of another, an end that names no wall
-std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
+std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& folder,
+                              std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// Bodies and contacts of the stages.
+/// \param[in,out] root paths in its stages become those that the program opens
+/// \param[in,out] groups of the bodies of the case; then of those of the run
 /// \param all walls of all stages
 /// \param tables with stages and bodies
-/// \throws Error (bad_input) as complete_collisions
-void complete_stages(TomlValue root, const std::vector<std::string>& groups, const std::vector<Wall>& all,
-                     GrainTables& tables);
+/// \throws Error (bad_input) as complete_collisions; with line and key: bodies as complete_bodies, a choice of bodies
+///         that is empty or names no group
+void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::vector<std::string>& groups,
+                     const std::vector<Wall>& all, GrainShapes& shapes, GrainTables& tables);
 
 /// Apply [shaking] to the walls, except those with shaken = false.
 /// \param tables with walls and with [shaking]

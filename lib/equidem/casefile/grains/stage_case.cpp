@@ -3,10 +3,11 @@
 /// [[stage]]: a run in stages.
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
-#include "equidem/casefile/grains/grain_tables.hpp"
+#include "equidem/casefile/grains/stage_bodies_case.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -16,6 +17,7 @@ namespace {
 struct UntilTable {
   std::optional<double> kinetic, unbalanced, strain, displacement;
   std::optional<std::string> from, to, wall;
+  std::optional<StageEnd::CellStrain> component;
 };
 
 /// [[stage.wall]]: a wall of another motion, or a new one.
@@ -27,12 +29,14 @@ struct StageWallTable {
 
 std::vector<Key<UntilTable>> until_keys() {
   using U = UntilTable;
-  const std::string way = "walls are named whose distance is measured";
+  const std::string way = "it is that of the distance of two walls, or of the cell";
   return {key("kinetic", &U::kinetic, positive, "at rest: the kinetic energy is at most this share of the elastic one"),
           key("unbalanced", &U::unbalanced, positive,
               "at rest: the mean unbalanced force of a body is at most this share of the mean contact force"),
-          key("strain", &U::strain, positive, only_with({"from"}, way),
-              "change of the distance of two walls over that at the start of the stage"),
+          key("strain", &U::strain, positive, only_with({"from", "component"}, way),
+              "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
+          key("component", &U::component, only_with({"strain"}, way), not_beside({"from"}, way),
+              "of the strain of the periodic cell, as in the histories"),
           key("from", &U::from, only_with({"to"}, way), "one of the two walls"),
           key("to", &U::to, only_with({"strain"}, way), "and the other"),
           key("displacement", &U::displacement, unit("m"), positive, only_with({"wall"}, "a wall is named that moves"),
@@ -44,11 +48,12 @@ std::vector<Key<UntilTable>> until_keys() {
 std::vector<Key<StageWallTable>> stage_wall_keys() {
   std::vector<Key<StageWallTable>> keys;
   for (const Key<WallTable>& of_wall : wall_keys(BodyFamily::colliding)) {
-    if (of_wall.spec.name == "shaken") continue;
     Key<StageWallTable>& key = keys.emplace_back();
     key.spec = of_wall.spec;
     if (key.spec.name == "name") {
       key.spec.help = "of a wall that is there: its motion in this stage, none where none is given; or of a new wall";
+    } else if (key.spec.name == "shaken") {
+      key.spec.help = "false: [stage.shaking] does not move it, in later stages neither";
     } else if (key.spec.is_required()) {
       key.spec.fallback = KeySpec::none;
     }
@@ -148,18 +153,47 @@ void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedule
 }
 
 /// The walls of a stage, from those of the stage before.
+/// \param[in,out] still names of walls that do not shake
 std::vector<Wall> walls_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
-                                 const std::vector<Wall>& known, std::vector<Wall> walls) {
+                                 const std::vector<Wall>& known, std::set<std::string>& still,
+                                 std::vector<Wall> walls) {
   check_names(stage, "wall");
   for (Wall& wall : walls) wall.move_x = wall.move_y = {};
-  for (const TomlValue& table : repeated(stage, "wall")) change_wall(table, schedules, known, walls);
+  for (const TomlValue& table : repeated(stage, "wall")) {
+    change_wall(table, schedules, known, walls);
+    if (const TomlValue* shaken = table.find("shaken"))
+      shaken->boolean ? void(still.erase(table.find("name")->text)) : void(still.insert(table.find("name")->text));
+  }
   for (const TomlValue& table : repeated(stage, "wall"))
     if (const TomlValue* removed = table.find("removed"); removed != nullptr && removed->boolean)
       check_removal(table, walls, table.find("name")->text);
   return walls;
 }
 
-StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls) {
+/// The shaking of a stage; its walls move by it.
+std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path& folder,
+                                   const std::optional<double>& duration, const std::set<std::string>& still,
+                                   std::vector<Wall>& walls) {
+  TomlValue* table = stage.find("shaking");
+  if (table == nullptr) return {};
+  ShakingTable read;
+  read_table_in_place(shaking_keys(), *table, folder, read);
+  const Shaking shaking = read_shaking(*table, "stage.shaking", read, duration);
+  bool any = false;
+  for (Wall& wall : walls) {
+    if (still.contains(wall.name)) continue;
+    any = true;
+    with_place(fmt::format("{}: stage.shaking", table->where()), [&] {
+      shake({&wall, 1}, shaking.direction, shaking.motion.displacement);
+    });
+  }
+  if (!any)
+    fail_at(*table, "stage.shaking", "there is no wall that shakes", "a box moves by its walls",
+            walls.empty() ? "Add a [[wall]]" : "Leave out shaken = false where a wall belongs to the box");
+  return shaking;
+}
+
+StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls, const std::optional<PeriodicCell>& cell) {
   StageEnd end;
   const TomlValue* table = stage.find("until");
   if (table == nullptr) return end;
@@ -173,16 +207,20 @@ StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls) {
   end.kinetic = read.kinetic.value_or(StageEnd::infinite);
   end.unbalanced = read.unbalanced.value_or(StageEnd::infinite);
   end.strain = read.strain.value_or(0);
+  end.of_cell = read.component;
+  if (end.of_cell && !(cell && cell->along == PeriodicCell::Along::xy))
+    fail_at(*table->find("component"), "stage.until.component", "there is no cell that repeats along x and y",
+            "its strain ends the stage", "Name two walls by from and to, or add [cell]");
   end.walls = {named("from", read.from), named("to", read.to)};
   end.displacement = read.displacement.value_or(0);
   end.wall = named("wall", read.wall);
   if (!end.given())
     fail_at(*table, "stage.until", "nothing is given that ends the stage", "its duration ends it without that table",
             "Give kinetic, unbalanced, strain or displacement, or leave it out");
-  if (end.strain > 0 && end.walls[0] == end.walls[1])
+  if (end.strain > 0 && !end.of_cell && end.walls[0] == end.walls[1])
     fail_at(*table, "stage.until.to", "both walls are the same", "the distance of a wall to itself does not change",
             "Name two walls");
-  if (end.strain > 0) {
+  if (end.strain > 0 && !end.of_cell) {
     const Wall &from = *find_wall(walls, end.walls[0]), &to = *find_wall(walls, end.walls[1]);
     const bool lines = from.shape == Wall::Shape::line && to.shape == Wall::Shape::line;
     if (!lines || norm(from.normal + to.normal) > 1e-9 || dot(to.point - from.point, from.normal) == 0)
@@ -242,7 +280,7 @@ void refuse_beside_stages(const TomlValue& root) {
               "Give it in [[stage.wall]] of its stage");
   }
   if (const TomlValue* shaking = root.find("shaking"))
-    fail_at(*shaking, "shaking", "a run in stages has [shaking]", why, "Move walls in [[stage.wall]]");
+    fail_at(*shaking, "shaking", "a run in stages has [shaking]", why, "Give [stage.shaking] in its stage");
 }
 
 }  // namespace
@@ -261,6 +299,9 @@ void bind_stages(File<GrainTables>& file) {
       .described(changed_contact_keys());
   file.table("stage.bonds", "bonds that are made where the stage begins, beside those that there are")
       .described(stage_bond_keys());
+  file.table("stage.shaking", "the box shakes in this stage; times count from its start").described(shaking_keys());
+  bind_stage_cell(file);
+  bind_stage_bodies(file);
   file.table("stage.pair", repeated_table, "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
   file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise; without a motion it stands")
@@ -268,22 +309,30 @@ void bind_stages(File<GrainTables>& file) {
   file.table("stage.wall.servo", "as [wall.servo]; its schedule begins with the stage").described(servo_keys());
 }
 
-std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables) {
+std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& folder,
+                              std::span<const NamedSchedule> schedules, GrainTables& tables) {
   check_names(root, "stage");
   if (!tables.stage_tables.empty()) refuse_beside_stages(root);
   std::vector<Wall> all = tables.scene.walls, walls = all;
+  std::optional<PeriodicCell> cell = tables.scene.cell;
+  std::set<std::string> still;
+  for (const WallTable& wall : tables.wall_tables)
+    if (!wall.shaken) still.insert(wall.wall.name);
   for (std::size_t k = 0; k < tables.stage_tables.size(); ++k) {
-    const TomlValue& table = repeated(root, "stage")[k];
+    TomlValue& table = root.find("stage")->items[k];
     check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
     const StageTable& read = tables.stage_tables[k];
-    walls = walls_of_stage(table, schedules, all, walls);
+    walls = walls_of_stage(table, schedules, all, still, walls);
+    cell = cell_of_stage(table, schedules, cell);
     StageCase& stage = tables.stages.emplace_back();
     stage.name = read.name;
     stage.duration = read.duration;
     stage.steps = read.steps;
     if (const TomlValue* bonds = table.find("bonds")) stage.bonds = read_stage_bonds(*bonds, tables, k);
-    stage.end = end_of_stage(table, walls);
+    stage.end = end_of_stage(table, walls, cell);
     stage.scene.walls = walls;
+    stage.shaking = shake_stage(table, folder, read.duration, still, stage.scene.walls);
+    stage.scene.cell = cell;
     stage.scene.gravity = read.gravity.value_or(k == 0 ? tables.scene.gravity : tables.stages[k - 1].scene.gravity);
     tables.duration += stage.duration.value_or(INFINITY);
     for (const Wall& wall : walls)
@@ -292,24 +341,40 @@ std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedu
   return all;
 }
 
-void complete_stages(TomlValue root, const std::vector<std::string>& groups, const std::vector<Wall>& all,
-                     GrainTables& tables) {
+void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::vector<std::string>& groups,
+                     const std::vector<Wall>& all, GrainShapes& shapes, GrainTables& tables) {
+  TomlValue contacts_now = root;
   GrainTables changed = tables;
   changed.scene.walls = all;
+  StagePopulation population(tables.scene.grains, groups);
   for (std::size_t k = 0; k < tables.stages.size(); ++k) {
-    const TomlValue table = repeated(root, "stage")[k];
-    if (change_contacts(table, root, changed.collisions.contact) || k == 0) complete_collisions(root, groups, changed);
+    TomlValue& table = root.find("stage")->items[k];
+    const bool other_bodies = population.read(root, table, folder, shapes, changed);
+    if (other_bodies && k == 0)
+      fail_at(table, "stage", "the first stage changes the grains", "it begins with those of the case",
+              "Give the case those grains, or do it in a later stage");
+    changed.scene.grains = population.grains();
+    const bool other_contacts = change_contacts(table, contacts_now, changed.collisions.contact);
+    if (other_contacts || other_bodies || k == 0) complete_collisions(contacts_now, population.groups(), changed);
     StageCase& stage = tables.stages[k];
+    stage.bodies = population.changes(changed.scene.grains);
     std::vector<Wall> walls = std::move(stage.scene.walls);
     for (Wall& wall : walls) wall.kind = find_wall(changed.scene.walls, wall.name)->kind;
     const Vec2 gravity = stage.scene.gravity;
+    const std::optional<PeriodicCell> cell = stage.scene.cell;
     stage.scene = changed.scene;
     stage.scene.walls = std::move(walls);
     stage.scene.gravity = gravity;
+    stage.scene.cell = cell;
     stage.contacts = changed.contacts;
   }
+  for (StageCase& stage : tables.stages) stage.scene.clumps = shapes.clumps();
   tables.scene = tables.stages.front().scene;
   tables.contacts = tables.stages.front().contacts;
+  tables.densities = changed.densities;
+  check_names_of_walls(root, "wall", population.groups());
+  for (const TomlValue& stage : repeated(root, "stage")) check_names_of_walls(stage, "stage.wall", population.groups());
+  groups = population.first_groups();
 }
 
 }  // namespace equidem::casefile

@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -14,11 +15,13 @@ namespace {
 void check_periods(const GrainScene& scene) {
   const PeriodicCell& cell = *scene.cell;
   const bool rows = cell.along == PeriodicCell::Along::xy;
-  if (!std::isfinite(cell.corner.x + cell.corner.y))
-    bad_input("the corner of the periodic cell is not a number", "it says where the cell lies", "Give finite numbers");
-  if (!rows && cell.height != 0)
-    bad_input(fmt::format("a cell that repeats along x alone has height = {} m", cell.height), "walls bound it along y",
-              "Leave the height out, or repeat along xy");
+  if (!std::isfinite(cell.corner.x + cell.corner.y + cell.shift))
+    bad_input("the corner or the shift of the periodic cell is not a number",
+              "they say where the cell and its images lie", "Give finite numbers");
+  if (!rows && (cell.height != 0 || cell.shift != 0))
+    bad_input(fmt::format("a cell that repeats along x alone has {} = {} m", cell.height != 0 ? "height" : "shift",
+                          cell.height != 0 ? cell.height : cell.shift),
+              "walls bound it along y", "Leave it out, or repeat along xy");
   double largest = 0;
   for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
   const auto check_period = [&](const char* name, double period) {
@@ -49,22 +52,25 @@ void check_walls_of_cell(const GrainScene& scene) {
 }
 
 void check_contents(const GrainScene& scene, const GrainOptions& options) {
-  constexpr const char* only_discs = "images are made of discs that collide";
-  for (const Grain& grain : scene.grains)
-    if (grain.shape() != GrainShape::disc)
-      bad_input(fmt::format("grain {} of a periodic cell is {}", &grain - scene.grains.data(),
-                            grain.shape() == GrainShape::ellipse ? "an ellipse" : "a clump"),
-                only_discs, "Give discs alone, or use walls in place of the cell");
-  if (!scene.bonds.empty())
-    bad_input("there are bonds in a periodic cell", only_discs, "Remove them, or use walls in place of the cell");
   if (!gives_force(options.law))
     bad_input(fmt::format("a periodic cell is stepped by the law {}", to_string(options.law)),
               "images need a law that gives a force", "Use " + names_of_laws(LawKind::force));
   const auto slides_only = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio == 0; };
   const auto sticks = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; };
-  if (std::ranges::any_of(scene.pairs, slides_only) && std::ranges::any_of(scene.pairs, sticks))
+  const bool any_slides = std::ranges::any_of(scene.pairs, slides_only);
+  if (any_slides && std::ranges::any_of(scene.pairs, sticks))
     bad_input("some pairs of a periodic cell have friction with a tangential spring and some without",
               "images need one loop for all pairs", "Give all of them a tangential_ratio > 0, or none");
+  if (!has_shapes(scene)) return;
+  if (any_slides)
+    bad_input("ellipses or clumps of a periodic cell have friction without a tangential spring",
+              "their images need the loop for contacts with one", "Give all pairs a tangential_ratio > 0");
+  if (options.ellipse_law != GrainOptions::EllipseLaw::exact)
+    bad_input(fmt::format("ellipses of a periodic cell meet by the law {}", to_string(options.ellipse_law)),
+              "their images need the exact contact", "Leave ellipse_contact out");
+}
+
+void check_weight(const GrainScene& scene) {
   if (scene.weighs() && scene.cell->along == PeriodicCell::Along::xy)
     bad_input("there is gravity in a cell that repeats along x and y",
               "no floor carries the bodies: they would fall for ever",
@@ -106,6 +112,7 @@ void check_cell(const GrainScene& scene, const GrainOptions& options) {
   check_periods(scene);
   check_walls_of_cell(scene);
   check_contents(scene, options);
+  check_weight(scene);
   check_deformation(scene, options);
 }
 

@@ -35,6 +35,7 @@ struct PeriodicCell {
   enum class Along { x, xy } along = Along::xy;
   Vec2 corner = {};                                   ///< lower left, m
   double width = 0, height = 0;                       ///< m; along x alone the height is 0
+  double shift = 0;                                   ///< of the period along y, along x, m
   Schedule rate_xx = {}, rate_yy = {}, rate_xy = {};  ///< L, 1/s
   std::optional<CellServo> servo = {};
 
@@ -54,9 +55,9 @@ struct EnumNames<PeriodicCell::Along> {
 
 /// Check the cell of a scene that has one.
 /// \throws Error (bad_input): periods shorter than two of the largest diameters, a wall that does not repeat itself,
-///         what periodic cells do not carry (ellipses, clumps, bonds, maps and exact_flow), gravity where there is no
-///         floor, a rate and a stress of one component, a deforming cell that is not periodic along y or stepped by
-///         another integrator than velocity_verlet
+///         what periodic cells do not carry (maps, exact_flow, ellipses by enlarged ones, shapes that always slide),
+///         gravity where there is no floor, a rate and a stress of one component, a deforming cell that is not periodic
+///         along y or stepped by another integrator than velocity_verlet
 void check_cell(const GrainScene& scene, const GrainOptions& options);
 
 }  // namespace equidem

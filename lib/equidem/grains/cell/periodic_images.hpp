@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Images of the bodies of a periodic cell, which the loop over pairs takes for bodies.
+/// Images of the bodies of a periodic cell, which the loops over pairs and over parts take for bodies.
 ///
 /// A pair of i and an image of j is listed once, for i < j, the image as a body with a number behind those of all
-/// bodies. Its impulse goes to the place for a body of a later block and from there to j. Loops and scenes without a
-/// cell do not change by it.
+/// bodies, its parts behind all parts. Its impulse goes to the place for a body of a later block and from there to j.
+/// Loops and scenes without a cell do not change by it.
 #pragma once
 
 #include <compare>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "equidem/core/vector.hpp"
@@ -19,7 +18,8 @@
 namespace equidem {
 
 struct GrainSystem;
-struct Candidate;
+struct ImagedContact;
+struct PeriodicCell;
 
 /// A body moved by a whole number of each period.
 struct PeriodicImage {
@@ -35,6 +35,8 @@ struct Periods {
   }
 };
 
+Periods periods_of(const PeriodicCell& cell);
+
 /// The image of a body in the cell around a centre: body 0, and the periods by which it is moved into the cell.
 PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);
 
@@ -42,14 +44,16 @@ PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);
 /// radius and the margin together. Ascending.
 std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin);
 
-/// Find the images again, and replace the near pairs by contacts: two bodies i < j, and which image of j.
-void list_contacts(GrainSystem& system, const std::vector<std::pair<Candidate, PeriodicImage>>& contacts);
+/// Find the images again, and replace the near pairs and parts by contacts.
+void list_contacts(GrainSystem& system, const std::vector<ImagedContact>& contacts);
 
 /// Find the images again for the present margin of the candidates; contacts keep their state.
 void find_images(GrainSystem& system);
 
-/// Move the images to where their bodies are, for the loop over pairs.
+/// Move the images to where their bodies are, for the loops.
 void place_images(GrainSystem& system);
+/// Turn those of ellipses and clumps as their bodies.
+void turn_images(GrainSystem& system);
 
 /// Steps after which bodies that have left the cell are taken as their images inside. That depends on the step alone: a
 /// resumed run does the same.

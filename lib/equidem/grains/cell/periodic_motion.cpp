@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/scene/clump.hpp"
 
 namespace equidem {
 namespace {
@@ -20,45 +22,32 @@ double contraction(const Tensor2& a, const Tensor2& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
 }
 
-Periods deformed(const Periods& periods, const Tensor2& gradient, double dt) {
-  return {periods.a + dt * (gradient * periods.a), periods.b + dt * (gradient * periods.b)};
+double area_of(const Grain& grain, const std::vector<Clump>& clumps) {
+  switch (grain.shape()) {
+    case GrainShape::clump:
+      return inertia_of_clump(clumps[static_cast<std::size_t>(grain.clump)], 1).mass;
+    case GrainShape::ellipse:
+      return std::numbers::pi * grain.radius * grain.short_half_axis;
+    case GrainShape::disc:
+      break;
+  }
+  return std::numbers::pi * squared(grain.radius);
 }
 
-/// C and D of CellServo, by the contacts of the last step.
-void measure_resistance(GrainSystem& system) {
-  const NearPairs& near = system.contacts.near;
-  const LawDescription& law = system.law();
-  Vec2 stiffness, viscosity;
-  for (const PairBlock& block : near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-      const auto i = static_cast<std::size_t>(block.first(p));
-      const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
-      const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
-      if (!(distance > 0)) continue;
-      const double spring = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      const double k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1);
-      const double c = block.groups[g].dashpot[k], c_n = law.dashpot != nullptr ? law.dashpot(c, overlap) : c;
-      double k_t = 0, c_t = 0;
-      if (system.friction) {
-        k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        c_t = block.slips[g].dashpot[k];
-      }
-      // stretched along x, the ends of a branch part by l_x along x
-      const Vec2 normal = branch / distance;
-      const double xx = normal.x * normal.x, yy = normal.y * normal.y;
-      stiffness += Vec2{squared(branch.x) * (k_n * xx + k_t * yy), squared(branch.y) * (k_n * yy + k_t * xx)};
-      viscosity += Vec2{squared(branch.x) * (c_n * xx + c_t * yy), squared(branch.y) * (c_n * yy + c_t * xx)};
-    }
-  }
-  const double area = system.cell.area();
-  CellControl& x = system.cell.controls[0];
-  CellControl& y = system.cell.controls[1];
-  x.stiffness = stiffness.x / area;
-  y.stiffness = stiffness.y / area;
-  x.viscosity = viscosity.x / area;
-  y.viscosity = viscosity.y / area;
+/// Springs and dashpots of a contact or a bond, along and across its branch: N/m and N s/m.
+struct Resistances {
+  double k_n = 0, k_t = 0, c_n = 0, c_t = 0;
+};
+
+/// What they add to the resistance of the cell: stretched along x, the ends of a branch part by l_x along x.
+void add_resistance(Vec2 branch, Vec2 normal, const Resistances& of, Vec2& stiffness, Vec2& viscosity) {
+  const double xx = normal.x * normal.x, yy = normal.y * normal.y;
+  stiffness += Vec2{squared(branch.x) * (of.k_n * xx + of.k_t * yy), squared(branch.y) * (of.k_n * yy + of.k_t * xx)};
+  viscosity += Vec2{squared(branch.x) * (of.c_n * xx + of.c_t * yy), squared(branch.y) * (of.c_n * yy + of.c_t * xx)};
+}
+
+Periods deformed(const Periods& periods, const Tensor2& gradient, double dt) {
+  return {periods.a + dt * (gradient * periods.a), periods.b + dt * (gradient * periods.b)};
 }
 
 void count_cell_error(CellControl& control) {
@@ -92,7 +81,7 @@ double controlled_rate(const CellServo& servo, const Schedule& stress, double ti
 
 /// Sum the works and moments of all blocks.
 CellSums summed(const MovingCell& cell) {
-  CellSums all;
+  CellSums all = cell.bond_sums;
   for (const CellSums& sums : cell.sums) {
     all.here += sums.here;
     all.before += sums.before;
@@ -112,22 +101,39 @@ double turn_velocity(const Tensor2& gradient, double h, double inverse_mass, Vec
 
 /// Sum of impulse times branch over the contacts of a block: that of the impulses on its bodies times their places, and
 /// of those on images times their shifts.
-void add_moments(const GrainSystem& system, std::size_t block, bool places_before, CellSums& sums) {
+void add_moments(const GrainSystem& system, std::size_t block, CellSums& sums) {
   const MovingCell& cell = system.cell;
   const BodyBlocks& blocks = system.bodies.blocks;
   for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
     const Vec2 impulse = system.bodies.impulses[i].impulse;
     sums.here += outer(impulse, system.bodies.motions[i].position - cell.centre);
-    if (places_before) sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
+    sums.before += outer(impulse, system.bodies.next[i].position - cell.centre);
   }
-  if (!system.contacts.near.active) return;
-  const OutwardImpulses& outward = system.contacts.near.blocks[block].outward;
-  for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
-    if (!system.is_image(outward.bodies[k])) continue;
-    const PeriodicImage& image = system.image(outward.bodies[k]);
-    sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
-    if (places_before) sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
+  const auto add = [&](const OutwardImpulses& outward) {
+    for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
+      if (!system.is_image(outward.bodies[k])) continue;
+      const PeriodicImage& image = system.image(outward.bodies[k]);
+      sums.here += outer(outward.impulses[k].impulse, cell.now.shift(image));
+      sums.before += outer(outward.impulses[k].impulse, cell.before.shift(image));
+    }
+  };
+  if (system.contacts.near.active) add(system.contacts.near.blocks[block].outward);
+  if (!system.contacts.near_parts.active) return;
+  for (const NearParts::List& list : system.contacts.near_parts.blocks[block].lists) add(list.outward);
+}
+
+/// Sum of force times branch over the contacts, and of m u u over the bodies.
+std::pair<Tensor2, Tensor2> sums_of_stress(const GrainSystem& system, std::span<const GrainContact> contacts) {
+  Tensor2 forces = moment_of_bonds(system), flux;
+  for (const GrainContact& contact : contacts) {
+    const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
+    forces += outer(on_j, contact.arm_i - contact.arm_j);
   }
+  for (std::size_t k = 0; k < system.bodies.constants.size(); ++k) {
+    const Vec2 velocity = system.bodies.motions[k].velocity;
+    flux += (1 / system.bodies.constants[k].inverse_mass) * outer(velocity, velocity);
+  }
+  return {forces, flux};
 }
 
 void set_stress(GrainSystem& system, const CellSums& sums) {
@@ -162,18 +168,70 @@ void set_cell(GrainSystem& system) {
   MovingCell& cell = system.cell;
   cell.active = true;
   cell.deforms = given.deforms();
-  const bool rows = given.along == PeriodicCell::Along::xy;
-  cell.now = {{given.width, 0}, {0, rows ? given.height : 0}};
+  cell.now = periods_of(given);
   cell.before = cell.next = cell.now;
   cell.centre = given.corner + 0.5 * Vec2{given.width, cell.now.b.y};
   cell.sums.resize(system.bodies.blocks.count());
-  for (const GrainBody& body : system.bodies.constants)
-    cell.largest_radius = std::max(cell.largest_radius, body.radius);
+  for (const Grain& grain : system.scene.grains) {
+    cell.largest_radius = std::max(cell.largest_radius, grain.radius);
+    cell.solid += area_of(grain, system.scene.clumps);
+  }
   for (GrainMotion& motion : system.bodies.motions) {
     PeriodicImage move = image_inside(cell.now, cell.centre, motion.position);
     motion.position += cell.now.shift(move);
     cell.crossed.push_back({0, -move.b, -move.a});
   }
+}
+
+void measure_resistance(GrainSystem& system) {
+  const NearPairs& near = system.contacts.near;
+  const LawDescription& law = system.law();
+  Vec2 stiffness, viscosity;
+  const auto along = [&](double spring, double dashpot, double overlap) {
+    return Resistances{.k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1),
+                       .c_n = law.dashpot != nullptr ? law.dashpot(dashpot, overlap) : dashpot};
+  };
+  for (const PairBlock& block : near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
+      const Vec2 branch = system.position_of(block.second(p)) -
+                          system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
+      const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
+      if (!(distance > 0)) continue;
+      Resistances of =
+          along(near.equal ? near.law.stiffness : block.laws[g].stiffness[k], block.groups[g].dashpot[k], overlap);
+      if (system.friction) {
+        of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
+        of.c_t = block.slips[g].dashpot[k];
+      }
+      add_resistance(branch, branch / distance, of, stiffness, viscosity);
+    }
+  }
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (!list.touching(p)) continue;
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      Resistances of = along(candidate.stiffness, dashpot_of(system, candidate), std::max(candidate.overlap, 0.0));
+      of.k_t = candidate.sliding.stiffness;
+      of.c_t = candidate.sliding.dashpot;
+      add_resistance(system.position_of(candidate.j) - system.position_of(candidate.i), candidate.normal, of, stiffness,
+                     viscosity);
+    }
+  });
+  for (const TiedPair& bond : system.bonds.tied) {
+    const Vec2 branch = branch_of(system, bond);
+    const SpringConstants& springs = bond.springs.springs;
+    add_resistance(branch, branch / norm(branch),
+                   {springs.kN, springs.kT, bond.dashpots.normal, bond.dashpots.tangential}, stiffness, viscosity);
+  }
+  const double area = system.cell.area();
+  CellControl& x = system.cell.controls[0];
+  CellControl& y = system.cell.controls[1];
+  x.stiffness = stiffness.x / area;
+  y.stiffness = stiffness.y / area;
+  x.viscosity = viscosity.x / area;
+  y.viscosity = viscosity.y / area;
 }
 
 void steer_cell(GrainSystem& system) {
@@ -250,7 +308,7 @@ void kick_in_cell(GrainSystem& system) {
   const BodyBlocks& blocks = system.bodies.blocks;
   blocks.each([&](std::size_t block) {
     CellSums& sums = cell.sums[block];  // with the work of the drift
-    add_moments(system, block, true, sums);
+    add_moments(system, block, sums);
     for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
       GrainMotion& motion = system.bodies.motions[i];
       const GrainBody& body = system.bodies.constants[i];
@@ -267,17 +325,12 @@ void kick_in_cell(GrainSystem& system) {
   set_stress(system, all);
 }
 
-void begin_cell_stress(GrainSystem& system) {
-  MovingCell& cell = system.cell;
-  for (std::size_t block = 0; block < cell.sums.size(); ++block) {
-    CellSums& sums = cell.sums[block] = {};
-    add_moments(system, block, false, sums);
-    for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
-      const Vec2 velocity = system.bodies.motions[i].velocity;
-      sums.flux += (1 / system.bodies.constants[i].inverse_mass) * outer(velocity, velocity);
-    }
-  }
-  set_stress(system, summed(cell));
+void begin_cell_stress(GrainSystem& system, std::span<const GrainContact> contacts) {
+  const auto [forces, flux] = sums_of_stress(system, contacts);
+  CellSums sums;
+  sums.here = system.dt() * forces;
+  sums.flux = flux;
+  set_stress(system, sums);
 }
 
 CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts) {
@@ -287,22 +340,11 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   state.height = cell.now.b.y;
   state.shift = std::remainder(cell.now.b.x, cell.now.a.x);
   state.strain = cell.strain;
-  Tensor2 sum;
-  for (const GrainContact& contact : contacts) {
-    const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
-    sum += outer(on_j, contact.arm_i - contact.arm_j);
-  }
-  double discs = 0;
-  for (std::size_t k = 0; k < system.bodies.constants.size(); ++k) {
-    const GrainBody& body = system.bodies.constants[k];
-    const Vec2 velocity = system.bodies.motions[k].velocity;
-    sum += (1 / body.inverse_mass) * outer(velocity, velocity);
-    discs += std::numbers::pi * squared(body.radius);
-  }
-  state.stress = (-1 / cell.area()) * sum;
-  state.void_ratio = cell.area() / discs - 1;
-  state.coordination_number =
-      2 * static_cast<double>(contacts.size()) / static_cast<double>(system.bodies.constants.size());
+  const auto [forces, flux] = sums_of_stress(system, contacts);
+  state.stress = (-1 / cell.area()) * (forces + flux);
+  state.void_ratio = cell.area() / cell.solid - 1;
+  state.coordination_number = 2 * static_cast<double>(contacts.size() + system.bonds.tied.size()) /
+                              static_cast<double>(system.bodies.constants.size());
   if (!system.scene.cell->servo) return state;
   const CellServo& servo = *system.scene.cell->servo;
   const auto add = [&](const char* component, const std::optional<Schedule>& stress, const CellControl& control) {

@@ -23,9 +23,11 @@ struct CellControl {
   double viscosity = 0;                                                ///< Pa s, likewise
   double largest_wanted = 0;                                           ///< Pa
   double overshoot = 0, errors = 0, steps = 0, reached = 0, side = 0;  ///< as in ServoState
+
+  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
 };
 
-/// Sums over the bodies of a block and the images that they touch.
+/// Sums over the bodies of a block and the images that they meet.
 struct CellSums {
   Tensor2 here, before;  ///< of impulse times place, after the step and before it, N s m
   Tensor2 flux;          ///< of m u u, J
@@ -44,6 +46,8 @@ struct MovingCell {
   Tensor2 stress;              ///< deforming cells: at the start of this step, Pa
   CellControl controls[2];     ///< of xx and yy
   std::vector<CellSums> sums;  ///< of each block
+  CellSums bond_sums;          ///< of the impulses of bonds on images
+  double solid = 0;            ///< area of the bodies, m²
   std::vector<PeriodicImage> images;
   /// For each body the periods by which it has been moved into the cell, with the opposite sign: where it would be.
   std::vector<PeriodicImage> crossed;
@@ -55,6 +59,8 @@ struct MovingCell {
 /// time.
 void set_cell(GrainSystem& system);
 
+/// Set stiffness and viscosity of the controls by the contacts of the last step.
+void measure_resistance(GrainSystem& system);
 /// Choose the velocity gradient of the step.
 /// \throws Error (computation_failed) if the cell has become thinner than two of the largest diameters
 void steer_cell(GrainSystem& system);
@@ -64,8 +70,8 @@ void drift_in_cell(GrainSystem& system);
 void advance_cell(GrainSystem& system);
 /// As kick_of_verlet, and the work of the cell in the step.
 void kick_in_cell(GrainSystem& system);
-/// Set moment and stress from the impulses of the first kick.
-void begin_cell_stress(GrainSystem& system);
+/// Set moment and stress where a cell begins to deform, from the contacts of the last step or of the first kick.
+void begin_cell_stress(GrainSystem& system, std::span<const GrainContact> contacts);
 
 /// The cell as it is, its stress by the contacts of the last step.
 CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts);

@@ -22,9 +22,7 @@ double share_of_strength(double load, double strength) {
 
 /// The place of the bond as far as the levers say, between both centres.
 Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
-  const Vec2 i = system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
-  const Vec2 j = system.bodies.motions[static_cast<std::size_t>(bond.j)].position;
-  return i + bond.share * (j - i);
+  return system.bodies.motions[static_cast<std::size_t>(bond.i)].position + bond.share * branch_of(system, bond);
 }
 
 /// The bodies of a bond as a contact that begins now.
@@ -38,29 +36,24 @@ NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
   candidate.j = bond.j;
   set_constants(system, candidate);
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const double overlap = system.bodies.constants[i].radius + system.bodies.constants[j].radius -
-                         norm(system.bodies.motions[j].position - system.bodies.motions[i].position);
+  const double overlap =
+      system.bodies.constants[i].radius + system.bodies.constants[j].radius - norm(branch_of(system, bond));
   return {candidate.stiffness, std::max(overlap, 0.0)};
 }
 
 /// Verlet schemes kick bodies at the start of a step by the impulses of the last one: those of a bond that has broken
 /// give way to that of the spring behind it, so that both half kicks of the step are of the same contact.
-void replace_impulses(GrainSystem& system, TiedPair bond, const BondMotion<double>& motion, const NewContact& contact) {
-  const double dt = system.dt();
-  const BondForces<double> force = bond_forces(bond.springs, motion);
+void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContact& contact) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
-  const double length = norm(branch);
-  bond.frame = {branch / length, bond.share * length, length - bond.share * length};
-  const BondModes last = last_impulse(system, bond);
-  give_impulse(system, bond, {-last.normal, -last.tangential, -last.rolling});
-  const double push = contact.stiffness * std::pow(contact.overlap, system.law().spring_power);
-  const Vec2 change = -dt * (Vec2{force.x, force.y} + push * bond.frame.normal);
+  const Vec2 branch = branch_of(system, bond);
+  const double force = contact.stiffness * std::pow(contact.overlap, system.law().spring_power);
+  const Vec2 push = system.dt() * force / norm(branch) * branch;
+  const auto [of_i, of_j] = impulses_of_bond(system, bond);
   BodyImpulse &on_i = system.bodies.impulses[i], &on_j = system.bodies.impulses[j];
-  on_i.impulse += change;
-  on_j.impulse -= change;
-  on_i.torque -= dt * force.moment_i;
-  on_j.torque -= dt * force.moment_j;
+  on_i.impulse -= of_i.impulse + push;
+  on_j.impulse -= of_j.impulse - push;
+  on_i.torque -= of_i.torque;
+  on_j.torque -= of_j.torque;
 }
 
 /// The bonds that are left become those of the steps; they keep their last impulses.
@@ -132,8 +125,7 @@ void break_bonds(GrainSystem& system) {
     breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
     const NewContact contact = contact_of(system, bond);
     system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
-    if (system.options.verlet())
-      replace_impulses(system, *place_of_bond(system.bonds.tied, bond.i, bond.j), motion, contact);
+    if (system.options.verlet()) replace_impulses(system, *place_of_bond(system.bonds.tied, bond.i, bond.j), contact);
     any = true;
   }
   if (!any) return;

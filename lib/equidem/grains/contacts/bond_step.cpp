@@ -9,26 +9,69 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
 
-BondRest rest_of(const Grain& i, const Grain& j) {
-  return {j.position - i.position, i.angle, j.angle};
+BondRest rest_of(const GrainScene& scene, std::size_t i, std::size_t j) {
+  const Grain &of_i = scene.grains.at(i), &of_j = scene.grains.at(j);
+  Vec2 branch = of_j.position - of_i.position;
+  if (scene.cell) {
+    const Periods periods = periods_of(*scene.cell);
+    branch += periods.shift(image_inside(periods, {}, branch));
+  }
+  return {branch, of_i.angle, of_j.angle};
 }
 
+Vec2 branch_of(const GrainSystem& system, const TiedPair& bond) {
+  const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(bond.j)].position -
+                      system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
+  return system.cell.active ? branch + system.cell.now.shift(bond.image) : branch;
+}
+
+void find_images_of_bonds(GrainSystem& system) {
+  if (!system.cell.active) return;
+  const auto find = [&](std::vector<TiedPair>& bonds) {
+    for (TiedPair& bond : bonds) {
+      const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(bond.j)].position -
+                          system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
+      bond.image = image_inside(system.cell.now, {}, branch);
+    }
+  };
+  find(system.bonds.tied);
+  if (system.bonds.breakable) find(system.bonds.breakable->all);
+}
+
+Tensor2 moment_of_bonds(const GrainSystem& system) {
+  Tensor2 sum;
+  for (const TiedPair& bond : system.bonds.tied)
+    sum += outer((1 / system.dt()) * impulses_of_bond(system, bond)[1].impulse, branch_of(system, bond));
+  return sum;
+}
+
+namespace {
+
+/// Count the impulse on an image in the moments of a periodic cell (periodic_motion.hpp).
+void count_on_image(GrainSystem& system, const TiedPair& bond, Vec2 on_j) {
+  MovingCell& cell = system.cell;
+  if (!cell.deforms) return;
+  cell.bond_sums.here += outer(on_j, cell.now.shift(bond.image));
+  cell.bond_sums.before += outer(on_j, cell.before.shift(bond.image));
+}
+
+/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
 void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
   BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
   BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
   const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
+  count_on_image(system, bond, on);
   on_i.impulse -= on;
   on_j.impulse += on;
   on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
   on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
 }
-
-namespace {
 
 InverseInertia inverse_of(const Grain& grain) {
   return {1 / grain.inertia.mass, 1 / grain.inertia.moment};
@@ -50,7 +93,7 @@ double share_of(const Grain& i, const Grain& j) {
 bool is_wide(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const double radii = system.bodies.constants[i].radius + system.bodies.constants[j].radius;
-  return norm(system.bodies.motions[j].position - system.bodies.motions[i].position) > nearest_centres_of_bonds * radii;
+  return norm(branch_of(system, bond)) > nearest_centres_of_bonds * radii;
 }
 
 /// Springs by where the discs are at the start of the step.
@@ -66,14 +109,25 @@ void push_springs(GrainSystem& system) {
     on_j.impulse -= impulse;
     on_i.torque += dt * force.moment_i;
     on_j.torque += dt * force.moment_j;
+    count_on_image(system, bond, -impulse);
   }
 }
 
+/// The motion of j against i by that of a deforming cell. \param drifted whether bodies have drifted in this step
+Vec2 motion_of_cell(const GrainSystem& system, const TiedPair& bond, bool drifted) {
+  const MovingCell& cell = system.cell;
+  if (!cell.deforms) return {};
+  if (!drifted) return cell.gradient * branch_of(system, bond);
+  const std::vector<GrainMotion>& before = system.bodies.next;
+  return cell.gradient * (before[static_cast<std::size_t>(bond.j)].position + cell.before.shift(bond.image) -
+                          before[static_cast<std::size_t>(bond.i)].position);
+}
+
 /// Rates of a bond at the start of the step.
-BondModes rates_now(const GrainSystem& system, const TiedPair& bond) {
+BondModes rates_now(const GrainSystem& system, const TiedPair& bond, bool drifted) {
   const GrainMotion& i = system.bodies.motions[static_cast<std::size_t>(bond.i)];
   const GrainMotion& j = system.bodies.motions[static_cast<std::size_t>(bond.j)];
-  return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity, j.spin});
+  return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity + motion_of_cell(system, bond, drifted), j.spin});
 }
 
 /// Contribution of the present impulses to the rates; gravity has none.
@@ -148,7 +202,7 @@ struct Rates {
 
 Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::BondStep bond_step) {
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
-  const ContactFrame frame = frame_of(bond.rest.value_or(rest_of(i, j)).branch, share_of(i, j));
+  const ContactFrame frame = frame_of((bond.rest ? *bond.rest : rest_of(scene, bond.i, bond.j)).branch, share_of(i, j));
   const auto largest = [&](const BondModes& c) { return largest_bond_rate(c, frame, inverse_of(i), inverse_of(j)); };
   const bool limits = bond_step == GrainOptions::BondStep::explicit_euler;
   return {limits ? largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}) : 0.0,
@@ -160,8 +214,18 @@ Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::Bon
 BondMotion<double> motion_of_bond(const GrainSystem& system, const TiedPair& bond) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const GrainMotion &mi = system.bodies.motions[i], &mj = system.bodies.motions[j];
-  const Vec2 way = mj.position - mi.position - bond.springs.branch;
+  const Vec2 way = branch_of(system, bond) - bond.springs.branch;
   return {way.x, way.y, mi.angle - bond.angle_i, mj.angle - bond.angle_j};
+}
+
+std::array<BodyImpulse, 2> impulses_of_bond(const GrainSystem& system, const TiedPair& bond) {
+  const ContactFrame frame = frame_of(branch_of(system, bond), bond.share);
+  const BondModes last = last_impulse(system, bond);
+  const BondForces<double> force = bond_forces(bond.springs, motion_of_bond(system, bond));
+  const double dt = system.dt();
+  const Vec2 on_i = dt * Vec2{force.x, force.y} - last.normal * frame.normal - last.tangential * frame.tangent();
+  return {BodyImpulse{on_i, dt * force.moment_i - frame.lever_i * last.tangential - last.rolling},
+          BodyImpulse{-on_i, dt * force.moment_j - frame.lever_j * last.tangential + last.rolling}};
 }
 
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene) {
@@ -169,7 +233,7 @@ std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene)
   for (const GrainBond& bond : scene.bonds) {
     TiedPair pair;
     pair.i = system.bodies.place_of_grain[bond.i], pair.j = system.bodies.place_of_grain[bond.j];
-    BondRest rest = bond.rest.value_or(rest_of(scene.grains[bond.i], scene.grains[bond.j]));
+    BondRest rest = bond.rest ? *bond.rest : rest_of(scene, bond.i, bond.j);
     if (pair.j < pair.i) {
       std::swap(pair.i, pair.j);
       rest = {-rest.branch, rest.angle_j, rest.angle_i};
@@ -191,6 +255,7 @@ std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene)
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t bond) { return std::pair(pairs[bond].i, pairs[bond].j); });
   for (const std::size_t bond : order) system.bonds.tied.push_back(pairs[bond]);
+  find_images_of_bonds(system);
   return order;
 }
 
@@ -207,20 +272,20 @@ void refuse_crept_bonds(const GrainSystem& system) {
 
 void add_bond_impulses(GrainSystem& system) {
   system.free_flight = false;
+  system.cell.bond_sums = {};
   push_springs(system);
   push_packed_bonds(system);
   const bool turns_rims = system.contacts.near.active && system.friction;
   for (const std::size_t b : system.bonds.packed.one_by_one) {
     TiedPair& bond = system.bonds.tied[b];
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position;
     if (!is_wide(system, bond)) refuse_crept_bonds(system);
     if (turns_rims) {  // what others do to the spin is asked for
       turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
       turn_rims(system.bodies.impulses[j], system.bodies.constants[j]);
     }
-    bond.frame = frame_of(branch, bond.share);
-    bond.rate = rates_now(system, bond);
+    bond.frame = frame_of(branch_of(system, bond), bond.share);
+    bond.rate = rates_now(system, bond, true);
     bond.gained = gain_by_impulses(system, bond);
   }
   const auto resist = system.options.bond_step == GrainOptions::BondStep::exact ? resist_exactly : resist_explicitly;
@@ -237,9 +302,8 @@ void count_opening_kick(GrainSystem& system) {
   count_opening_kick_of_packed_bonds(system);
   for (const std::size_t b : system.bonds.packed.one_by_one) {
     TiedPair& bond = system.bonds.tied[b];
-    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    bond.frame = frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
-    bond.rate = rates_now(system, bond);
+    bond.frame = frame_of(branch_of(system, bond), bond.share);
+    bond.rate = rates_now(system, bond, false);
   }
   system.lost.lost_bond += 0.5 * loss_of_bonds(system, 0.25);
 }
@@ -256,8 +320,8 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
   std::vector<BodyContact> result;
   for (const TiedPair& bond : system.bonds.tied) {
     const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    const ContactFrame frame =
-        frame_of(system.bodies.motions[j].position - system.bodies.motions[i].position, bond.share);
+    const ContactFrame frame = frame_of(branch_of(system, bond), bond.share);
+    const Vec2 shift = system.cell.active ? system.cell.now.shift(bond.image) : Vec2{};
     const BondModes impulse = last_impulse(system, bond);
     Vec2 on_i = -1 / system.dt() * (impulse.normal * frame.normal + impulse.tangential * frame.tangent());
     double bending = 0;
@@ -273,6 +337,7 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
     result.push_back({.i = first,
                       .j = second,
                       .arm = same ? frame.lever_i * frame.normal : -frame.lever_j * frame.normal,
+                      .shift = same ? shift : -shift,
                       .force = same ? on_i : -on_i,
                       .normal_force = -dot(on_i, frame.normal),
                       .tangential_force = -dot(on_i, frame.tangent()),

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -12,7 +13,9 @@
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/viscous_bond.hpp"
+#include "equidem/grains/cell/periodic_images.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -22,6 +25,7 @@ struct GrainSystem;
 /// A bond between bodies sorted by position.
 struct TiedPair {
   std::int32_t i = 0, j = 0;  ///< i < j
+  PeriodicImage image;        ///< of j that is bonded to i, in a periodic cell; body: 0
   BondModes dashpots;
   double share = 0;  ///< lever i over the distance: r_i/(r_i + r_j)
   FiniteBond springs;
@@ -35,15 +39,12 @@ struct TiedPair {
   [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
 
-/// Two discs that are bonded as they are now.
-BondRest rest_of(const Grain& i, const Grain& j);
+/// Two discs that are bonded as they are now; in a periodic cell i and the image of j that is nearest.
+BondRest rest_of(const GrainScene& scene, std::size_t i, std::size_t j);
 
 /// Set the bonds of a sorted scene, sorted in turn, so that results do not depend on the caller's order.
 /// \return their numbers in the scene
 std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene);
-
-/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
-void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
 
 /// The place of the bond of two bodies i < j in a list ordered by them, or that of the first behind it.
 template <class Bonds>
@@ -59,6 +60,18 @@ constexpr double nearest_centres_of_bonds = 1e-3;
 
 /// \throws Error (computation_failed) naming the first bond whose centres are nearer than nearest_centres_of_bonds
 void refuse_crept_bonds(const GrainSystem& system);
+
+/// In a periodic cell: find the images of all bonds, broken ones too, by where the discs are.
+void find_images_of_bonds(GrainSystem& system);
+
+/// From the centre of i to that of j, or of its image, now.
+Vec2 branch_of(const GrainSystem& system, const TiedPair& bond);
+
+/// Sum of force times branch over the bonds, in the last step, N m.
+Tensor2 moment_of_bonds(const GrainSystem& system);
+
+/// Impulses of a bond on i and on j: of its dashpots in the last step, and in a step of its springs as they are now.
+std::array<BodyImpulse, 2> impulses_of_bond(const GrainSystem& system, const TiedPair& bond);
 
 /// Whether two bodies i < j are bonded. Calls must be in ascending order of pairs; `next` carries the position from
 /// call to call.

@@ -67,7 +67,7 @@ inline double tangential_mass(const GrainSystem& system, const Candidate& candid
   const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
   double inverse = bi.inverse_mass + geometry.lever_i * geometry.lever_i * bi.inverse_moment;
   if (candidate.j >= 0) {
-    const GrainBody& bj = system.bodies.constants[static_cast<std::size_t>(candidate.j)];
+    const GrainBody& bj = system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))];
     inverse += bj.inverse_mass + geometry.lever_j * geometry.lever_j * bj.inverse_moment;
   }
   return 1 / inverse;

@@ -12,13 +12,13 @@
 namespace equidem {
 namespace {
 
-/// Within a step, `share` of it gone: ways and turns are uniform.
+/// Within a step, `share` of it gone: ways and turns are uniform. \param body or an image
 GrainMotion motion_at(const GrainSystem& system, std::int32_t body, double share) {
-  const GrainMotion& from = system.bodies.motions[static_cast<std::size_t>(body)];
-  const GrainMotion& to = system.bodies.next[static_cast<std::size_t>(body)];
-  GrainMotion motion = from;
-  motion.position += share * (to.position - from.position);
-  motion.angle += share * (to.angle - from.angle);
+  const auto own = static_cast<std::size_t>(system.body_of(body));
+  GrainMotion motion = system.bodies.motions[own];
+  const Vec2 from = system.position_of(body);
+  motion.position = from + share * (system.next_position_of(body) - from);
+  motion.angle += share * (system.bodies.next[own].angle - motion.angle);
   return motion;
 }
 
@@ -31,7 +31,7 @@ struct Pose {
 Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_index, double share) {
   const GrainMotion motion = motion_at(system, body, share);
   if (system.shapes.parts.empty()) {
-    const double radius = system.bodies.constants[static_cast<std::size_t>(body)].radius;
+    const double radius = system.bodies.constants[static_cast<std::size_t>(system.body_of(body))].radius;
     return {{{}, radius, radius, radius}, motion.position, {1, 0}};
   }
   const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(part_index)];
@@ -69,7 +69,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
   if (before.gap < 0) return nullptr;
   // how far a point of one goes against the other, at most
   const auto turn = [&](std::int32_t body, const GrainPart& part) {
-    const auto b = static_cast<std::size_t>(body);
+    const auto b = static_cast<std::size_t>(system.body_of(body));
     return std::abs(system.bodies.next[b].angle - system.bodies.motions[b].angle) * part.a;
   };
   const double reach = norm(way.after - way.before) + turn(candidate.i, i.part) + turn(candidate.j, j.part);

@@ -15,7 +15,7 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
   const GrainPart& part_i = system.shapes.parts[static_cast<std::size_t>(pair.i)];
   const GrainPart& part_j = system.shapes.parts[static_cast<std::size_t>(pair.j)];
   const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
-  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position + (to_j - to_i);
+  const Vec2 branch = system.position_of(candidate.j) - system.bodies.motions[i].position + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
   if (square >= reach * reach) return {};
   const double share = part_i.size / (part_i.size + part_j.size);

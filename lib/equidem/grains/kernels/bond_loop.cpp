@@ -242,7 +242,7 @@ void pack_bonds(GrainSystem& system) {
     if (bond.has_springs()) system.bonds.packed.sprung.push_back(b);
     const bool alone =
         bonds_of[static_cast<std::size_t>(bond.i)] == 1 && bonds_of[static_cast<std::size_t>(bond.j)] == 1;
-    if (!system.contacts.near.active || !alone || bond.dashpots.rolling > 0) {
+    if (!system.contacts.near.active || !alone || bond.dashpots.rolling > 0 || system.cell.active) {
       system.bonds.packed.one_by_one.push_back(b);
       continue;
     }

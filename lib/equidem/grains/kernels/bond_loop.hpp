@@ -3,7 +3,7 @@
 /// Bonds of isolated pairs, eight at a time: dashpots along and across the line of two discs without other bonds.
 ///
 /// If no disc has two bonds, bonds are independent: the impulse of a bond follows from those of all contacts. Chains,
-/// rolling dashpots, and laws without near pairs are stepped one bond after the other (bond_step.cpp).
+/// rolling dashpots, periodic cells, and laws without near pairs are stepped one bond after the other (bond_step.cpp).
 #pragma once
 
 #include <cstdint>

@@ -45,7 +45,8 @@ double dashpot_of(const GrainSystem& system, const Candidate& candidate) {
 void set_constants(const GrainSystem& system, Candidate& candidate) {
   const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
   double inverse_mass = bi.inverse_mass;
-  if (candidate.j >= 0) inverse_mass += system.bodies.constants[static_cast<std::size_t>(candidate.j)].inverse_mass;
+  const auto other = static_cast<std::size_t>(system.body_of(candidate.j));
+  if (candidate.j >= 0) inverse_mass += system.bodies.constants[other].inverse_mass;
   const PairProperties& properties = system.properties(candidate);
   const double dt = system.dt();
   const double m = candidate.reduced_mass = 1 / inverse_mass;
@@ -63,8 +64,7 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
     candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * length_factor;
     candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
-    const ContactGeometry geometry{
-        0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[static_cast<std::size_t>(candidate.j)].radius : 0};
+    const ContactGeometry geometry{0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[other].radius : 0};
     candidate.sliding.dashpot = 2 * properties.tangential_damping *
                                 std::sqrt(tangential_mass(system, candidate, geometry) * candidate.sliding.stiffness);
   }
@@ -76,7 +76,7 @@ void find_candidates(GrainSystem& system) {
   for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     circles.push_back({system.bodies.motions[i].position, system.bodies.constants[i].radius});
   }
-  if (system.cell.active && system.contacts.near.active) {
+  if (system.meets_images()) {
     find_images(system);
     for (const PeriodicImage& image : system.cell.images) {
       const Circle& body = circles[static_cast<std::size_t>(image.body)];

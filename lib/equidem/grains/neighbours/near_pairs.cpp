@@ -191,6 +191,15 @@ class PairLists {
   std::size_t count_, at_ = 0;
 };
 
+/// Whether a body of a periodic cell is bonded to another one, or to that image of it.
+bool is_bonded_image(const GrainSystem& system, std::int32_t i, std::int32_t partner) {
+  const std::int32_t j = system.body_of(partner);
+  const auto bond = place_of_bond(system.bonds.tied, i, j);
+  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j) return false;
+  const PeriodicImage image = system.is_image(partner) ? system.image(partner) : PeriodicImage{};
+  return bond->image.a == image.a && bond->image.b == image.b;
+}
+
 void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   const NeighbourList& list = *system.contacts.near.outer;
   NearPairs& near = system.contacts.near;
@@ -203,7 +212,9 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
     const double own = system.bodies.constants[i].radius + near.margin;
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
       const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
-      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner)) continue;
+      if (system.cell.active ? is_bonded_image(system, static_cast<std::int32_t>(i), partner)
+                             : are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner))
+        continue;
       if (shapes && !are_discs(system, static_cast<std::int32_t>(i), partner)) continue;
       const std::int32_t other = system.body_of(partner);
       if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself

@@ -66,7 +66,7 @@ class NewList {
     const GrainPart &part_i = system_.shapes.parts[static_cast<std::size_t>(i)],
                     &part_j = system_.shapes.parts[static_cast<std::size_t>(j)];
     const GrainBody &body_i = system_.bodies.constants[static_cast<std::size_t>(candidate.i)],
-                    &body_j = system_.bodies.constants[static_cast<std::size_t>(candidate.j)];
+                    &body_j = system_.bodies.constants[static_cast<std::size_t>(system_.body_of(candidate.j))];
     const std::size_t k = make_room(i, j);
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
@@ -164,7 +164,8 @@ double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double 
                   &part_j = system.shapes.parts[static_cast<std::size_t>(q)];
   const auto i = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(p)]);
   const auto j = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(q)]);
-  const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
+  const Vec2 branch = system.position_of(system.shapes.body_of_part[static_cast<std::size_t>(q)]) -
+                      system.bodies.motions[i].position +
                       (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
   if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
   const Ellipse of_i{part_i.a, part_i.b, system.shapes.axes[i]}, of_j{part_j.a, part_j.b, system.shapes.axes[j]};
@@ -189,8 +190,10 @@ void find_met_parts(GrainSystem& system) {
     for (const NearParts::List& list : block.lists) {
       for (std::size_t p = 0; p < list.count; ++p) {
         const PartGroup& group = list.groups[p / lanes_of_pairs];
-        for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]})
+        for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]}) {
           near.met[static_cast<std::size_t>(part)] = 1;
+          near.met[static_cast<std::size_t>(system.own_part(part))] = 1;
+        }
       }
     }
   }
@@ -213,6 +216,8 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
       for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
         const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
         if (disc && are_discs(system, body, partner)) continue;
+        const std::int32_t other = system.body_of(partner);
+        if (other != partner && other <= body) continue;  // listed with the other one, or itself
         const auto j = static_cast<std::size_t>(partner);
         for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
           NearParts::Close pair{p, q, 0, {}};
@@ -264,7 +269,7 @@ std::size_t NearParts::bytes() const {
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   const auto is_disc = [&](std::int32_t body) {
-    return system.scene.grains[static_cast<std::size_t>(body)].shape() == GrainShape::disc;
+    return system.scene.grains[static_cast<std::size_t>(system.body_of(body))].shape() == GrainShape::disc;
   };
   return is_disc(i) && is_disc(j);
 }
@@ -311,7 +316,9 @@ void load_part_bodies(GrainSystem& system) {
         seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
         seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
         seen.velocity = motion.velocity;
-        seen.middle_velocity = motion.velocity + (0.5 * body.inverse_mass) * push.impulse;
+        if (system.cell.deforms)  // as in the drift before
+          seen.velocity += system.cell.gradient * (system.bodies.next[b].position - system.cell.centre);
+        seen.middle_velocity = seen.velocity + (0.5 * body.inverse_mass) * push.impulse;
         seen.spin = motion.spin;
         seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
       }

@@ -66,7 +66,7 @@ struct alignas(64) PartGroup {
     arm_j_y,
     columns
   };
-  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< parts
+  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< parts; that of j may be of an image
   std::int64_t since[lanes_of_pairs];                 ///< as PairGroup::since
   PairLanes numbers[columns];
 };
@@ -134,10 +134,10 @@ void load_part_bodies(GrainSystem& system);
 /// Mark the parts that overlap as touching.
 void touch_near_parts(GrainSystem& system);
 
-/// A pair with the state of its contact.
+/// A pair with the state of its contact; j may be an image.
 std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
 
-/// Whether both bodies of a pair are whole discs, so that it is not a pair of parts.
+/// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// Replace the pairs by the contacts of a saved state, in the order of the lists.

@@ -23,6 +23,14 @@ void place_parts(GrainSystem& system) {
   turn_axes(system);
 }
 
+PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  PartPair pair;
+  if (system.shapes.parts.empty()) return pair;
+  pair.i = system.shapes.first_part[static_cast<std::size_t>(i)];
+  pair.j = system.shapes.first_part[static_cast<std::size_t>(j)];
+  return pair;
+}
+
 double longest_turn(const GrainSystem& system) {
   const std::vector<std::int32_t>& shaped = system.shapes.shaped;
   std::vector<double> ways(system.bodies.blocks.count());

@@ -12,6 +12,9 @@ namespace equidem {
 /// Set the parts of all bodies and their axes if the scene has ellipses or clumps.
 void place_parts(GrainSystem& system);
 
+/// The parts of two whole discs in a scene with shapes; {} in other scenes. \param j may be an image
+PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
+
 /// Update the axes to the present angles of the bodies.
 void turn_axes(GrainSystem& system);
 

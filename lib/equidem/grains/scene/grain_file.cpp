@@ -20,7 +20,7 @@ enum GrainColumn { x, y, radius, short_half_axis, vx, vy, spin, angle, density, 
 constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                            "spin", "angle", "density", "discs",           "group"};
 /// Columns that a run also writes, ignored by this reader.
-constexpr std::array ignored = {"grain", "mass_kg", "mass_kg_per_m"};
+constexpr std::array ignored = {"grain", "number", "mass_kg", "mass_kg_per_m"};
 
 /// The columns of a packing that is periodic.
 constexpr std::array period = {"period_x_m", "period_y_m"};
@@ -81,7 +81,7 @@ std::vector<Clump::Disc> clump_from(std::string_view text) {
 /// Reads a file of grains row by row.
 class GrainFile {
  public:
-  explicit GrainFile(const std::filesystem::path& path) : file_(path) {}
+  GrainFile(const std::filesystem::path& path, const std::optional<Vec2>& cell) : file_(path), cell_(cell) {}
 
   void read(std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) {
     if (!file_.next())
@@ -97,10 +97,15 @@ class GrainFile {
     at_.fill(width_);
     for (std::size_t c = 0; c < width_; ++c) {
       if (std::find(ignored.begin(), ignored.end(), cells[c]) != ignored.end()) continue;
-      if (std::find(period.begin(), period.end(), cells[c]) != period.end())
-        file_.fail(fmt::format("the column '{}' says that these bodies were packed in a periodic cell", cells[c]),
-                   "bodies that collide have no period: those at its sides would lose their neighbours",
-                   "Pack them with sides = \"walls\"; or delete the columns of the period to let them go as they lie");
+      if (const auto at = std::find(period.begin(), period.end(), cells[c]); at != period.end()) {
+        if (!cell_)
+          file_.fail(fmt::format("the column '{}' says that these bodies were packed in a periodic cell", cells[c]),
+                     "the case has none: those at its sides would lose their neighbours",
+                     "Add [cell] of that size, pack with sides = \"walls\", or delete the columns of the period to let "
+                     "them go as they lie");
+        period_at_[static_cast<std::size_t>(at - period.begin())] = c;
+        continue;
+      }
       const std::size_t column = column_of(cells[c]);
       if (column == columns) {
         const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));
@@ -145,6 +150,7 @@ class GrainFile {
       file_.fail(fmt::format("the row has {}", counted(count, "cell")),
                  fmt::format("the first row names {}", counted(static_cast<long long>(width_), "column")),
                  "Correct it");
+    check_period();
     Grain grain;
     grain.position = {number(x, 0), number(y, 0)};
     grain.velocity = {number(vx, 0), number(vy, 0)};
@@ -165,6 +171,20 @@ class GrainFile {
     bodies.densities.push_back(own);
     bodies.groups.push_back(read_group());
     bodies.lines.push_back(file_.line());
+  }
+
+  /// Those who packed the bodies closed the gaps across the sides of their cell.
+  void check_period() const {
+    constexpr double tolerance = 1e-9;
+    for (std::size_t k = 0; k < period.size(); ++k) {
+      if (!period_at_[k]) continue;
+      const std::string_view text = file_.cells()[*period_at_[k]];
+      const double wanted = k == 0 ? cell_->x : cell_->y;
+      const auto value = number_from<double>(text);
+      if (value && std::abs(*value - wanted) <= tolerance * wanted) continue;
+      file_.fail(fmt::format("these bodies were packed in a cell with {} = {} m", k == 0 ? "width" : "height", text),
+                 fmt::format("[cell] has {} m", wanted), "Give [cell] that size, or delete the columns of the period");
+    }
   }
 
   void read_shape(double own_density, GrainShapes& shapes, Grain& grain) const {
@@ -200,15 +220,18 @@ class GrainFile {
   }
 
   TableFile file_;
+  std::optional<Vec2> cell_;
+  std::array<std::optional<std::size_t>, 2> period_at_{};  ///< columns
   std::size_t width_ = 0;
   std::array<std::size_t, columns> at_{};
 };
 
 }  // namespace
 
-GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes) {
+GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes,
+                      const std::optional<Vec2>& cell) {
   GrainRows bodies;
-  GrainFile(path).read(density, shapes, bodies);
+  GrainFile(path, cell).read(density, shapes, bodies);
   return bodies;
 }
 

@@ -26,9 +26,11 @@ struct GrainRows {
 /// of a run has further columns, which are not read.
 /// \param density kg/m³, of bodies in a file without that column; none: the column is needed
 /// \param shapes in which distinct clumps are kept
+/// \param cell width and height of the periodic cell in which the bodies are to lie, m; none: there is no such cell
 /// \throws Error (bad_input) with file and line: no row of names, columns that are unknown, missing, in another unit or
-///         there twice, the period of a packing, cells that are no numbers, a density that is missing or not positive,
-///         a group that is called "walls", shapes as GrainShapes
-GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes);
+///         there twice, the period of a packing that is not that of the cell, cells that are no numbers, a density that
+///         is missing or not positive, a group that is called "walls", shapes as GrainShapes
+GrainRows read_grains(const std::filesystem::path& path, std::optional<double> density, GrainShapes& shapes,
+                      const std::optional<Vec2>& cell = {});
 
 }  // namespace equidem

@@ -135,7 +135,7 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
 
 /// Take bodies as their images inside a cell, and add the images that are near.
 void add_images(const PeriodicCell& cell, std::vector<Circle>& circles, std::vector<std::size_t>& grain_of) {
-  const Periods periods{{cell.width, 0}, {0, cell.height}};
+  const Periods periods = periods_of(cell);
   const Vec2 centre = cell.corner + 0.5 * Vec2{cell.width, cell.height};
   for (Circle& circle : circles) circle.centre += periods.shift(image_inside(periods, centre, circle.centre));
   for (const PeriodicImage& image : images_near(circles, periods, 0)) {
@@ -213,7 +213,7 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
               "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
   }
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
-  const double distance = norm(j.position - i.position);
+  const double distance = norm(rest_of(scene, bond.i, bond.j).branch);
   if (!(distance > nearest_centres_of_bonds * (i.radius + j.radius))) {
     bad_input(fmt::format("the centres of the bonded grains {} and {} are {:.3g} m apart", bond.i, bond.j, distance),
               "a bond lies along the line between them", "Move them apart");

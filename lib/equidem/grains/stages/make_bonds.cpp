@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "equidem/assembly/touching.hpp"
@@ -13,6 +15,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/neighbours/neighbours.hpp"
 
 namespace equidem {
 namespace {
@@ -32,6 +35,49 @@ BondRest rest_under(const GrainContact& contact, const GrainBond& bond, const Bo
   const double c = std::cos(turn), s = std::sin(turn);
   const Vec2 n = now.branch / length;
   return {at_rest * Vec2{c * n.x - s * n.y, s * n.x + c * n.y}, now.angle_i, now.angle_j};
+}
+
+/// The pairs whose gap is at most a share of the sum of their radii, as touching_discs; in a periodic cell with the
+/// nearest image. Ascending.
+std::set<PairOfGrains> near_discs(const GrainScene& scene, double gap_tolerance) {
+  std::set<PairOfGrains> pairs;
+  if (!scene.cell) {
+    Assembly discs;
+    for (const Grain& grain : scene.grains) {
+      discs.centres.push_back(grain.position);
+      discs.radii.push_back(grain.radius);
+    }
+    for (const Contact& near : touching_discs(discs, gap_tolerance))
+      pairs.insert(std::minmax(static_cast<std::size_t>(near.i), static_cast<std::size_t>(near.j)));
+    return pairs;
+  }
+  constexpr double rounding_gap = 1e-9;  // of the smaller radius
+  std::vector<Circle> circles;
+  double largest = 0;
+  for (const Grain& grain : scene.grains) {
+    circles.push_back({grain.position, grain.radius});
+    largest = std::max(largest, grain.radius);
+  }
+  const std::size_t count = circles.size();
+  const double margin = 2 * largest * std::max(gap_tolerance, rounding_gap);
+  const Periods periods = periods_of(*scene.cell);
+  std::vector<std::size_t> bodies(count);
+  std::iota(bodies.begin(), bodies.end(), std::size_t{0});
+  for (const PeriodicImage& image : images_near(circles, periods, margin)) {
+    bodies.push_back(static_cast<std::size_t>(image.body));
+    circles.push_back({circles[bodies.back()].centre + periods.shift(image), circles[bodies.back()].radius});
+  }
+  const NeighbourList near = neighbours_within(circles, margin);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
+      const auto partner = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
+      const Circle &a = circles[i], &b = circles[partner];
+      const double gap = norm(b.centre - a.centre) - a.radius - b.radius;
+      if (gap <= std::max(rounding_gap * std::min(a.radius, b.radius), gap_tolerance * (a.radius + b.radius)))
+        pairs.insert(std::minmax(i, bodies[partner]));
+    }
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -68,29 +114,21 @@ double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds,
   return bond_step_limit(hexagon, bond_step);
 }
 
-std::vector<GrainBond> make_bonds(std::span<const Grain> grains, std::span<const GrainContact> contacts,
+std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const GrainContact> contacts,
                                   std::span<const GrainBond> known, const StageBonds& how) {
-  Assembly discs;
-  for (std::size_t k = 0; k < grains.size(); ++k) {
-    discs.centres.push_back(grains[k].position);
-    discs.radii.push_back(grains[k].radius);
-  }
   std::set<PairOfGrains> tied;
   for (const GrainBond& bond : known) tied.insert(std::minmax(bond.i, bond.j));
   std::map<PairOfGrains, const GrainContact*> pressed;
   for (const GrainContact& contact : contacts)
     if (contact.j >= 0) pressed[{static_cast<std::size_t>(contact.i), static_cast<std::size_t>(contact.j)}] = &contact;
   std::vector<GrainBond> made;
-  for (const Contact& near : touching_discs(discs, how.gap_tolerance)) {
-    GrainBond bond = how.like;
-    std::tie(bond.i, bond.j) = std::minmax(static_cast<std::size_t>(near.i), static_cast<std::size_t>(near.j));
-    if (tied.contains({bond.i, bond.j})) continue;
-    bond.rest = rest_of(grains[bond.i], grains[bond.j]);
-    if (const auto at = pressed.find({bond.i, bond.j}); at != pressed.end())
-      bond.rest = rest_under(*at->second, bond, *bond.rest);
-    made.push_back(bond);
+  for (const PairOfGrains& near : near_discs(scene, how.gap_tolerance)) {
+    if (tied.contains(near)) continue;
+    GrainBond& bond = made.emplace_back(how.like);
+    std::tie(bond.i, bond.j) = near;
+    bond.rest = rest_of(scene, bond.i, bond.j);
+    if (const auto at = pressed.find(near); at != pressed.end()) bond.rest = rest_under(*at->second, bond, *bond.rest);
   }
-  std::ranges::sort(made, {}, [](const GrainBond& bond) { return PairOfGrains(bond.i, bond.j); });
   return made;
 }
 

@@ -23,11 +23,12 @@ struct StageBonds {
 /// The new bonds, ordered by i, then j > i. Discs that press each other keep their force: with f_N, f_T the normal
 /// (compression positive) and tangential force of the contact, the bond is at rest at |l0| = |l| + f_N/kN, turned by
 /// f_T |l|/(kT |l0|²), so that its springs carry what the contact did. A spring that the bond lacks carries nothing.
+/// \param scene its bodies, and its periodic cell with the present periods
 /// \param contacts of the last step
 /// \param known bonds so far, broken ones too: their discs are not bonded again
 /// \throws Error (bad_input) where a spring is so soft that it would have to be pressed to half its length, or turned
 ///         by more than a right angle, to carry the force of the contact
-std::vector<GrainBond> make_bonds(std::span<const Grain> grains, std::span<const GrainContact> contacts,
+std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const GrainContact> contacts,
                                   std::span<const GrainBond> known, const StageBonds& how);
 
 /// \throws Error (bad_input): a grain that is no disc, bonds that no law or step of the options allows, as check_bonds

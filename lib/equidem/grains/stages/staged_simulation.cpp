@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 /// Steps between two looks at what ends a stage: at rest takes all contacts, walls are few.
 constexpr std::int64_t steps_between_rests = 256, steps_between_places = 16;
-
-constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
 
 std::size_t index_of(const std::vector<WallState>& walls, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(walls, name, &WallState::name) - walls.begin());
@@ -39,11 +38,33 @@ void check_walls_of(const GrainStage& stage) {
               "Name a wall that stands in this stage");
   };
   if (stage.end.displacement > 0) need(stage.end.wall);
-  if (stage.end.strain > 0)
+  if (stage.end.of_cell && !(stage.scene.cell && stage.scene.cell->along == PeriodicCell::Along::xy))
+    bad_input(fmt::format("stage '{}' ends by the strain of a periodic cell", stage.name),
+              "there is no cell that repeats along x and y", "Name two walls between which the strain is");
+  if (stage.end.strain > 0 && !stage.end.of_cell)
     for (const std::string& name : stage.end.walls) need(name);
 }
 
+double component_of(const Voigt& strain, StageEnd::CellStrain which) {
+  switch (which) {
+    case StageEnd::CellStrain::xx:
+      return strain.xx;
+    case StageEnd::CellStrain::yy:
+      return strain.yy;
+    case StageEnd::CellStrain::xy:
+      break;
+  }
+  return strain.xy;
+}
+
 }  // namespace
+
+std::vector<std::string> active_effects(const Effects& effects) {
+  std::vector<std::string> names;
+  for (const Effects::Entry& entry : effects.entries)
+    if (entry.active) names.push_back(entry.name);
+  return names;
+}
 
 void check_start(const Wall& wall) {
   const Vec2 jump = wall.displacement(0);
@@ -55,55 +76,35 @@ void check_start(const Wall& wall) {
 
 StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOptions& options)
     : AnySimulation(BodyFamily::colliding, options.time_step), stages_(std::move(stages)), options_(options) {
+  const GrainStage& first = stages_.front();
+  options_.reference_length = reference_length(first.scene, options);
+  if (first.bodies.change())
+    bad_input(fmt::format("stage '{}' changes the bodies", first.name), "it is the first, and begins with the scene",
+              "Give the scene those bodies");
   for (std::size_t k = 0; k < stages_.size(); ++k) {
-    if (stages_.size() > 1 && stages_[k].scene.cell)
-      bad_input(fmt::format("stage '{}' has a periodic cell", stages_[k].name),
-                "a stage does not take over the cell of the one before", "Run one scene, with schedules in the cell");
+    if (stages_[k].scene.cell.has_value() != first.scene.cell.has_value())
+      bad_input(fmt::format("of the stages '{}' and '{}' one has a periodic cell", first.name, stages_[k].name),
+                "a cell neither comes nor goes", "Give all stages the cell, or none");
     check_walls_of(stages_[k]);
-    const bool breaks = stages_.front().scene.strengths.has_value();
+    const bool breaks = first.scene.strengths.has_value();
     if (const auto& made = stages_[k].bonds;
-        made && made->strengths.has_value() != breaks && !stages_.front().scene.bonds.empty())
+        made && made->strengths.has_value() != breaks && !first.scene.bonds.empty())
       bad_input(
           fmt::format("of the bonds of stage '{}' and those before it some alone have strengths", stages_[k].name),
           "those without would never break, and none says so", "Give strengths to all bonds, or to none");
-    if (const auto& made = stages_[k].bonds) check(*made, stages_.front().scene.grains, options);
+    if (const auto& made = stages_[k].bonds) check(*made, first.scene.grains, options_);
     for (const Wall& wall : stages_[k].scene.walls)
       if (k > 0 &&
           std::ranges::find(stages_[k - 1].scene.walls, wall.name, &Wall::name) != stages_[k - 1].scene.walls.end())
         check_start(wall);
   }
+  start_ = start_of_first();
   bonds_ = bonds_at_start();
-  present_ = std::make_unique<GrainSimulation>(scene_of(0, 0, {}, bonds_), options_);
+  present_ = std::make_unique<GrainSimulation>(scene_of(0, 0, start_, bonds_), options_);
   initial_ = present_->energy().initial;
   reports_.push_back(
-      {.name = stages_.front().name, .effects = present_->effects(), .bonds_made = bonds_.stages.size()});
+      {.name = first.name, .effects = active_effects(present_->effects()), .bonds_made = bonds_.stages.size()});
   for (const WallState& wall : present_->walls()) start_.walls.push_back(wall.place);
-}
-
-StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
-  const GrainScene& scene = stages_.front().scene;
-  Bonds bonds{scene.bonds, scene.strengths, {}};
-  for (GrainBond& bond : bonds.all)
-    if (!bond.rest) bond.rest = rest_of(scene.grains.at(bond.i), scene.grains.at(bond.j));
-  return bonds_of(0, std::move(bonds), scene.grains, {});
-}
-
-StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, std::span<const Grain> grains,
-                                                   std::span<const GrainContact> contacts) const {
-  if (!stages_[stage].bonds) return bonds;
-  const StageBonds& how = *stages_[stage].bonds;
-  GrainScene scene;
-  scene.grains.assign(grains.begin(), grains.end());
-  scene.bonds = make_bonds(grains, contacts, bonds.all, how);
-  if (how.strengths) {
-    const ContactStrengths made = bond_strengths(scene, *how.strengths);
-    if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
-    bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
-    bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
-  }
-  bonds.all.insert(bonds.all.end(), scene.bonds.begin(), scene.bonds.end());
-  bonds.stages.insert(bonds.stages.end(), scene.bonds.size(), stage);
-  return bonds;
 }
 
 void StagedSimulation::advance(std::int64_t steps) {
@@ -148,7 +149,11 @@ bool StagedSimulation::holds(const StageEnd& end) {
     report.displacement = norm(walls[w].place - start_.walls[w]);
     all = all && report.displacement >= end.displacement;
   }
-  if (end.strain > 0) {
+  if (end.strain > 0 && end.of_cell) {
+    report.strain =
+        std::abs(component_of(present_->cell()->strain, *end.of_cell) - component_of(start_.strain, *end.of_cell));
+    all = all && report.strain >= end.strain;
+  } else if (end.strain > 0) {
     const std::size_t a = index_of(walls, end.walls[0]), b = index_of(walls, end.walls[1]);
     const Vec2 across = present_->placed_walls()[a].normal;  // points on lines may lie anywhere along them
     const double before = dot(start_.walls[b] - start_.walls[a], across),
@@ -159,8 +164,7 @@ bool StagedSimulation::holds(const StageEnd& end) {
   if (!end.at_rest() || !all) return all;
   const EnergyLedger energy = present_->energy();
   report.kinetic = energy.elastic() > 0 ? energy.kinetic / energy.elastic() : StageEnd::infinite;
-  const std::vector<GrainBond> left = bonds_left(bonds_.all, present_->breaks());
-  report.unbalanced = unbalance_of(*present_, left, stages_[number()].scene.gravity).mean;
+  report.unbalanced = unbalance_of(*present_, holding_bonds().bonds, stages_[number()].scene.gravity).mean;
   return report.kinetic <= end.kinetic && report.unbalanced <= end.unbalanced;
 }
 
@@ -172,8 +176,11 @@ void StagedSimulation::refuse_endless() const {
     missing.push_back(fmt::format("wall '{}' has moved {:.3g} m, {:.3g} m are wanted", stage.end.wall,
                                   report.displacement, stage.end.displacement));
   if (stage.end.strain > 0 && report.strain < stage.end.strain)
-    missing.push_back(fmt::format("the strain between '{}' and '{}' is {:.3g}, {:.3g} is wanted", stage.end.walls[0],
-                                  stage.end.walls[1], report.strain, stage.end.strain));
+    missing.push_back(fmt::format("the strain {} is {:.3g}, {:.3g} is wanted",
+                                  stage.end.of_cell
+                                      ? fmt::format("{} of the cell", to_string(*stage.end.of_cell))
+                                      : fmt::format("between '{}' and '{}'", stage.end.walls[0], stage.end.walls[1]),
+                                  report.strain, stage.end.strain));
   if (missing.empty() && report.kinetic > stage.end.kinetic)
     missing.push_back(fmt::format("the kinetic energy is {:.3g} of the elastic one, {:.3g} is rest", report.kinetic,
                                   stage.end.kinetic));
@@ -183,65 +190,48 @@ void StagedSimulation::refuse_endless() const {
   throw Error(ErrorKind::computation_failed,
               fmt::format("it has not met its end in {:.6g} s", static_cast<double>(stage.steps) * options_.time_step),
               joined(missing), "Give it a longer duration and go on with --resume, or change what ends it",
-              fmt::format("stage '{}'", stage.name));
+              stage.where());
 }
 
-/// The scene of a stage that begins with a step.
-GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, const Start& start,
-                                      const Bonds& bonds) const {
-  GrainScene scene = stages_[stage].scene;
-  scene.bonds = bonds.all;
-  scene.strengths = bonds.strengths;
-  const double time = static_cast<double>(first) * options_.time_step;
-  for (std::size_t w = 0; w < start.walls.size(); ++w) {
-    Wall& wall = scene.walls[w];
-    wall.end += start.walls[w] - wall.point;
-    wall.point = start.walls[w];
-    wall.move_x = delayed(wall.move_x, time);
-    wall.move_y = delayed(wall.move_y, time);
-    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time);
-  }
-  return scene;
+std::vector<BondBreak> StagedSimulation::breaks() const {
+  std::vector<BondBreak> here = present_->breaks(), all;
+  const std::vector<std::size_t> numbers_of_bonds = bonds_between(numbers(), bonds_).numbers;
+  for (BondBreak& event : here) event.bond = numbers_of_bonds[event.bond];
+  std::ranges::merge(past_breaks_, here, std::back_inserter(all), {}, &BondBreak::step, &BondBreak::step);
+  return all;
 }
 
-/// The places of the walls of a stage that follows the present one.
-std::vector<Vec2> StagedSimulation::places_in(std::size_t stage) const {
-  const std::vector<WallState> standing = present_->walls();
-  std::vector<Vec2> places;
-  for (const Wall& wall : stages_[stage].scene.walls) {
-    const std::size_t w = index_of(standing, wall.name);
-    places.push_back(w < standing.size() ? standing[w].place : wall.point);
+StagedSimulation::HoldingBonds StagedSimulation::holding_bonds() const {
+  const SceneBonds between = bonds_between(numbers(), bonds_);
+  std::vector<char> broken(between.bonds.size(), 0);
+  for (const BondBreak& event : present_->breaks()) broken[event.bond] = 1;
+  HoldingBonds holding;
+  for (std::size_t b = 0; b < broken.size(); ++b) {
+    if (broken[b] != 0) continue;
+    holding.bonds.push_back(between.bonds[b]);
+    if (!bonds_.strengths) continue;
+    holding.strengths.tension.push_back(bonds_.strengths->tension[between.numbers[b]]);
+    holding.strengths.shear.push_back(bonds_.strengths->shear[between.numbers[b]]);
   }
-  return places;
+  return holding;
 }
 
-void StagedSimulation::begin_stage() {
-  const EnergyLedger before = energy();
-  const std::size_t next = number() + 1;
-  Start start{places_in(next), present_->motions(), present_->velocities()};
-  Bonds bonds;
-  std::unique_ptr<GrainSimulation> simulation;
-  try {
-    bonds = bonds_of(next, bonds_, present_->grains(), present_->contacts());
-    simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_, *present_,
-                                                   start.motions, start.velocities);
-    simulation->take_over(*present_);
-  } catch (const Error& error) {
-    throw error.at(fmt::format("stage '{}'", stages_[next].name));
+std::vector<DiscMotion> StagedSimulation::of_run(const std::vector<DiscMotion>& here) const {
+  std::vector<DiscMotion> all(first_added(stages_.size()), not_there);
+  for (std::size_t k = 0; k < here.size(); ++k) all[numbers()[k]] = here[k];
+  return all;
+}
+
+std::vector<BodyContact> StagedSimulation::body_contacts() const {
+  std::vector<BodyContact> contacts = present_->body_contacts();
+  const auto number = [&](std::int32_t place) {
+    return static_cast<std::int32_t>(numbers()[static_cast<std::size_t>(place)]);
+  };
+  for (BodyContact& contact : contacts) {
+    contact.i = number(contact.i);
+    if (contact.j >= 0) contact.j = number(contact.j);
   }
-  const std::size_t made = bonds.all.size() - bonds_.all.size();
-  reports_.push_back({.name = stages_[next].name,
-                      .first = step(),
-                      .last = step(),
-                      .effects = simulation->effects(),
-                      .bonds_made = made});
-  present_ = std::move(simulation);
-  start_ = std::move(start);
-  bonds_ = std::move(bonds);
-  const EnergyLedger after = present_->energy();
-  potential_ = before.potential;
-  const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
-  if (std::abs(change) > energy_rounding * stored) changes_ += change;
+  return contacts;
 }
 
 std::int64_t StagedSimulation::milestone() const {

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/grains/stages/make_bonds.hpp"
+#include "equidem/grains/stages/stage_bodies.hpp"
 #include "equidem/motion/servo.hpp"
 
 namespace equidem {
@@ -25,6 +27,9 @@ struct StageEnd {
   /// The distance of two walls has changed by this share of what it was at the start of the stage; 0: not looked at.
   double strain = 0;
   std::array<std::string, 2> walls = {};
+  /// Instead of walls: this component of the strain of the periodic cell has changed by `strain` since then.
+  enum class CellStrain { xx, yy, xy };
+  std::optional<CellStrain> of_cell = {};
   /// A wall has moved so far since the start of the stage, m; 0: not looked at.
   double displacement = 0;
   std::string wall = {};
@@ -34,15 +39,27 @@ struct StageEnd {
   [[nodiscard]] bool given() const { return at_rest() || strain > 0 || displacement > 0; }
 };
 
-/// \param scene its bodies, bonds and strengths count in the first stage alone; its walls are all that there are. Of a
-///        wall that was there in the stage before, the place is not read: it stays where it is. Schedules begin with
-///        the stage.
+/// \param scene its bodies, bonds and strengths count in the first stage alone, its clumps are those of all bodies so
+///        far, its walls are all that there are. Of a wall that was there in the stage before, the place is not read:
+///        it stays where it is. All stages have a periodic cell or none; its periods count in the first stage alone.
+///        Schedules begin with the stage.
 struct GrainStage {
   std::string name;
   GrainScene scene;
   std::int64_t steps = 0;  ///< its length or, with an end, its limit
   StageEnd end = {};
-  std::optional<StageBonds> bonds = {};  ///< made at its start
+  StageBodies bodies = {};               ///< changed at its start; of the first stage not at all
+  std::optional<StageBonds> bonds = {};  ///< made at its start, then
+  std::string place = {};                ///< in the user's input, for messages; empty: not known
+
+  [[nodiscard]] std::string where() const { return (place.empty() ? "" : place + ": ") + "stage '" + name + "'"; }
+};
+
+template <>
+struct EnumNames<StageEnd::CellStrain> {
+  using enum StageEnd::CellStrain;
+  static constexpr const char* what = "component of strain";
+  static constexpr NamedValue<StageEnd::CellStrain> list[] = {{xx, "xx"}, {yy, "yy"}, {xy, "xy"}};
 };
 
 /// How a stage went.
@@ -52,32 +69,48 @@ struct StageReport {
   bool over = false;
   bool ended = false;                                                ///< by its end; false: by its length, or not yet
   double kinetic = 0, unbalanced = 0, strain = 0, displacement = 0;  ///< when they were last looked at
-  Effects effects = {};
-  std::size_t bonds_made = 0;            ///< at its start
-  std::vector<ServoReport> servos = {};  ///< at its end; empty before
+  std::vector<std::string> effects = {};                             ///< names of those that were active
+  std::size_t removed = 0, renamed = 0, added = 0;                   ///< bodies, at its start
+  std::size_t bonds_made = 0;                                        ///< likewise
+  std::vector<ServoReport> servos = {};                              ///< at its end; empty before
 };
+
+/// The names of the effects that are active.
+std::vector<std::string> active_effects(const Effects& effects);
 
 /// \throws Error (bad_input) if a wall that stands would jump where its schedules begin
 void check_start(const Wall& wall);
 
 /// A stage that does not meet its end within its limit stops the simulation: advance() throws there, and again in every
-/// call. Energies that change where a stage begins, because walls go or springs change, are in
-/// EnergyLedger::work_of_stages.
+/// call. Energies that change where a stage begins, because walls or bodies go or come, or springs change, are in
+/// EnergyLedger::work_of_stages. motions(), velocities() and body_contacts() number all bodies of the run.
 class StagedSimulation final : public AnySimulation {
  public:
   /// \param stages at least one
+  /// \param options a reference length of 0 is that of the first scene, in all stages
   /// \throws Error as GrainSimulation and make_bonds, for the first stage; (bad_input) two walls of one name in a
-  ///         stage, an end that names no wall of the stage, walls as check_start, strengths of some bonds alone
+  ///         stage, an end that names no wall of the stage or a cell that is not there, walls as check_start, strengths
+  ///         of some bonds alone, bodies that the first stage changes, a cell that not all stages have
   StagedSimulation(std::vector<GrainStage> stages, const GrainOptions& options);
 
-  /// The simulation of the present stage.
+  /// The simulation of the present stage; it counts the bodies that are there.
   [[nodiscard]] const GrainSimulation& present() const { return *present_; }
+  /// The numbers of these bodies in the run, ascending.
+  [[nodiscard]] const std::vector<std::size_t>& numbers() const { return start_.bodies.numbers; }
   [[nodiscard]] const std::vector<StageReport>& reports() const { return reports_; }
-  /// All bonds so far, broken ones too: those of the first scene, then those made in stages. BondBreak::bond is their
-  /// number.
+  /// All bonds so far, broken ones too, between bodies as they are numbered in the run: those of the first scene, then
+  /// those made in stages. BondBreak::bond is their number.
   [[nodiscard]] std::span<const GrainBond> bonds() const { return bonds_.all; }
   /// Their strengths; null: they do not break.
   [[nodiscard]] const ContactStrengths* strengths() const { return bonds_.strengths ? &*bonds_.strengths : nullptr; }
+  /// Bonds that broke in all stages, in the order of time.
+  [[nodiscard]] std::vector<BondBreak> breaks() const;
+  /// The bonds that hold, between bodies as present() counts them, and their strengths, empty where they do not break.
+  struct HoldingBonds {
+    std::vector<GrainBond> bonds;
+    ContactStrengths strengths;
+  };
+  [[nodiscard]] HoldingBonds holding_bonds() const;
 
   [[nodiscard]] const Effects& effects() const override { return present_->effects(); }
   /// Stops at the end of a stage; the next call goes on with the next one.
@@ -87,25 +120,32 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] std::int64_t step() const override { return present_->step(); }
   [[nodiscard]] std::int64_t milestone() const override;
   [[nodiscard]] bool over() const override;
-  [[nodiscard]] std::vector<DiscMotion> motions() const override { return present_->motions(); }
-  [[nodiscard]] std::vector<DiscMotion> velocities() const override { return present_->velocities(); }
-  [[nodiscard]] std::vector<BodyContact> body_contacts() const override { return present_->body_contacts(); }
+  /// Of all bodies of the run; not_there: those that are gone, or come later.
+  [[nodiscard]] std::vector<DiscMotion> motions() const override { return of_run(present_->motions()); }
+  [[nodiscard]] std::vector<DiscMotion> velocities() const override { return of_run(present_->velocities()); }
+  [[nodiscard]] std::vector<BodyContact> body_contacts() const override;
   [[nodiscard]] EnergyLedger energy() const override;
   [[nodiscard]] std::vector<WallState> walls() const override { return present_->walls(); }
   [[nodiscard]] std::optional<CellState> cell() const override { return present_->cell(); }
   [[nodiscard]] double bytes_per_body() const override { return present_->bytes_per_body(); }
-  /// Arrays of the present GrainSimulation; stages: first, last, over, ended and the values of StageReport, a row for
-  /// each stage that has begun; stage_walls: places of the walls at the start of the present stage; stage_motions,
-  /// stage_velocities: of the bodies there, where it is not the first; stage_bonds: made so far, with stage, i, j, rest
-  /// and strengths; stage_servos: the reports of stages that are over; stage_energies.
+  /// Arrays of the present GrainSimulation; stages: first, last, over, ended, the values of StageReport and its effects
+  /// as bits, a row for each stage that has begun; stage_walls: places of the walls at the start of the present stage;
+  /// stage_cell: width, height, shift, corner and strain of the cell there; stage_bodies: numbers and kinds of the
+  /// bodies in the order of the loops; stage_motions, stage_velocities: of the bodies at the start of the present
+  /// stage, where it is not the first; stage_bonds: made so far, with stage, i, j, rest and strengths; stage_breaks: of
+  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_energies.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
+  /// The number of stages that have begun in a saved state; 0: it is of no simulation in stages.
+  [[nodiscard]] static std::size_t stages_begun(const SavedState& state);
 
  private:
   /// Where a stage has begun.
   struct Start {
-    std::vector<Vec2> walls;                      ///< places
-    std::vector<DiscMotion> motions, velocities;  ///< of the bodies; empty in the first stage
+    std::vector<Vec2> walls;  ///< places
+    PresentBodies bodies;
+    std::optional<PeriodicCell> cell = {};  ///< its periods
+    Voigt strain = {};                      ///< of the cell
   };
   /// The bonds of all stages that have begun.
   struct Bonds {
@@ -113,17 +153,29 @@ class StagedSimulation final : public AnySimulation {
     std::optional<ContactStrengths> strengths;
     std::vector<std::size_t> stages;  ///< in which they were made, of those behind the bonds of the first scene
   };
+  /// The bonds of a scene: those of `all` whose bodies are there.
+  struct SceneBonds {
+    std::vector<std::size_t> numbers;  ///< in Bonds::all, ascending
+    std::vector<GrainBond> bonds;      ///< between bodies of the scene
+  };
 
   [[nodiscard]] std::size_t number() const { return reports_.size() - 1; }
+  [[nodiscard]] std::vector<DiscMotion> of_run(const std::vector<DiscMotion>& here) const;
+  [[nodiscard]] std::size_t first_added(std::size_t stage) const;
+  [[nodiscard]] const Grain& body_of_run(std::size_t number) const;
+  [[nodiscard]] static SceneBonds bonds_between(const std::vector<std::size_t>& bodies, const Bonds& bonds);
   [[nodiscard]] GrainScene scene_of(std::size_t stage, std::int64_t first, const Start& start,
                                     const Bonds& bonds) const;
   [[nodiscard]] std::vector<Vec2> places_in(std::size_t stage) const;
+  [[nodiscard]] Start start_of_first() const;
   [[nodiscard]] Bonds bonds_at_start() const;
   /// The bonds with those that a stage makes.
-  [[nodiscard]] Bonds bonds_of(std::size_t stage, Bonds bonds, std::span<const Grain> grains,
+  [[nodiscard]] Bonds bonds_of(std::size_t stage, Bonds bonds, const Start& start,
                                std::span<const GrainContact> contacts) const;
   [[nodiscard]] Bonds bonds_in(const SavedState& state, std::size_t begun) const;
+  [[nodiscard]] Start start_in(const SavedState& state, std::size_t begun, std::vector<std::size_t>& order) const;
   void begin_stage();
+  void keep_past_breaks(const std::vector<std::size_t>& bodies_left);
   void look_for_end();
   [[nodiscard]] bool holds(const StageEnd& end);
   [[noreturn]] void refuse_endless() const;
@@ -134,6 +186,7 @@ class StagedSimulation final : public AnySimulation {
   std::vector<StageReport> reports_;
   Start start_;  ///< of the present stage
   Bonds bonds_;
+  std::vector<BondBreak> past_breaks_;                ///< of bonds whose bodies are gone
   double initial_ = 0, potential_ = 0, changes_ = 0;  ///< J: at the start; up to the present stage
 };
 

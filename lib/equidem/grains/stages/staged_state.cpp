@@ -5,22 +5,36 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr std::size_t numbers_per_stage = 8, numbers_of_made_bond = 9, numbers_of_servo_report = 7;
+constexpr std::size_t numbers_per_stage = 11, numbers_of_made_bond = 9, numbers_of_servo_report = 7,
+                      numbers_of_cell_start = 8;
 
-std::vector<double> numbers_of_reports(const std::vector<StageReport>& reports) {
+/// \param effects all that there are, in the order of their bits
+std::vector<double> numbers_of_reports(const std::vector<StageReport>& reports, const Effects& effects) {
   std::vector<double> numbers;
   for (const StageReport& report : reports) {
+    double bits = 0;
+    for (std::size_t k = 0; k < effects.entries.size(); ++k)
+      if (std::ranges::find(report.effects, effects.entries[k].name) != report.effects.end())
+        bits += std::ldexp(1.0, static_cast<int>(k));
     numbers.insert(numbers.end(),
                    {static_cast<double>(report.first), static_cast<double>(report.last), report.over ? 1.0 : 0.0,
-                    report.ended ? 1.0 : 0.0, report.kinetic, report.unbalanced, report.strain, report.displacement});
+                    report.ended ? 1.0 : 0.0, report.kinetic, report.unbalanced, report.strain, report.displacement,
+                    static_cast<double>(report.removed), static_cast<double>(report.renamed), bits});
   }
   return numbers;
+}
+
+std::vector<std::string> effects_of_bits(const Effects& effects, double bits) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < effects.entries.size(); ++k)
+    if (std::fmod(std::floor(std::ldexp(bits, -static_cast<int>(k))), 2) == 1) names.push_back(effects.entries[k].name);
+  return names;
 }
 
 std::vector<double> numbers_of_servos(const std::vector<StageReport>& reports) {
@@ -32,8 +46,8 @@ std::vector<double> numbers_of_servos(const std::vector<StageReport>& reports) {
   return numbers;
 }
 
-/// A report of a stage, without its effects.
-StageReport report_of(const std::string& name, const double* row) {
+/// A report of a stage, without what it added and made.
+StageReport report_of(const std::string& name, const double* row, const Effects& effects) {
   return {.name = name,
           .first = static_cast<std::int64_t>(row[0]),
           .last = static_cast<std::int64_t>(row[1]),
@@ -42,7 +56,10 @@ StageReport report_of(const std::string& name, const double* row) {
           .kinetic = row[4],
           .unbalanced = row[5],
           .strain = row[6],
-          .displacement = row[7]};
+          .displacement = row[7],
+          .effects = effects_of_bits(effects, row[10]),
+          .removed = static_cast<std::size_t>(row[8]),
+          .renamed = static_cast<std::size_t>(row[9])};
 }
 
 [[noreturn]] void refuse_state(const std::string& what, const std::string& why) {
@@ -83,6 +100,20 @@ SavedState StagedSimulation::save() const {
   SavedState state = present_->save();
   SavedArray walls{.name = "stage_walls", .columns = 2, .values = {}};
   for (const Vec2 place : start_.walls) walls.values.insert(walls.values.end(), {place.x, place.y});
+  SavedArray cell{.name = "stage_cell", .columns = 1, .values = {}};
+  if (start_.cell)
+    cell.values = {start_.cell->width,    start_.cell->height, start_.cell->shift, start_.cell->corner.x,
+                   start_.cell->corner.y, start_.strain.xx,    start_.strain.yy,   start_.strain.xy};
+  SavedArray bodies{.name = "stage_bodies", .columns = 2, .values = {}};
+  std::vector<DiscMotion> places, velocities;
+  for (const std::size_t k : present_->order())
+    bodies.values.insert(bodies.values.end(),
+                         {static_cast<double>(numbers()[k]), static_cast<double>(start_.bodies.grains[k].kind)});
+  for (std::size_t k = 0; number() > 0 && k < start_.bodies.grains.size(); ++k) {
+    const Grain& grain = start_.bodies.grains[k];
+    places.push_back({grain.position, grain.angle});
+    velocities.push_back({grain.velocity, grain.spin});
+  }
   SavedArray made{.name = "stage_bonds", .columns = numbers_of_made_bond, .values = {}};
   const std::size_t first = bonds_.all.size() - bonds_.stages.size();
   for (std::size_t k = 0; k < bonds_.stages.size(); ++k) {
@@ -93,11 +124,14 @@ SavedState StagedSimulation::save() const {
                         bonds_.strengths ? bonds_.strengths->tension[first + k] : 0,
                         bonds_.strengths ? bonds_.strengths->shear[first + k] : 0});
   }
-  state.arrays.push_back({"stages", numbers_per_stage, numbers_of_reports(reports_)});
+  state.arrays.push_back({"stages", numbers_per_stage, numbers_of_reports(reports_, present_->effects())});
   state.arrays.push_back(std::move(walls));
-  state.arrays.push_back({"stage_motions", 3, numbers_of(start_.motions)});
-  state.arrays.push_back({"stage_velocities", 3, numbers_of(start_.velocities)});
+  state.arrays.push_back(std::move(cell));
+  state.arrays.push_back(std::move(bodies));
+  state.arrays.push_back({"stage_motions", 3, numbers_of(places)});
+  state.arrays.push_back({"stage_velocities", 3, numbers_of(velocities)});
   state.arrays.push_back(std::move(made));
+  state.arrays.push_back({"stage_breaks", numbers_per_break, numbers_of(past_breaks_)});
   state.arrays.push_back({"stage_servos", numbers_of_servo_report, numbers_of_servos(reports_)});
   state.arrays.push_back({"stage_energies", 1, {initial_, potential_, changes_}});
   return state;
@@ -130,34 +164,80 @@ StagedSimulation::Bonds StagedSimulation::bonds_in(const SavedState& state, std:
   return bonds;
 }
 
+/// \param[out] order of the bodies in the loops
+StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std::size_t begun,
+                                                   std::vector<std::size_t>& order) const {
+  const std::vector<double>&walls = state["stage_walls"], &bodies = state["stage_bodies"], &cell = state["stage_cell"];
+  const std::vector<DiscMotion> places = motions_of(state["stage_motions"]),
+                                velocities = motions_of(state["stage_velocities"]);
+  const std::size_t count = bodies.size() / 2;
+  Start start{.walls = {}, .bodies = {}, .cell = stages_[begun - 1].scene.cell};
+  std::vector<std::pair<std::size_t, int>> present;  // number and kind
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto number = static_cast<std::size_t>(bodies[2 * k]);
+    if (!(bodies[2 * k] >= 0) || number >= first_added(begun))
+      refuse_state(fmt::format("the saved state has a body {}", bodies[2 * k]),
+                   fmt::format("this run has {} until then", first_added(begun)));
+    present.emplace_back(number, static_cast<int>(bodies[2 * k + 1]));
+  }
+  std::ranges::sort(present);
+  const auto same_number = [](const auto& a, const auto& b) { return a.first == b.first; };
+  const std::size_t moved = begun > 1 ? count : 0;
+  if (std::ranges::adjacent_find(present, same_number) != present.end() || places.size() != moved ||
+      velocities.size() != moved || cell.size() != (start.cell ? numbers_of_cell_start : 0))
+    refuse_state(fmt::format("the saved state is of {} bodies", count), "its parts do not belong together");
+  for (const auto& [number, kind] : present) {
+    const std::size_t k = start.bodies.numbers.size();
+    start.bodies.numbers.push_back(number);
+    Grain& grain = start.bodies.grains.emplace_back(body_of_run(number));
+    grain.kind = kind;
+    if (begun == 1) continue;
+    grain.position = places[k].u, grain.angle = places[k].theta;
+    grain.velocity = velocities[k].u, grain.spin = velocities[k].theta;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto at = std::ranges::lower_bound(start.bodies.numbers, static_cast<std::size_t>(bodies[2 * k]));
+    order.push_back(static_cast<std::size_t>(at - start.bodies.numbers.begin()));
+  }
+  for (std::size_t w = 0; w < walls.size(); w += 2) start.walls.push_back({walls[w], walls[w + 1]});
+  if (!start.cell) return start;
+  start.cell->width = cell[0], start.cell->height = cell[1], start.cell->shift = cell[2];
+  start.cell->corner = {cell[3], cell[4]};
+  start.strain = {cell[5], cell[6], cell[7]};
+  return start;
+}
+
+std::size_t StagedSimulation::stages_begun(const SavedState& state) {
+  const auto found = std::ranges::find(state.arrays, "stages", &SavedArray::name);
+  return found == state.arrays.end() ? 0 : found->values.size() / numbers_per_stage;
+}
+
 void StagedSimulation::restore(const SavedState& state) {
-  const std::vector<double>&stages = state["stages"], &walls = state["stage_walls"], &sums = state["stage_energies"];
-  const std::size_t begun = stages.size() / numbers_per_stage;
+  const std::vector<double>&stages = state["stages"], &sums = state["stage_energies"];
+  const std::size_t begun = stages_begun(state);
   if (begun < 1 || begun > stages_.size() || sums.size() != 3 ||
-      walls.size() != 2 * stages_[begun - 1].scene.walls.size())
+      state["stage_walls"].size() != 2 * stages_[begun - 1].scene.walls.size())
     refuse_state(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
                  fmt::format("this run has {} with other walls", stages_.size()));
   const Bonds bonds = bonds_in(state, begun);
+  std::vector<BondBreak> past = breaks_of(state["stage_breaks"]);
+  if (std::ranges::any_of(past, [&](const BondBreak& event) { return event.bond >= bonds.all.size(); }))
+    refuse_state("the saved state has breaks of bonds that are not there", "its file may be damaged");
+  std::vector<std::size_t> order;
+  Start start = start_in(state, begun, order);
+  const auto first = static_cast<std::int64_t>(stages[numbers_per_stage * (begun - 1)]);
+  auto simulation = std::make_unique<GrainSimulation>(
+      begun == 1 ? scene_of(0, 0, start_of_first(), bonds) : scene_of(begun - 1, first, start, bonds), options_, order);
+  simulation->restore(state);
   std::vector<StageReport> reports;
   for (std::size_t k = 0; k < begun; ++k) {
-    StageReport& report = reports.emplace_back(report_of(stages_[k].name, stages.data() + numbers_per_stage * k));
+    StageReport& report =
+        reports.emplace_back(report_of(stages_[k].name, stages.data() + numbers_per_stage * k, simulation->effects()));
+    report.added = stages_[k].bodies.added.size();
     report.bonds_made = static_cast<std::size_t>(std::ranges::count(bonds.stages, k));
-    GrainScene scene = stages_[k].scene;
-    const auto later = std::ranges::count_if(bonds.stages, [&](std::size_t stage) { return stage > k; });
-    scene.bonds.assign(bonds.all.begin(), bonds.all.end() - later);
-    scene.strengths = bonds.strengths;
-    report.effects = effects_of(scene, options_);
   }
   take_servos(state["stage_servos"], stages_, reports);
-  Start start{{}, motions_of(state["stage_motions"]), motions_of(state["stage_velocities"])};
-  for (std::size_t w = 0; w < walls.size(); w += 2) start.walls.push_back({walls[w], walls[w + 1]});
-  // the first stage begins with the scene, and its order of bodies is that of all stages
-  auto simulation =
-      std::make_unique<GrainSimulation>(scene_of(0, 0, {}, begun == 1 ? bonds : bonds_at_start()), options_);
-  if (begun > 1)
-    simulation = std::make_unique<GrainSimulation>(scene_of(begun - 1, reports.back().first, start, bonds), options_,
-                                                   *simulation, start.motions, start.velocities);
-  simulation->restore(state);
+  past_breaks_ = std::move(past);
   present_ = std::move(simulation);
   reports_ = std::move(reports);
   start_ = std::move(start);

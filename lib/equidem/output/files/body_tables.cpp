@@ -88,6 +88,7 @@ void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, b
   const auto any = [&](GrainShape shape) { return std::ranges::find(grains, shape, &Grain::shape) != grains.end(); };
   Table table;
   table.add("grain", grains, [&](const Grain& grain) { return &grain - grains.data(); });
+  if (!rows.numbers.empty()) table.add("number", rows.numbers, std::identity());
   table.add("group", rows.groups, std::identity());
   table.add("x_m", grains, [](const Grain& g) { return g.position.x; });
   table.add("y_m", grains, [](const Grain& g) { return g.position.y; });

@@ -31,16 +31,17 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
 struct GrainRows {
   std::span<const Grain> grains;
   std::span<const Clump> clumps;
-  std::span<const std::string> groups;  ///< of each grain
-  std::span<const double> densities;    ///< of each, kg/m³; empty: none is known
-  std::optional<Vec2> period = {};      ///< m, of a periodic packing
+  std::span<const std::string> groups;        ///< of each grain
+  std::span<const double> densities;          ///< of each, kg/m³; empty: none is known
+  std::optional<Vec2> period = {};            ///< m, of a periodic packing
+  std::span<const std::size_t> numbers = {};  ///< of each in its run; empty: as the rows
 };
 
-/// One row per grain: grain, group, x_m, y_m, radius_m, [short_half_axis_m,] vx_m_per_s, vy_m_per_s, spin_rad_per_s,
-/// angle_rad, [density_kg_per_m3,] [period_x_m, period_y_m,] [discs_m]. The columns in brackets are there where there
-/// are ellipses (empty of other bodies), densities, a period (the same in all rows) and clumps ("x y r; x y r" in the
-/// frame of the body, empty of other bodies). A case file reads it back with [grains] path, to the same bits, but
-/// refuses a period. \throws Error (bad_input) as write_file does
+/// One row per grain: grain, [number,] group, x_m, y_m, radius_m, [short_half_axis_m,] vx_m_per_s, vy_m_per_s,
+/// spin_rad_per_s, angle_rad, [density_kg_per_m3,] [period_x_m, period_y_m,] [discs_m]. The columns in brackets are
+/// there where there are numbers, ellipses (empty of other bodies), densities, a period (the same in all rows) and
+/// clumps ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with [grains]
+/// path, to the same bits, but refuses a period. \throws Error (bad_input) as write_file does
 void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite);
 
 /// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s,

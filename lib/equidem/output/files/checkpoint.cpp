@@ -23,7 +23,7 @@ namespace equidem {
 namespace {
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 7;
+constexpr int format_version = 8;
 constexpr std::size_t header_size = 512;
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.
@@ -112,22 +112,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   return lines;
-}
-
-/// "line 7: 'kT = 1' there, 'kT = 2' here", up to three lines; past a line that only one of the texts has they no
-/// longer stand side by side, and one is enough.
-std::string first_differences(std::string_view there, std::string_view here) {
-  const auto a = lines_of(there), b = lines_of(here);
-  const auto show = [](const std::vector<std::string_view>& lines, std::size_t k) {
-    return k < lines.size() ? fmt::format("'{}'", lines[k]) : std::string("nothing");
-  };
-  std::vector<std::string> shown;
-  const std::size_t most = a.size() == b.size() ? 3 : 1;
-  for (std::size_t k = 0; k < std::max(a.size(), b.size()) && shown.size() < most; ++k) {
-    if (k < a.size() && k < b.size() && a[k] == b[k]) continue;
-    shown.push_back(fmt::format("line {}: {} there, {} here", k + 1, show(a, k), show(b, k)));
-  }
-  return shown.empty() ? "the ends of their lines" : joined(shown, "; ");
 }
 
 constexpr std::string_view first_of_record = "energies";
@@ -251,6 +235,21 @@ std::string read_case(const OpenFile& file, const Hdf5Layout& layout) {
 }
 
 }  // namespace
+
+/// Past a line that only one of the texts has they no longer stand side by side, and one is enough.
+std::string first_differences(std::string_view there, std::string_view here) {
+  const auto a = lines_of(there), b = lines_of(here);
+  const auto show = [](const std::vector<std::string_view>& lines, std::size_t k) {
+    return k < lines.size() ? fmt::format("'{}'", lines[k]) : std::string("nothing");
+  };
+  std::vector<std::string> shown;
+  const std::size_t most = a.size() == b.size() ? 3 : 1;
+  for (std::size_t k = 0; k < std::max(a.size(), b.size()) && shown.size() < most; ++k) {
+    if (k < a.size() && k < b.size() && a[k] == b[k]) continue;
+    shown.push_back(fmt::format("line {}: {} there, {} here", k + 1, show(a, k), show(b, k)));
+  }
+  return shown.empty() ? "the ends of their lines" : joined(shown, "; ");
+}
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, std::string case_text, bool overwrite)
     : path_(std::move(path)), case_text_(std::move(case_text)) {

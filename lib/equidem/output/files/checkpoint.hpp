@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
@@ -72,6 +73,9 @@ class CheckpointWriter {
 /// \throws Error (bad_input) if the file does not exist, is not a checkpoint, is truncated or altered, was written by
 ///         another version of the format or the library, or belongs to another case (with the first lines that differ)
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& case_text);
+
+/// "line 7: 'kT = 1' there, 'kT = 2' here": where two texts of cases differ, up to three lines.
+std::string first_differences(std::string_view there, std::string_view here);
 
 /// The case that a checkpoint belongs to.
 /// \throws Error (bad_input) as read_checkpoint, for the file alone

@@ -11,6 +11,7 @@
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/files/poly_data.hpp"
 #include "equidem/output/files/vtk.hpp"
@@ -46,37 +47,41 @@ void replace_file(const std::filesystem::path& path, std::string_view text) {
   replacement.commit();
 }
 
-/// Places and velocities of the discs of bodies.
+/// The discs of bodies that are there.
 struct MovingDiscs {
+  std::vector<std::size_t> discs;  ///< their numbers in the assembly
   std::vector<DiscMotion> motions, velocities;
 };
-MovingDiscs moving_parts(std::span<const FramePart> parts, std::span<const DiscMotion> motions,
-                         std::span<const DiscMotion> velocities) {
-  MovingDiscs discs;
-  for (const FramePart& part : parts) {
+MovingDiscs discs_there(std::size_t count, std::span<const FramePart> parts, std::span<const DiscMotion> motions,
+                        std::span<const DiscMotion> velocities) {
+  MovingDiscs shown;
+  for (std::size_t disc = 0; disc < count; ++disc) {
+    const FramePart part = parts.empty() ? FramePart{.body = disc, .offset = {}} : parts[disc];
     const DiscMotion &body = motions[part.body], &rate = velocities[part.body];
+    if (!is_there(body)) continue;
     const bool in_the_middle = part.offset == Vec2{};
     const Vec2 arm = in_the_middle ? Vec2{} : turned(part.offset, body.theta);
-    discs.motions.push_back({body.u + arm, body.theta});
-    discs.velocities.push_back({rate.u + rate.theta * perpendicular(arm), rate.theta});
+    shown.discs.push_back(disc);
+    shown.motions.push_back({body.u + arm, body.theta});
+    shown.velocities.push_back({rate.u + rate.theta * perpendicular(arm), rate.theta});
   }
-  return discs;
+  return shown;
 }
 
 std::string frame_discs_text(const Assembly& assembly, const FrameOptions& options, double time,
-                             std::span<const DiscMotion> motions, std::span<const DiscMotion> velocities) {
-  assert(motions.size() == assembly.size() && velocities.size() == assembly.size());
-  PolyData data(assembly.size(), assembly.size(), 0);
-  data.point_numbers("radius", [&](std::size_t disc) { return assembly.radii[disc]; });
+                             const MovingDiscs& shown) {
+  const std::vector<std::size_t>& discs = shown.discs;
+  PolyData data(discs.size(), discs.size(), 0);
+  data.point_numbers("radius", [&](std::size_t k) { return assembly.radii[discs[k]]; });
   for (const DiscNumbers& added : options.of_discs) {
     assert(added.values.size() == assembly.size());
-    data.point_numbers(added.name, [&](std::size_t disc) { return added.values[disc]; });
+    data.point_numbers(added.name, [&](std::size_t k) { return added.values[discs[k]]; });
   }
-  if (!options.travelling) data.point_vectors("displacement", [&](std::size_t disc) { return motions[disc].u; });
-  data.point_numbers(options.travelling ? "angle" : "rotation", [&](std::size_t disc) { return motions[disc].theta; });
-  data.point_vectors("velocity", [&](std::size_t disc) { return velocities[disc].u; });
-  data.point_numbers("spin", [&](std::size_t disc) { return velocities[disc].theta; });
-  data.places([&](std::size_t disc) { return options.travelling ? motions[disc].u : assembly.centres[disc]; });
+  if (!options.travelling) data.point_vectors("displacement", [&](std::size_t k) { return shown.motions[k].u; });
+  data.point_numbers(options.travelling ? "angle" : "rotation", [&](std::size_t k) { return shown.motions[k].theta; });
+  data.point_vectors("velocity", [&](std::size_t k) { return shown.velocities[k].u; });
+  data.point_numbers("spin", [&](std::size_t k) { return shown.velocities[k].theta; });
+  data.places([&](std::size_t k) { return options.travelling ? shown.motions[k].u : assembly.centres[discs[k]]; });
   return data.text(&time);
 }
 
@@ -87,8 +92,14 @@ std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& op
   if (!options.travelling)
     return contacts_text({.places = assembly.centres, .motions = motions}, contacts, loads, &time);
   std::vector<Vec2> places;
-  for (const DiscMotion& motion : motions) places.push_back(motion.u);
-  return contacts_text({.places = places}, contacts, loads, &time);
+  std::vector<std::size_t> numbers;
+  for (std::size_t body = 0; body < motions.size(); ++body) {
+    if (!is_there(motions[body])) continue;
+    places.push_back(motions[body].u);
+    numbers.push_back(body);
+  }
+  if (places.size() == motions.size()) numbers.clear();
+  return contacts_text({.places = places, .numbers = numbers}, contacts, loads, &time);
 }
 
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
@@ -126,12 +137,9 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
 void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities, std::span<const BodyContact> contacts, bool regular) {
   assert(step > last_step());
-  if (options_.parts.empty()) {
-    write(file_name(discs_stem, step), frame_discs_text(assembly_, options_, time, motions, velocities));
-  } else {
-    const MovingDiscs discs = moving_parts(options_.parts, motions, velocities);
-    write(file_name(discs_stem, step), frame_discs_text(assembly_, options_, time, discs.motions, discs.velocities));
-  }
+  write(
+      file_name(discs_stem, step),
+      frame_discs_text(assembly_, options_, time, discs_there(assembly_.size(), options_.parts, motions, velocities)));
   if (options_.contacts)
     write(file_name(contacts_stem, step), frame_contacts_text(assembly_, options_, time, motions, contacts));
   list_frame(step, fmt::format("{}", time));

@@ -66,7 +66,7 @@ class FrameWriter {
   /// Add a frame.
   /// \param step greater than last_step()
   /// \param time s
-  /// \param motions, velocities per body; m and rad, m/s and rad/s
+  /// \param motions, velocities per body, m and rad, m/s and rad/s; bodies that are not_there are left out
   /// \param contacts between those bodies, and with walls
   /// \param regular false: the frame is the last one, and a longer run has none at its step
   /// \throws Error (computation_failed) where the disk is full; earlier frames stay

@@ -7,7 +7,8 @@
 
 namespace equidem {
 
-Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, FrameOptions& options) {
+Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,
+                         FrameOptions& options) {
   const auto any = [&](GrainShape shape) {
     return std::ranges::any_of(grains, [&](const Grain& grain) { return grain.shape() == shape; });
   };
@@ -33,7 +34,7 @@ Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> c
       if (const Grain& grain = grains[options.parts[k].body]; grain.shape() == GrainShape::ellipse)
         axes.values[k] = grain.short_half_axis;
   }
-  if (any(GrainShape::clump)) {
+  if (any(GrainShape::clump) || come_and_go) {
     options.of_discs.push_back({"body", {}});
     DiscNumbers& bodies = options.of_discs.back();
     for (const FramePart& part : options.parts) bodies.values.push_back(static_cast<double>(part.body));

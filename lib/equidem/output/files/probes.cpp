@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/fields/region_stress.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"
 #include "equidem/output/run/cell_history.hpp"
@@ -65,14 +66,18 @@ std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const P
   return columns;
 }
 
+/// Over the bodies that are there; not_there where none is.
 DiscMotion mean_of(const std::vector<std::int32_t>& bodies, std::span<const DiscMotion> values) {
   DiscMotion sum;
+  double count = 0;
   for (const std::int32_t body : bodies) {
-    sum.u += values[static_cast<std::size_t>(body)].u;
-    sum.theta += values[static_cast<std::size_t>(body)].theta;
+    const DiscMotion& value = values[static_cast<std::size_t>(body)];
+    if (!is_there(value)) continue;
+    sum.u += value.u;
+    sum.theta += value.theta;
+    count += 1;
   }
-  const auto count = static_cast<double>(bodies.size());
-  return {sum.u / count, sum.theta / count};
+  return count > 0 ? DiscMotion{sum.u / count, sum.theta / count} : not_there;
 }
 
 /// Number of the bodies with their centre in a box, its sides included.

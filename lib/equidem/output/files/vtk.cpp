@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/files/vtk.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "equidem/core/file.hpp"
@@ -71,15 +72,20 @@ std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContac
     Vec2 from_centre;
   };
   const std::size_t n = bodies.places.size(), m = contacts.size();
+  const auto place_of = [&](std::int32_t number) {
+    const auto body = static_cast<std::size_t>(number);
+    if (bodies.numbers.empty()) return body;
+    return static_cast<std::size_t>(std::ranges::lower_bound(bodies.numbers, body) - bodies.numbers.begin());
+  };
   std::vector<End> ends;
   std::vector<std::size_t> second;
   for (const BodyContact& contact : contacts) {
     const bool wall = contact.j < 0;
     if (!wall && contact.shift == Vec2{}) {
-      second.push_back(static_cast<std::size_t>(contact.j));
+      second.push_back(place_of(contact.j));
     } else {
       second.push_back(n + ends.size());
-      ends.push_back({static_cast<std::size_t>(wall ? contact.i : contact.j), wall ? contact.arm : contact.shift});
+      ends.push_back({place_of(wall ? contact.i : contact.j), wall ? contact.arm : contact.shift});
     }
   }
   const auto body_of = [&](std::size_t point) { return point < n ? point : ends[point - n].body; };
@@ -96,7 +102,7 @@ std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContac
   };
   data.declare<std::int32_t>("CellData", "i", m, 1, [=](std::size_t c, int) { return contacts[c].i; });
   data.declare<std::int32_t>("CellData", "j", m, 1, [=](std::size_t c, int) { return contacts[c].j; });
-  vectors("contact_point", [&](const BodyContact& c) { return bodies.places[static_cast<std::size_t>(c.i)] + c.arm; });
+  vectors("contact_point", [&](const BodyContact& c) { return bodies.places[place_of(c.i)] + c.arm; });
   if (loads.forces) {
     vectors("force", [](const BodyContact& c) { return c.force; });
     numbers("normal_force", &BodyContact::normal_force);
@@ -107,7 +113,7 @@ std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContac
     return point < n ? bodies.places[point] : bodies.places[ends[point - n].body] + ends[point - n].from_centre;
   });
   data.declare<std::int32_t>("Lines", "connectivity", 2 * m, 1, [&](std::size_t point, int) {
-    return point % 2 == 0 ? static_cast<std::size_t>(contacts[point / 2].i) : second[point / 2];
+    return point % 2 == 0 ? place_of(contacts[point / 2].i) : second[point / 2];
   });
   data.declare<std::int32_t>("Lines", "offsets", m, 1, [](std::size_t contact, int) { return 2 * (contact + 1); });
   return data.text(time);

@@ -16,8 +16,9 @@ namespace equidem {
 
 /// Bodies as the ends of contacts.
 struct PlacedBodies {
-  std::span<const Vec2> places;              ///< centres, m
-  std::span<const DiscMotion> motions = {};  ///< displacement of each from its place; empty: not written
+  std::span<const Vec2> places;               ///< centres, m
+  std::span<const DiscMotion> motions = {};   ///< displacement of each from its place; empty: not written
+  std::span<const std::size_t> numbers = {};  ///< of each, ascending, by which contacts name it; empty: its place here
 };
 
 /// Forces and moments of contacts, as far as they are known.

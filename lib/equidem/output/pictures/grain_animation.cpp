@@ -30,11 +30,15 @@ std::vector<Wall> walls_of(const GrainAnimation& animation, const GrainFrame& fr
   return walls;
 }
 
+bool is_shown(const GrainFrame& frame, std::size_t grain) {
+  return !std::isnan(frame.places[grain].x);
+}
+
 GrainView view_of(const GrainAnimation& animation) {
   GrainView view;
   for (const GrainFrame& frame : animation.frames) {
     for (std::size_t g = 0; g < frame.places.size(); ++g)
-      view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
+      if (is_shown(frame, g)) view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
     for (const Wall& wall : walls_of(animation, frame))
       if (std::isfinite(wall.move_x.value) && std::isfinite(wall.move_y.value))
         view.include_walls({&wall, 1}, frame.time);
@@ -70,6 +74,10 @@ std::vector<double> wall_points(Wall wall, const GrainView& view) {
 Results frame_results(const GrainFrame& frame, const GrainAnimation& animation, const GrainView& view, double unit) {
   std::vector<std::int64_t> bodies;
   for (std::size_t g = 0; g < frame.places.size(); ++g) {
+    if (!is_shown(frame, g)) {
+      bodies.insert(bodies.end(), {0, 0, -1});
+      continue;
+    }
     const Vec2 place = frame.places[g] - view.low;
     const double turns = frame.angles[g] / (2 * std::numbers::pi);
     for (const double value : {place.x / unit, place.y / unit, levels * (turns - std::floor(turns))})
@@ -131,6 +139,7 @@ function show(f) {
   draw.clearRect(0, 0, canvas.width, canvas.height);
   draw.setTransform(scale, 0, 0, -scale, 0, canvas.height);
   shapes.forEach((shape, g) => {
+    if (bodies[3 * g + 2] < 0) return;  // not there
     draw.save();
     draw.translate(bodies[3 * g] * data.unit, bodies[3 * g + 1] * data.unit);
     draw.rotate(bodies[3 * g + 2] * data.turn);

@@ -16,7 +16,7 @@ namespace equidem {
 /// Positions of all bodies at one time.
 struct GrainFrame {
   double time = 0;               ///< s, by which walls have moved
-  std::vector<Vec2> places;      ///< m
+  std::vector<Vec2> places;      ///< m; NaN: not there
   std::vector<double> angles;    ///< rad
   std::vector<Vec2> walls = {};  ///< places of Wall::point, m; NaN: not there; empty: by the schedules of the walls
 };

@@ -29,13 +29,18 @@ constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}
 constexpr std::array inks = {Colour{0.00, 0.45, 0.70}, Colour{0.75, 0.50, 0.00}, Colour{0.00, 0.50, 0.37},
                              Colour{0.70, 0.30, 0.00}, Colour{0.65, 0.35, 0.52}, Colour{0.55, 0.52, 0.00}};
 
+bool is_there(Vec2 place) {
+  return !std::isnan(place.x);
+}
+
 GrainView view_of(const GrainPicture& picture) {
   if (picture.grains.empty()) bad_input("the picture would be empty", "there are no grains", "Draw some");
   GrainView view;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
     view.include_grain(g, grain.position, grain.angle, grain.radius);
-    for (const std::vector<Vec2>& places : picture.paths) view.include(places[g], grain.radius);
+    for (const std::vector<Vec2>& places : picture.paths)
+      if (is_there(places[g])) view.include(places[g], grain.radius);
   }
   view.include_walls(picture.walls, picture.time);
   view.widen();
@@ -182,7 +187,9 @@ void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
     const double size = grain.shape() == GrainShape::disc ? grain.radius : 0.5 * smallest_radius(picture, grain);
-    canvas.stroke_circle(frame.to_page(picture.paths.front()[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
+    const auto first = std::ranges::find_if(picture.paths, [&](const auto& places) { return is_there(places[g]); });
+    if (first == picture.paths.end()) continue;
+    canvas.stroke_circle(frame.to_page((*first)[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
   }
 }
 
@@ -204,9 +211,10 @@ bool is_straight(const std::vector<Vec2>& path, std::size_t from, std::size_t to
 /// Points that lie on a straight line to within a visible width are joined by one stroke.
 void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   if (picture.paths.empty()) return;
-  std::vector<Vec2> path(picture.paths.size());
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
-    for (std::size_t k = 0; k < path.size(); ++k) path[k] = frame.to_page(picture.paths[k][g]);
+    std::vector<Vec2> path;
+    for (const std::vector<Vec2>& places : picture.paths)
+      if (is_there(places[g])) path.push_back(frame.to_page(places[g]));
     for (std::size_t from = 0; from + 1 < path.size();) {
       std::size_t to = from + 1;
       while (to + 1 < path.size() && is_straight(path, from, to + 1)) ++to;

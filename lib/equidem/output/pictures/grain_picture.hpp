@@ -24,7 +24,7 @@ struct GrainPicture {
   std::span<const int> groups = {};       ///< of each grain: its colour; empty: all alike
   std::span<const GrainBond> bonds = {};  ///< lines from centre to centre
   std::span<const Wall> walls = {};
-  /// Places of all grains at moments; empty: no paths.
+  /// Places of all grains at moments, NaN where one was not there; empty: no paths.
   std::span<const std::vector<Vec2>> paths = {};
 };
 

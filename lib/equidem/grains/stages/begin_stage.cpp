@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// How a stage begins: its bodies, walls and bonds.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
+
+namespace equidem {
+namespace {
+
+constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
+
+/// Of each body that was there its place now; -1: it is gone. \param origins as in ChangedBodies
+std::vector<std::int32_t> places_after(std::size_t before, const std::vector<std::int32_t>& origins) {
+  std::vector<std::int32_t> places(before, -1);
+  for (std::size_t k = 0; k < origins.size(); ++k)
+    if (origins[k] >= 0) places[static_cast<std::size_t>(origins[k])] = static_cast<std::int32_t>(k);
+  return places;
+}
+
+/// Bodies in the order of the loops: those that stay as they were, then new ones.
+std::vector<std::size_t> order_now(const std::vector<std::size_t>& before, const std::vector<std::int32_t>& origins) {
+  const std::vector<std::int32_t> places = places_after(before.size(), origins);
+  std::vector<std::size_t> order;
+  for (const std::size_t body : before)
+    if (places[body] >= 0) order.push_back(static_cast<std::size_t>(places[body]));
+  for (std::size_t k = 0; k < origins.size(); ++k)
+    if (origins[k] < 0) order.push_back(k);
+  return order;
+}
+
+/// The contacts between bodies that stay.
+std::vector<GrainContact> contacts_now(const GrainSimulation& simulation, const std::vector<std::int32_t>& origins) {
+  const std::vector<std::int32_t> places = places_after(simulation.order().size(), origins);
+  std::vector<GrainContact> contacts;
+  for (GrainContact contact : simulation.contacts()) {
+    contact.i = places[static_cast<std::size_t>(contact.i)];
+    if (contact.j >= 0 && (contact.j = places[static_cast<std::size_t>(contact.j)]) < 0) continue;
+    if (contact.i >= 0) contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+/// Places among the bonds of a scene of those of another one; both lists are numbers in the run, ascending.
+std::vector<std::int32_t> bond_origins(const std::vector<std::size_t>& before, const std::vector<std::size_t>& now) {
+  std::vector<std::int32_t> origins;
+  for (const std::size_t bond : now) {
+    const auto at = std::ranges::lower_bound(before, bond);
+    origins.push_back(at != before.end() && *at == bond ? static_cast<std::int32_t>(at - before.begin()) : -1);
+  }
+  return origins;
+}
+
+}  // namespace
+
+StagedSimulation::Start StagedSimulation::start_of_first() const {
+  const GrainScene& scene = stages_.front().scene;
+  Start start{.walls = {}, .bodies = {std::vector<std::size_t>(scene.grains.size()), scene.grains}, .cell = scene.cell};
+  std::iota(start.bodies.numbers.begin(), start.bodies.numbers.end(), std::size_t{0});
+  return start;
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
+  const GrainScene& scene = stages_.front().scene;
+  Bonds bonds{scene.bonds, scene.strengths, {}};
+  for (GrainBond& bond : bonds.all)
+    if (!bond.rest) bond.rest = rest_of(scene, bond.i, bond.j);
+  return bonds_of(0, std::move(bonds), start_of_first(), {});
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const Start& start,
+                                                   std::span<const GrainContact> contacts) const {
+  if (!stages_[stage].bonds) return bonds;
+  const PresentBodies& bodies = start.bodies;
+  const StageBonds& how = *stages_[stage].bonds;
+  GrainScene scene;
+  scene.grains = bodies.grains;
+  scene.cell = start.cell;
+  scene.bonds = make_bonds(scene, contacts, bonds_between(bodies.numbers, bonds).bonds, how);
+  if (how.strengths) {
+    const ContactStrengths made = bond_strengths(scene, *how.strengths);
+    if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
+    bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
+    bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
+  }
+  for (GrainBond& bond : scene.bonds) bond.i = bodies.numbers[bond.i], bond.j = bodies.numbers[bond.j];
+  bonds.all.insert(bonds.all.end(), scene.bonds.begin(), scene.bonds.end());
+  bonds.stages.insert(bonds.stages.end(), scene.bonds.size(), stage);
+  return bonds;
+}
+
+StagedSimulation::SceneBonds StagedSimulation::bonds_between(const std::vector<std::size_t>& bodies,
+                                                             const Bonds& bonds) {
+  SceneBonds found;
+  const auto place = [&](std::size_t number) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(bodies, number) - bodies.begin());
+  };
+  for (std::size_t b = 0; b < bonds.all.size(); ++b) {
+    GrainBond bond = bonds.all[b];
+    const std::size_t i = place(bond.i), j = place(bond.j);
+    if (i == bodies.size() || j == bodies.size() || bodies[i] != bond.i || bodies[j] != bond.j) continue;
+    bond.i = i, bond.j = j;
+    found.numbers.push_back(b);
+    found.bonds.push_back(bond);
+  }
+  return found;
+}
+
+std::size_t StagedSimulation::first_added(std::size_t stage) const {
+  std::size_t number = stages_.front().scene.grains.size();
+  for (std::size_t k = 0; k < stage; ++k) number += stages_[k].bodies.added.size();
+  return number;
+}
+
+const Grain& StagedSimulation::body_of_run(std::size_t number) const {
+  if (number < stages_.front().scene.grains.size()) return stages_.front().scene.grains[number];
+  std::size_t stage = 0;
+  while (number >= first_added(stage + 1)) ++stage;
+  return stages_[stage].bodies.added[number - first_added(stage)];
+}
+
+/// The scene of a stage that begins with a step.
+GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, const Start& start,
+                                      const Bonds& bonds) const {
+  GrainScene scene = stages_[stage].scene;
+  scene.grains = start.bodies.grains;
+  const SceneBonds between = bonds_between(start.bodies.numbers, bonds);
+  scene.bonds = between.bonds;
+  scene.strengths.reset();
+  if (bonds.strengths) {
+    scene.strengths.emplace().friction = bonds.strengths->friction;
+    for (const std::size_t bond : between.numbers) {
+      scene.strengths->tension.push_back(bonds.strengths->tension[bond]);
+      scene.strengths->shear.push_back(bonds.strengths->shear[bond]);
+    }
+  }
+  const double time = static_cast<double>(first) * options_.time_step;
+  for (std::size_t w = 0; w < start.walls.size(); ++w) {
+    Wall& wall = scene.walls[w];
+    wall.end += start.walls[w] - wall.point;
+    wall.point = start.walls[w];
+    wall.move_x = delayed(wall.move_x, time);
+    wall.move_y = delayed(wall.move_y, time);
+    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time);
+  }
+  if (!scene.cell) return scene;
+  PeriodicCell& cell = *scene.cell;
+  cell.corner = start.cell->corner;
+  cell.width = start.cell->width, cell.height = start.cell->height, cell.shift = start.cell->shift;
+  for (Schedule* rate : {&cell.rate_xx, &cell.rate_yy, &cell.rate_xy}) *rate = delayed(*rate, time);
+  if (cell.servo)
+    for (std::optional<Schedule>* stress : {&cell.servo->stress_xx, &cell.servo->stress_yy})
+      if (*stress) *stress = delayed(**stress, time);
+  return scene;
+}
+
+/// The places of the walls of a stage that follows the present one.
+std::vector<Vec2> StagedSimulation::places_in(std::size_t stage) const {
+  const std::vector<WallState> standing = present_->walls();
+  std::vector<Vec2> places;
+  for (const Wall& wall : stages_[stage].scene.walls) {
+    const auto standing_one = std::ranges::find(standing, wall.name, &WallState::name);
+    places.push_back(standing_one == standing.end() ? wall.point : standing_one->place);
+  }
+  return places;
+}
+
+void StagedSimulation::begin_stage() {
+  const EnergyLedger before = energy();
+  const std::size_t next = number() + 1;
+  const StageBodies& how = stages_[next].bodies;
+  Start start{.walls = places_in(next), .bodies = {}, .cell = present_->placed_cell()};
+  if (const auto cell = present_->cell()) start.strain = cell->strain;
+  ChangedBodies changed;
+  Bonds bonds;
+  std::unique_ptr<GrainSimulation> simulation;
+  try {
+    changed = change_bodies({numbers(), present_->grains()}, how, first_added(next));
+    start.bodies = changed.now;
+    const std::vector<GrainContact> contacts = contacts_now(*present_, changed.origins);
+    bonds = bonds_of(next, bonds_, start, contacts);
+    simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_,
+                                                   order_now(present_->order(), changed.origins));
+    simulation->take_over(*present_,
+                          {changed.origins, bond_origins(bonds_between(numbers(), bonds_).numbers,
+                                                         bonds_between(start.bodies.numbers, bonds).numbers)});
+  } catch (const Error& error) {
+    throw error.at(stages_[next].where());
+  }
+  keep_past_breaks(start.bodies.numbers);
+  reports_.push_back({.name = stages_[next].name,
+                      .first = step(),
+                      .last = step(),
+                      .effects = active_effects(simulation->effects()),
+                      .removed = changed.removed,
+                      .renamed = changed.renamed,
+                      .added = how.added.size(),
+                      .bonds_made = bonds.all.size() - bonds_.all.size()});
+  present_ = std::move(simulation);
+  start_ = std::move(start);
+  bonds_ = std::move(bonds);
+  const EnergyLedger after = present_->energy();
+  potential_ = before.potential;
+  const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
+  if (std::abs(change) > energy_rounding * stored) changes_ += change;
+}
+
+/// Breaks of bonds whose bodies go.
+void StagedSimulation::keep_past_breaks(const std::vector<std::size_t>& bodies_left) {
+  const std::vector<BondBreak> all = breaks();
+  const std::vector<std::size_t> left = bonds_between(bodies_left, bonds_).numbers;
+  past_breaks_.clear();
+  for (const BondBreak& event : all)
+    if (!std::ranges::binary_search(left, event.bond)) past_breaks_.push_back(event);
+}
+
+}  // namespace equidem

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Runs in stages in a periodic cell.
+#include "equidem/grains/stages/staged_simulation.hpp"
+
+#include "grains/cell_scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+void run_to(StagedSimulation& simulation, std::int64_t step) {
+  while (simulation.step() < step && !simulation.over()) simulation.advance(step - simulation.step());
+}
+
+/// Consolidate, shear at constant height pressure, and stand.
+std::vector<GrainStage> shear_test(std::int64_t length) {
+  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 6, 26);
+  for (PairProperties& pair : scene.pairs) pair.stiffness *= 20;
+  const double pressure = scene.pairs[0].stiffness * 1e-3;
+  scene.cell->servo =
+      CellServo{.stress_xx = Schedule{.value = -pressure}, .stress_yy = Schedule{.value = -pressure}, .max_rate = 0.5};
+  GrainStage consolidate{.name = "consolidate", .scene = scene, .steps = length};
+  GrainStage shear = consolidate, stand = consolidate;
+  shear.name = "shear";
+  shear.scene.cell->servo->stress_xx.reset();
+  shear.scene.cell->rate_xy = {.kind = Schedule::Kind::ramp, .value = 0.3, .start = 0, .end = 0.05};
+  stand.name = "stand";
+  stand.scene.cell->servo.reset();
+  return {consolidate, shear, stand};
+}
+
+/// The place of a grid in the cell that is the farthest from all discs.
+Vec2 emptiest_place(const StagedSimulation& simulation) {
+  const CellState cell = *simulation.cell();
+  Vec2 best;
+  double farthest = -1;
+  for (int i = 0; i < 40; ++i)
+    for (int j = 0; j < 40; ++j) {
+      const Vec2 place = simulation.present().placed_cell()->corner + Vec2{i * cell.width / 40, j * cell.height / 40};
+      double nearest = INFINITY;
+      for (const Grain& grain : simulation.present().grains())
+        nearest = std::min(nearest, distance_in_cell(place, grain.position, cell) - grain.radius);
+      if (nearest > farthest) farthest = nearest, best = place;
+    }
+  return best;
+}
+
+}  // namespace
+
+TEST_CASE("a_stage_of_a_cell_that_changes_nothing_leaves_the_motion_as_it_is_to_the_last_bit") {
+  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 5, 31);
+  const bool deforms = GENERATE(false, true);
+  if (deforms) {
+    scene.cell->rate_xy = {.value = 2};
+    scene.cell->servo = CellServo{.stress_yy = Schedule{.value = -5}, .max_rate = 0.2};
+  }
+  const GrainOptions options = verlet_options(0.002);
+  StagedSimulation staged({{.name = "a", .scene = scene, .steps = 437}, {.name = "b", .scene = scene, .steps = 700}},
+                          options);
+  GrainSimulation whole(scene, options);
+  run_to(staged, 1100);
+  whole.advance(1100);
+  CAPTURE(deforms);
+  CHECK(bits_of(staged.present()).words.size() == bits_of(whole).words.size());
+  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+    CHECK(staged.present().grains()[g].position == whole.grains()[g].position);
+    CHECK(staged.present().grains()[g].velocity == whole.grains()[g].velocity);
+  }
+  CHECK(staged.cell()->height == whole.cell()->height);
+  CHECK(staged.cell()->shift == whole.cell()->shift);
+  CHECK(staged.cell()->strain.xy == whole.cell()->strain.xy);
+  CHECK(staged.energy().work_of_stages == 0);
+  CHECK(staged.energy().work_of_cell == whole.energy().work_of_cell);
+}
+
+TEST_CASE("a_cell_is_consolidated_sheared_and_stands_in_stages_of_one_run") {
+  StagedSimulation staged(shear_test(6000), verlet_options(0.001));
+  run_to(staged, 6000);
+  const CellState dense = *staged.cell();
+  const double pressure = -dense.servos[0].wanted;
+  CAPTURE(dense.stress.xx, dense.stress.yy, pressure, dense.width, dense.height);
+  CHECK(dense.stress.xx == Approx(-pressure).epsilon(0.02));
+  CHECK(dense.stress.yy == Approx(-pressure).epsilon(0.02));
+  run_to(staged, 12000);
+  const CellState sheared = *staged.cell();
+  CAPTURE(sheared.strain.xx, sheared.strain.xy, sheared.servos.front().mean_error);
+  CHECK(sheared.strain.xx == dense.strain.xx);  // its width stays
+  CHECK(sheared.width == dense.width);
+  CHECK(sheared.strain.xy == Approx(0.3 * (6 - 0.025)).epsilon(1e-3));
+  REQUIRE(sheared.servos.size() == 1);
+  CHECK(sheared.servos.front().component == "yy");
+  CHECK(sheared.servos.front().mean_error < 0.3);
+  run_to(staged, 18000);
+  const CellState still = *staged.cell();
+  CHECK(still.height == sheared.height);
+  CHECK(still.shift == sheared.shift);
+  CHECK(still.servos.empty());
+  const EnergyLedger ledger = staged.energy();
+  CAPTURE(ledger.work_of_cell, ledger.error(), ledger.work_of_stages);
+  CHECK(std::abs(ledger.error()) < 0.01 * ledger.work_of_cell);
+  CHECK(std::abs(ledger.work_of_stages) < 1e-12 * ledger.work_of_cell);
+  CHECK(ledger.kinetic < 1e-4 * ledger.work_of_cell);
+}
+
+TEST_CASE("stages_of_a_cell_go_on_from_any_saved_state_with_the_same_bits") {
+  std::vector<GrainStage> stages = shear_test(260);
+  stages[1].bodies.removed = {{.kinds = {}, .box = Rectangle{{1, 1}, {3, 2.5}}}};
+  stages[1].bonds = StageBonds{.gap_tolerance = 0.05, .like = {.normal_dashpot = 5, .normal_spring = 500}};
+  const GrainOptions options = verlet_options(0.001);
+  StagedSimulation trial(stages, options);
+  run_to(trial, 520);
+  stages[2].bodies.added = {ball(emptiest_place(trial), 0.2, {1, 0})};
+  StagedSimulation whole(stages, options);
+  std::vector<SavedState> states;
+  while (!whole.over()) {
+    if (whole.step() % 37 == 0 || whole.milestone() >= 0) states.push_back(whole.save());
+    whole.advance(1);
+  }
+  const Bits end = bits_of(whole.present());
+  CAPTURE(whole.reports()[1].removed, whole.reports()[1].bonds_made, whole.numbers().size());
+  CHECK(whole.reports()[1].removed > 0);
+  CHECK(whole.reports()[1].bonds_made > 2);
+  CHECK(whole.numbers().size() + whole.reports()[1].removed == 37);
+  for (const SavedState& state : states) {
+    CAPTURE(state.step);
+    StagedSimulation resumed(stages, options);
+    resumed.restore(state);
+    run_to(resumed, 780);
+    CHECK(bits_of(resumed.present()) == end);
+    CHECK(resumed.cell()->height == whole.cell()->height);
+    CHECK(resumed.energy().work_of_cell == whole.energy().work_of_cell);
+    CHECK(resumed.energy().error() == whole.energy().error());
+  }
+}
+
+TEST_CASE("a_stage_ends_by_the_strain_of_its_cell") {
+  std::vector<GrainStage> stages = shear_test(100000);
+  stages[0].end = {.strain = 0.01, .of_cell = StageEnd::CellStrain::yy};
+  stages[1].end = {.strain = 0.1, .of_cell = StageEnd::CellStrain::xy};
+  stages[2].steps = 10;
+  StagedSimulation staged(stages, verlet_options(0.001));
+  run_to(staged, 300000);
+  REQUIRE(staged.over());
+  const auto& reports = staged.reports();
+  CHECK(reports[0].ended);
+  CHECK(reports[0].strain >= 0.01);
+  CHECK(reports[0].strain < 0.01 + 16 * 0.001 * 0.5 * (1 + 1e-9));
+  CHECK(reports[1].strain >= 0.1);
+  CHECK(reports[1].strain < 0.1 + 16 * 0.001 * 0.3 * (1 + 1e-9));
+  CHECK(std::abs(staged.cell()->strain.xy) == Approx(reports[1].strain).epsilon(1e-12));
+}
+
+TEST_CASE("discs_of_a_cell_are_bonded_across_its_sides") {
+  const int columns = 5;
+  std::vector<Grain> grains;
+  const double period = 0.999;
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < columns; ++j) grains.push_back(ball({(i + 0.2) * period, (j + 0.1) * period}, 0.5));
+  PairProperties pair = one_second(NormalLaw::linear_dashpot, 0.3);
+  pair.stiffness = 1000;
+  GrainScene scene = scene_of(grains, {}, pair);
+  scene.cell = PeriodicCell{.corner = {0, 0}, .width = columns * period, .height = columns * period};
+  GrainStage press{.name = "press", .scene = scene, .steps = 300}, tie = press;
+  tie.name = "tie";
+  tie.bonds = StageBonds{.gap_tolerance = 0.01, .like = {.normal_dashpot = 1, .normal_spring = 4000}};
+  StagedSimulation staged({press, tie}, verlet_options(0.001));
+  run_to(staged, 300);
+  const Tensor2 before = staged.cell()->stress;
+  run_to(staged, 600);
+  const CellState after = *staged.cell();
+  CAPTURE(before.xx, after.stress.xx, before.yy, after.stress.yy);
+  CHECK(staged.reports()[1].bonds_made == 2 * columns * columns);
+  CHECK(staged.present().contacts().empty());
+  CHECK(before.xx < -0.5);
+  CHECK(std::abs(after.stress.xx - before.xx) < 1e-9);
+  CHECK(std::abs(after.stress.yy - before.yy) < 1e-9);
+  CHECK(staged.energy().kinetic < 1e-18);
+}
+
+TEST_CASE("stages_of_which_some_have_a_cell_are_refused") {
+  std::vector<GrainStage> stages = shear_test(10);
+  const auto refused = [&](const std::vector<GrainStage>& wrong, const std::string& word) {
+    try {
+      StagedSimulation(wrong, verlet_options(0.001));
+      FAIL_CHECK("it was accepted: " << word);
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), Catch::Contains(word));
+    }
+  };
+  std::vector<GrainStage> without = stages;
+  without[1].scene.cell.reset();
+  refused(without, "one has a periodic cell");
+  std::vector<GrainStage> walls = stages;
+  walls[0].end = {.strain = 0.1, .walls = {"top", "bottom"}};
+  refused(walls, "'top'");
+}

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hard cases of servo walls, stages, bonds and cells, as a user meets them: run_hard_stages.py PROGRAM SOURCE_FOLDER [unittest
+options]."""
+import csv
+import math
+import unittest
+
+import numpy
+
+from motion import table
+from program import equidem
+from run_stages import NO_PICTURE, PRESS, SERVO, StageTest
+
+TWO = PRESS[:PRESS.index("[[wall]]")]
+WALLS = PRESS[PRESS.index("[[wall]]"):]
+BONDS = """[[bond]]
+grains = [0, 1]
+normal_spring = 1.0e6
+tangential_spring = 5.0e5
+normal_dashpot = 20.0
+"""
+STRENGTH = "[strength]\ntension = {}\nshear = {}\n"
+TOUCHING = TWO.replace("[0.05, 0.01]", "[0.04, 0.01]")
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class HardCases(StageTest):
+    def test_a_wall_that_a_schedule_moves_is_taken_away_with_its_motion(self):
+        out = self.folder / "out"
+        text = PRESS + """[[schedule]]
+name = "down"
+kind = "table"
+times = [0.0, 1.0]
+values = [0.0, 1.0]
+[run]
+[[stage]]
+name = "push"
+duration = 0.03
+[[stage.wall]]
+name = "lid"
+displacement = 0.1
+schedule = "down"
+[[stage]]
+name = "free"
+duration = 0.03
+[[stage.wall]]
+name = "lid"
+removed = true
+[output]
+probe_interval = 1.0e-3
+[[probe]]
+name = "one"
+bodies = [0]
+quantities = ["position", "velocity"]
+"""
+        text = text.replace("normal = [0.0, -1.0]", "normal = [0.0, -1.0]")
+        result = self.run_case(self.write(text), "--out", out, *NO_PICTURE)
+        history = table(out / "history.csv")
+        pushed = history["time_s"] <= result["stages"][0]["end"] + 1e-12
+        self.assertGreater(history["wall_lid_work_J_per_m"][pushed][-1], 0)
+        self.assertTrue(numpy.isnan(history["wall_lid_y_m"][~pushed][1:]).all())
+        free = history["one_vy_m_per_s"][~pushed][1:]
+        self.assertGreater(abs(free[0]), 1e-4)  # thrown up by the floor that was pressed
+        self.assertLess(abs(result["energy"]["relative_error"]), 5e-3)
+        self.refused(text.replace("removed = true", 'removed = true\ndisplacement = 0.1\nschedule = "down"'), "case.toml:",
+                     "'lid' is removed and has a displacement")
+
+    def test_a_servo_wall_with_nothing_to_push_says_so(self):
+        lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
+        self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)
+        up = lone.replace("max_speed = 0.1 }", "max_speed = 0.1, direction = [0.0, 1.0] }")
+        self.refused(up + "[run]\nduration = 10.0\n", "'lid' has gone", "met no body", code=1)
+        # discs in flight, which it pushes before it: the force is not kept, and that is told
+        servo, = self.run_case(self.write(lone.replace("0.5]", "0.021]") + "[run]\nduration = 0.2\n"))["servos"]
+        self.assertGreater(servo["mean_error"], 0.5)
+
+    def test_a_servo_that_cannot_keep_its_force_tells_by_how_much(self):
+        # at a thousandth of the speed it cannot follow its schedule
+        slow = PRESS.replace("0.021]", "0.0200001]") + SERVO.replace("max_speed = 0.1", "max_speed = 1.0e-4") + \
+            "[run]\nduration = 0.05\n"
+        servo, = self.run_case(self.write(slow))["servos"]
+        self.assertFalse(servo["reached"])
+        self.assertIsNone(servo["overshoot"])
+        self.assertLess(servo["force"], 0.9 * servo["wanted"])
+
+    def test_bonds_stiffer_than_the_step_bears_are_refused_with_the_step_that_they_bear(self):
+        run = "[run]\nduration = 0.01\ntime_step = {}\n"
+        for text, words in ((TOUCHING + BONDS.replace("1.0e6", "1.0e8") + run.format("7e-4"), ("run.time_step", "the bonds impose")),
+                            (TOUCHING.replace("1.0e6", "1.0e3") + "[bonds]\nnormal_spring = 1.0e11\n" +
+                             "[run]\ntime_step = 1e-5\n[[stage]]\nname = \"a\"\nduration = 0.001\n[[stage]]\nname = \"tie\"\n"
+                             "duration = 0.01\n[stage.bonds]\ngap_tolerance = 0.01\n", ("stage 'tie'", "limit", "the bonds impose"))):
+            with self.subTest(words=words):
+                self.refused(text, *words)
+        automatic = self.run_case(self.write(TOUCHING + BONDS.replace("1.0e6", "1.0e9") + "[run]\nduration = 1e-4\n"))
+        self.assertLess(automatic["time_step"], automatic["bonds"]["critical_time_step"])
+
+    def test_a_bond_without_strength_breaks_under_no_load_or_is_refused(self):
+        run = "[run]\nduration = 1.0e-3\n"
+        out = self.folder / "out"
+        result = self.run_case(self.write(TOUCHING + BONDS + STRENGTH.format(0.0, 0.0) + run), "--out", out, *NO_PICTURE)
+        self.assertEqual(result["breaks"]["number"], 1)
+        self.assertEqual(result["breaks"]["energy"], 0)
+        self.assertEqual(rows_of(out / "breaks.csv")[0]["step"], "0")
+        self.assertEqual(result["energy"]["kinetic"], 0)
+        for strength in ("-1.0", "nan", "inf"):
+            self.refused(TOUCHING + BONDS + STRENGTH.format(strength, 1.0) + run, "case.toml:", "strength")
+
+    def test_everything_breaks_at_once_and_the_run_goes_on(self):
+        # a ring whose discs fly apart alike: all bonds reach their strength in the same step
+        count, radius = 12, 0.01
+        ring = radius / math.sin(math.pi / count)
+        turn = [2 * math.pi * k / count for k in range(count)]
+        grains = "".join(f"[[grain]]\nposition = [{ring * math.cos(a)!r}, {ring * math.sin(a)!r}]\nradius = {radius}\n"
+                         f"velocity = [{math.cos(a)!r}, {math.sin(a)!r}]\n" for a in turn)
+        bonds = "".join(f"[[bond]]\ngrains = [{k}, {(k + 1) % count}]\n" for k in range(count))
+        head = TWO[:TWO.index("[[grain]]")] + grains + TWO[TWO.index("[collisions]"):]
+        text = head + bonds + "[bonds]\nnormal_spring = 1.0e6\ntangential_spring = 5.0e5\n" + STRENGTH.format(400.0, 900.0)
+        out = self.folder / "out"
+        result = self.run_case(self.write(text + '[run]\nduration = 5.0e-3\nintegrator = "velocity_verlet"\n'), "--out", out,
+                               *NO_PICTURE)
+        self.assertEqual(result["breaks"]["number"], count)
+        breaks = rows_of(out / "breaks.csv")
+        self.assertEqual({row["mode"] for row in breaks}, {"tension"})
+        steps = {int(row["step"]) for row in breaks}
+        self.assertLessEqual(max(steps) - min(steps), 1)  # round-off may split one step
+        self.assertLess(abs(result["energy"]["relative_error"]), 1e-3)
+        self.assertFalse(rows_of(out / "bonds.csv"))
+        energy = result["energy"]
+        self.assertAlmostEqual((energy["kinetic"] + energy["lost_breaking"]) / energy["initial"], 1, delta=1e-3)
+
+    def test_a_cell_that_shears_past_many_periods_keeps_its_contacts_and_its_energy(self):
+        random = numpy.random.default_rng(2)
+        places = [(0.0205 * (i + 0.5), 0.0205 * (j + 0.5)) for i in range(5) for j in range(5)]
+        grains = "".join(f"[[grain]]\nposition = [{x + random.uniform(-2e-4, 2e-4):.6f}, {y:.6f}]\nradius = 0.01\n" for x, y in places)
+        head = TWO[:TWO.index("[[grain]]")] + grains + TWO[TWO.index("[collisions]"):]
+        text = head + "[cell]\nwidth = 0.1025\nheight = 0.1025\n[cell.motion]\nxy = 40.0\n[output]\nprobe_interval = 1e-3\n" \
+            '[run]\nduration = 0.2\nintegrator = "velocity_verlet"\n'
+        out = self.folder / "out"
+        result = self.run_case(self.write(text), "--out", out, *NO_PICTURE)
+        history = table(out / "history.csv")
+        self.assertAlmostEqual(history["cell_strain_xy"][-1], 8, delta=0.01)
+        self.assertTrue((abs(history["cell_shift_m"]) <= 0.05125 * (1 + 1e-9)).all())
+        self.assertGreater(numpy.sum(abs(numpy.diff(history["cell_shift_m"])) > 0.05), 5)  # it jumped by a period so often
+        self.assertLess(abs(result["energy"]["relative_error"]), 5e-3)
+
+    def test_wrong_changes_of_bodies_are_refused_with_their_line(self):
+        def stage(text, first=""):
+            return PRESS + "[run]\n[[stage]]\nname = \"a\"\nduration = 0.01\n" + first + \
+                '[[stage]]\nname = "b"\nduration = 0.01\n' + text
+        grain = "[[stage.grain]]\nposition = [0.035, 0.2]\nradius = 0.01\n"
+        for text, words in (
+                (stage("[[stage.remove]]\n"), ("stage.remove", "neither a group nor a box")),
+                (stage('[[stage.remove]]\ngroup = "grain"\n'), ("stage.remove.group", "grains")),
+                (stage("[[stage.remove]]\nbox = [1.0, 0.0, 0.0, 1.0]\n"), ("stage.remove.box", "empty")),
+                (stage("[[stage.remove]]\nbox = [1.0, 0.0]\n"), ("stage.remove.box",)),
+                (stage('[[stage.remove]]\ngroup = "grains"\n'), ("stage 'b'", "all bodies are removed")),
+                (stage('[[stage.rename]]\ngroup = "grains"\n'), ("stage.rename.to", "missing")),
+                (stage('[[stage.rename]]\ngroup = "grains"\nto = "walls"\n'), ("stage.rename.to", "all of them")),
+                (stage('[[stage.rename]]\ngroup = "grains"\nto = "a b"\n'), ("stage.rename.to", "letters")),
+                (stage('[[stage.rename]]\ngroup = "grains"\nto = ""\n'), ("stage.rename.to", "empty")),
+                (stage('[[stage.rename]]\ngroup = "grains"\nto = "lid"\n'), ("both called 'lid'",)),
+                (stage('[[stage.rename]]\nto = "x"\n'), ("stage.rename", "neither")),
+                (stage(grain.replace("radius = 0.01\n", "")), ("stage.grain", "radius")),
+                (stage(grain.replace("0.01", "-0.01", 1)), ("stage.grain.radius",)),
+                (stage(grain.replace("0.01", "0.01\nmass = 1.0", 1)), ("unknown key",)),
+                (stage(grain + grain), ("stage.1", "inside one another")),
+                (stage(grain.replace("0.035, 0.2]", "0.025, 0.012]")), ("stage 'b'", "inside one another")),
+                (stage(grain.replace("0.2]", "-0.5]")), ("stage 'b'", "behind wall")),
+                (stage('[stage.grains]\npath = "none.csv"\n'), ("stage.grains.path", "none.csv")),
+                (stage("", grain), ("first stage changes the grains",)),
+                (stage("", "[[stage.remove]]\ngroup = \"grains\"\n"), ("first stage changes the grains",)),
+                (stage(grain + '[[probe]]\nname = "p"\ngroup = "later"\n'), ("probe.group", "begins")),
+                (stage(grain + '[[probe]]\nname = "p"\nbodies = [3]\n'), ("probe.bodies", "no body 3")),
+                (stage('[[stage.pair]]\ngroup = "smooth"\nwith = "lid"\nfriction = 0.1\n'), ("smooth", "no group")),
+                (stage("[stage.shake]\nacceleration = 1.0\n"), ("unknown",)),
+                (stage("[stage.cell.motion]\nxy = 1.0\n"), ("stage.cell", "no [cell]"))):
+            with self.subTest(text=text[len(PRESS):]):
+                done = equidem("run", self.write(text), "--out", self.folder / "refused", "--overwrite", *NO_PICTURE)
+                self.check_error(done, 2, *words)
+                self.assertTrue("case.toml:" in done.stderr or "stage 'b'" in done.stderr, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

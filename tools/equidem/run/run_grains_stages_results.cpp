@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/run_grains_stages_results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+namespace {
+
+/// "2 grains removed, 13 bonds made".
+std::string changes_of(const StageReport& stage) {
+  std::vector<std::string> changes;
+  const auto add = [&](std::size_t count, const char* what, const char* done) {
+    if (count > 0) changes.push_back(counted(static_cast<long long>(count), what) + done);
+  };
+  add(stage.removed, "grain", " removed");
+  add(stage.renamed, "grain", " renamed");
+  add(stage.added, "grain", " added");
+  add(stage.bonds_made, "bond", " made");
+  return joined(changes);
+}
+
+}  // namespace
+
+std::string describe(const Shaking& shaking) {
+  const GroundMotion& motion = shaking.motion;
+  const std::string peak =
+      fmt::format("{:.4g} m/s² ({:.4g} gal) at most along ({:.4g}, {:.4g}), ", motion.peak_acceleration,
+                  motion.peak_acceleration / gal, shaking.direction.x, shaking.direction.y);
+  const Schedule& way = motion.displacement;
+  if (shaking.recorded)
+    return peak + fmt::format("a record of {} points from {:.4g} s to {:.4g} s", way.times.size(), way.times.front(),
+                              way.times.back());
+  return peak + fmt::format("{} Hz, {} from {:.4g} s to {:.4g} s", shaking.frequency,
+                            counted(static_cast<long long>(shaking.cycles), "cycle"), way.start, way.end);
+}
+
+Results shaking_results(const Shaking& shaking) {
+  const GroundMotion& motion = shaking.motion;
+  Results out;
+  out.line("shaking", describe(shaking));
+  out.line("")
+      .add("peak_velocity", "at most", motion.peak_velocity, "m/s", {.digits = 4})
+      .add("peak_displacement", "", motion.peak_displacement, "m", {.digits = 4});
+  if (shaking.recorded && motion.correction > 0) {
+    out.line("", fmt::format("baseline: up to {:.3g} of that acceleration taken away",
+                             motion.correction / motion.peak_acceleration));
+  }
+  if (motion.final_displacement != 0 && std::abs(motion.final_displacement) > 1e-9 * motion.peak_displacement)
+    out.line("", fmt::format("the box ends {:.4g} m from where it began", motion.final_displacement));
+  return out.set("peak_acceleration", motion.peak_acceleration)
+      .set("direction", shaking.direction)
+      .set("final_displacement", motion.final_displacement)
+      .set("baseline_correction", motion.correction);
+}
+
+Results stage_results(const GrainCase& resolved, const std::vector<StageReport>& stages, double step) {
+  const bool any_changes = std::ranges::any_of(stages, [](const StageReport& s) { return !changes_of(s).empty(); });
+  std::vector<Results> rows;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    const StageReport& stage = stages[k];
+    const char* reason = stage.ended ? "met its end" : stage.over ? "duration" : "not over";
+    Results& row = rows.emplace_back();
+    row.add("name", "stage", stage.name)
+        .add("start", "from, s", static_cast<double>(stage.first) * step)
+        .add("end", "to, s", static_cast<double>(stage.last) * step)
+        .add("steps", "steps", stage.last - stage.first)
+        .add("ended_by", "ended by", reason)
+        .set("effects", stage.effects);
+    if (any_changes) row.add("", "began with", changes_of(stage));
+    if (stage.kinetic > 0 || stage.unbalanced > 0)
+      row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
+    for (const auto& [key, count] : {std::pair{"removed", stage.removed},
+                                     {"renamed", stage.renamed},
+                                     {"added", stage.added},
+                                     {"bonds_made", stage.bonds_made}})
+      if (count > 0) row.set(key, count);
+    if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
+    if (stage.displacement > 0)
+      row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
+    if (const auto& shaking = resolved.stages[k].shaking)
+      row.append(shaking_results(*shaking).hidden().under("shaking"));
+  }
+  Results out;
+  out.line("stages", "what changes the energies of the scene between them is in the ledger:");
+  return out.table("stages", std::move(rows));
+}
+
+Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                      const std::vector<ServoReport>& present) {
+  const char* force = resolved.body == Body::disc ? "N/m" : "N";
+  std::vector<Results> rows;
+  const auto add = [&](const std::string& stage, const ServoReport& servo) {
+    Results& row = rows.emplace_back();
+    if (!resolved.stages.empty()) row.add("stage", "stage", stage);
+    row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
+        .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
+        .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
+        .set("reached", servo.reached);
+    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
+    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    row.add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
+  };
+  for (const StageReport& stage : stages)
+    for (const ServoReport& servo : &stage == &stages.back() ? present : stage.servos) add(stage.name, servo);
+  Results out;
+  if (rows.empty()) return out;
+  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in its stage:");
+  return out.table("servos", std::move(rows));
+}
+
+}  // namespace equidem

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The case text in checkpoints of colliding bodies: all data that affect the motion, including those of files that the
+/// case names, without how long it lasts and what is written.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "equidem/casefile/grains/grain_case.hpp"
+
+namespace equidem {
+
+/// What acts in all stages, the time step, then each stage, then the schedules as they are given, which the checksums
+/// of the stages contain as well. \param step s
+std::string case_text_of(const GrainCase& resolved, double step);
+/// The number of stages that a case text has.
+std::size_t stages_in(std::string_view text);
+/// The part of a case text that decides on the motion until the end of some stages. \param stages at most stages_in()
+std::string until_stage(std::string_view text, std::size_t stages);
+
+}  // namespace equidem
