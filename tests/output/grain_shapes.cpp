@@ -97,7 +97,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   FileMark mark;
   {
     FrameOptions options;
-    const Assembly discs = discs_of_frames(bodies.grains, clumps, options);
+    const Assembly discs = discs_of_frames(bodies.grains, clumps, false, options);
     FrameWriter frames(folder.path(), "frames", discs, options);
     std::vector<DiscMotion> motions, velocities;
     for (const Grain& grain : bodies.grains) {
@@ -138,7 +138,7 @@ TEST_CASE("frames_show_clumps_as_their_discs_and_ellipses_with_both_half_axes") 
   other.grains[1].short_half_axis = 0.11;
   CHECK(equidem::test::refusal_of([&] {
           FrameOptions options{.continue_from = mark};
-          const Assembly start = discs_of_frames(other.grains, clumps, options);
+          const Assembly start = discs_of_frames(other.grains, clumps, false, options);
           FrameWriter(folder.path(), "frames", start, options);
         }).says("discs or frame_contacts are others"));
 }

@@ -26,8 +26,8 @@ class GrainRun final : public RunJob {
   GrainRun& operator=(const GrainRun&) = delete;
 
   /// Begin with the state of a checkpoint of another run, with which this case agrees until then.
-  /// \throws Error (bad_input) as read_checkpoint; a run that is not in stages, a case that is another one until then, or
-  ///         has nothing to follow
+  /// \throws Error (bad_input) as read_checkpoint; a run that is not in stages, a case that is another one until
+  ///         then, or has nothing to follow
   void begin_from(const std::filesystem::path& path);
 
   [[nodiscard]] AnySimulation& simulation() override { return simulation_; }

@@ -144,9 +144,9 @@ std::vector<Key<StageBonds>> stage_bond_keys();
 StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage);
 
 /// Set the periodic cell of the scene.
-/// \throws Error (bad_input) with line and key: a height that is missing, [measures], spheres in a cell along x and y, a
-///         deformation of one that repeats along x alone, a schedule that is not there, or that counts from the start
-///         of the run beside stages
+/// \throws Error (bad_input) with line and key: a height that is missing, [measures], spheres in a cell along x and y,
+///         a deformation of one that repeats along x alone, a schedule that is not there, or that counts from the
+///         start of the run beside stages
 void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// The cell of a stage, from that of the stage before: rates end with their stage; a component keeps its stress unless

@@ -184,17 +184,6 @@ double loss_of_bonds(const GrainSystem& system, double share) {
   return sum;
 }
 
-BondDrift drift_of(const GrainSystem& system, const TiedPair& bond) {
-  const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-  const BondMotion<double> motion = motion_of_bond(system, bond);
-  const ContactDeformation drift = bond_deformation(bond.springs, motion);
-  const double radii = system.bodies.constants[i].radius + system.bodies.constants[j].radius;
-  const double roll = motion.theta_j - motion.theta_i;
-  const auto [first, second] = std::minmax(system.bodies.grain_of[i], system.bodies.grain_of[j]);
-  return {first, second, drift.normal / radii, drift.tangential / radii,
-          first == system.bodies.grain_of[i] ? roll : -roll};
-}
-
 /// The part of a bond in M^-1 C and M^-1 K of its discs.
 struct Rates {
   double rate = 0, square = 0;
@@ -385,33 +374,6 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
             bond_step_limit(scene, GrainOptions::BondStep::exact) > options.time_step
                 ? "Stay below it, use smaller dashpots, or make the step of bonds exact, which dashpots do not limit"
                 : "Stay below it, or use smaller springs");
-}
-
-std::vector<BondDrift> GrainSimulation::bond_drifts() const {
-  std::vector<BondDrift> drifts;
-  for (const TiedPair& bond : implementation_->system.bonds.tied)
-    drifts.push_back(drift_of(implementation_->system, bond));
-  std::sort(drifts.begin(), drifts.end(),
-            [](const BondDrift& a, const BondDrift& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
-  return drifts;
-}
-
-BondReport GrainSimulation::bonds() const {
-  const GrainSystem& system = implementation_->system;
-  BondReport report;
-  report.number = system.bonds.tied.size();
-  report.step_limit = implementation_->bond_limit;
-  const auto add = [&](BondReport::Drift& sum, double amount) {
-    sum.largest = std::max(sum.largest, std::abs(amount));
-    sum.mean += std::abs(amount) / static_cast<double>(report.number);
-  };
-  for (const TiedPair& bond : system.bonds.tied) {
-    const BondDrift drift = drift_of(system, bond);
-    add(report.distance, drift.distance);
-    add(report.slip, drift.slip);
-    add(report.roll, drift.roll);
-  }
-  return report;
 }
 
 }  // namespace equidem

@@ -23,7 +23,6 @@ struct UpdatedEquilibriumOptions {
   /// Bring only those parts of the network up to date in which a contact may be critical. The contact found is the
   /// same.
   bool skip = true;
-  double residual = 1e-13;  ///< relative, to which states are refined
   /// Relative residual that every state is to stay below: motions are refined where rounding since the last refinement
   /// may have left so much.
   double watched_residual = 1e-12;
