@@ -49,6 +49,10 @@ SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", "tools/docs", "tools/pac
 SPDX = "SPDX-License-Identifier: GPL-3.0-or-later"
 # Places on the machine of whoever writes: absolute paths below these.
 MACHINE_PATH = re.compile(r"(?<![\w./\-~$}{])/(?:%s)\b" % "|".join(["work", "tmp", "root", "home", "mnt", "Users"]))
+# Types at file level of a header, where namespaces are not indented; declarations end in a semicolon.
+NAMESPACE = re.compile(r"(?:inline )?namespace ?([\w:]*) \{$")
+TYPE = re.compile(r"(?:template .*> )?(?:class|struct|enum class) (?:\[\[\w+\]\] |alignas\(\w+\) )?(\w+)\b"
+                  r"(?!.*;\s*$|<|::)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 
 
@@ -152,6 +156,27 @@ def circles(includes):
     return found
 
 
+def types_of(text):
+    """Number of the line and full name of each type that a header defines outside all others."""
+    inside = []
+    for number, line in enumerate(text.splitlines(), 1):
+        opens, defines = NAMESPACE.match(line), TYPE.match(line)
+        if opens:
+            inside.append(opens.group(1))
+        elif line.startswith("}  // namespace"):
+            inside = inside[:-1]
+        elif defines:
+            yield number, "::".join(inside + [defines.group(1)])
+
+
+def check_types(path, text, types):
+    """Two definitions of a name in one program are undefined behaviour that no linker tells."""
+    for number, name in types_of(text):
+        first = types.setdefault(name, path)
+        if first != path:
+            yield number, f"{first} defines {name}, too: rename one of them"
+
+
 def check_folders(paths):
     count = {}
     for path in paths:
@@ -177,7 +202,7 @@ def violations(root):
     if not rooms:
         yield "lib/CMakeLists.txt", 1, "it lists no rooms in set(EQUIDEM_ROOMS ...)"
         return
-    used, includes, paths = {}, {}, list(files_of(root))
+    used, includes, types, paths = {}, {}, {}, list(files_of(root))
     yield from check_folders(paths)
     for path in paths:
         full = os.path.join(root, path)
@@ -194,6 +219,9 @@ def violations(root):
             yield path, 1, f"the first line is not '{SPDX}'"
         if path.endswith(SOURCES):
             for number, wrong in check_source(path, text, rooms, used):
+                yield path, number, wrong
+        if path.startswith(("lib/", "tools/")) and not path.startswith("tools/bench/") and path.endswith(".hpp"):
+            for number, wrong in check_types(path, text, types):
                 yield path, number, wrong
         if path.startswith("lib/") and path.endswith(".hpp"):
             includes[path] = ["lib/" + header for _, _, header in includes_of(text) if header.startswith("equidem/")]

@@ -101,6 +101,14 @@ class TheCheck(unittest.TestCase):
                          "lib/equidem/core/c.hpp": include.format("a")}, "core/a.hpp, lib/equidem/core/b.hpp, lib")
         self.fails_with({"lib/equidem/core/a.hpp": include.format("a")}, "include one another")
 
+    def test_rejects_two_types_of_one_name(self):
+        header = "namespace equidem{} {{\nstruct Table;\n{} Table {{\n  int rows;\n}};\n}}  // namespace equidem{}\n"
+        first = {"lib/equidem/core/a.hpp": header.format("", "struct", "")}
+        self.fails_with({**first, "lib/equidem/output/b.hpp": header.format("", "class", "")},
+                        "lib/equidem/output/b.hpp:4: lib/equidem/core/a.hpp defines equidem::Table, too")
+        other = header.format("::out", "class", "::out")
+        self.assertEqual(violations_of({**first, "lib/equidem/output/b.hpp": other}), [])
+
     def test_rejects_a_folder_that_is_too_full(self):
         files = {f"tools/equidem/file{k}.cpp": "\n" for k in range(30)}
         self.fails_with(files, "tools/equidem:1", "has 31 sources")

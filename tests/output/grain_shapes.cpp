@@ -50,7 +50,7 @@ struct SampleBodies {
       if (k == 4) shapes.make_clump(grain, {{{0, 0}, 0.1}, {{0.1, 0}, 0.1}, {{0.05, 0.1}, 0.1}}, densities[4]);
     }
   }
-  [[nodiscard]] GrainRows rows() const { return {grains, shapes.clumps(), groups, densities}; }
+  [[nodiscard]] WrittenGrains rows() const { return {grains, shapes.clumps(), groups, densities}; }
 };
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST_CASE("names_of_columns_read_back_to_keys_and_units") {
   CHECK(column_name("growth_rate", "1/s") == "growth_rate_per_s");
   CHECK(column_name("stiffness_ratio", "") == "stiffness_ratio");
   std::set<std::string> paths;
-  for (const Quantity& quantity : quantities) {
+  for (const ResultQuantity& quantity : quantities) {
     CAPTURE(quantity.path);
     CHECK(paths.insert(quantity.path).second);
     CHECK(*quantity.label != '\0');

@@ -82,8 +82,8 @@ void check_discs(const Wall& wall, const Assembly& assembly) {
 
 }  // namespace
 
-std::vector<WallContact> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
-  std::vector<WallContact> contacts;
+std::vector<DiscAtWall> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time) {
+  std::vector<DiscAtWall> contacts;
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     const Wall& wall = scene.walls[w];
     const double moved = wall.displacement_along_normal(time);

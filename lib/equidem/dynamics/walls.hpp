@@ -13,11 +13,11 @@
 namespace equidem {
 
 /// A disc that a wall pushes.
-struct WallContact {
+struct DiscAtWall {
   std::size_t wall = 0, disc = 0;
   double gap = 0;  ///< m, negative; the force on the disc is -kN gap along the normal of the wall
 };
-std::vector<WallContact> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
+std::vector<DiscAtWall> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
 
 /// Forces of walls on discs, and their elastic energy.
 struct WallPushes {

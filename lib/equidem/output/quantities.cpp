@@ -20,7 +20,7 @@ namespace {
 const std::set<std::string>& unit_symbols() {
   static const std::set<std::string> all = [] {
     std::set<std::string> found{"J", "J/m"};  // of energies, by the kind of bodies
-    for (const Quantity& quantity : quantities)
+    for (const ResultQuantity& quantity : quantities)
       if (*quantity.unit != '\0') found.insert(quantity.unit);
     return found;
   }();
@@ -90,10 +90,10 @@ std::string finite_text(const ResultValue& value) {
 }
 
 /// The quantity with the most keys from the front of a path; null: none.
-const Quantity* longest_match(std::string_view path) {
-  static const std::unordered_map<std::string_view, const Quantity*> by_path = [] {
-    std::unordered_map<std::string_view, const Quantity*> found;
-    for (const Quantity& quantity : quantities) found.emplace(quantity.path, &quantity);
+const ResultQuantity* longest_match(std::string_view path) {
+  static const std::unordered_map<std::string_view, const ResultQuantity*> by_path = [] {
+    std::unordered_map<std::string_view, const ResultQuantity*> found;
+    for (const ResultQuantity& quantity : quantities) found.emplace(quantity.path, &quantity);
     return found;
   }();
   for (std::string_view front = path;;) {
@@ -108,7 +108,7 @@ const Quantity* longest_match(std::string_view path) {
 
 std::optional<NumberMeaning> meaning_of(std::string_view path) {
   for (std::string_view rest = path;;) {
-    const Quantity* best = longest_match(rest);
+    const ResultQuantity* best = longest_match(rest);
     if (best != nullptr) {
       std::string label = best->label;
       for (const std::string_view word : parts_of(rest.substr(std::string_view(best->path).size()), '/'))
@@ -204,7 +204,7 @@ std::string describe_result() {
       "report     text that is printed without --json\n"
       "version    of the program\n\n"
       "Names of numbers, which may stand below those of other objects, units and meanings:\n\n";
-  for (const Quantity& quantity : quantities)
+  for (const ResultQuantity& quantity : quantities)
     text += fmt::format("  {:<36} {:<6} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
   return text;
 }

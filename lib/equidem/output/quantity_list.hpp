@@ -6,14 +6,14 @@
 namespace equidem {
 
 /// Unit and meaning of a number of results; those that a verb states itself come before it.
-struct Quantity {
+struct ResultQuantity {
   const char* path;  ///< its keys, "/" between those of nested objects
   const char* unit;
   const char* label;
   bool of_machine = false;
 };
 
-inline constexpr Quantity quantities[] = {
+inline constexpr ResultQuantity quantities[] = {
     // The assembly
     {"discs", "", "number of discs"},
     {"contacts", "", "number of contacts; in a run of colliding bodies of those that began"},

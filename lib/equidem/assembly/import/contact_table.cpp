@@ -3,8 +3,8 @@
 #include <array>
 
 #include "equidem/assembly/import/length_unit.hpp"
+#include "equidem/assembly/import/number_table.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
-#include "equidem/assembly/import/text_table.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
@@ -25,7 +25,7 @@ struct ContactColumns {
 };
 
 /// A column that is nearly one of those that are read is taken for a typing error.
-void refuse_near_names(const TextTable& table) {
+void refuse_near_names(const NumberTable& table) {
   std::vector<std::string> known;
   for (const auto& pair : column_pairs) known.insert(known.end(), pair.begin(), pair.end());
   for (const ColumnName& column : table.names()) {
@@ -37,7 +37,7 @@ void refuse_near_names(const TextTable& table) {
   }
 }
 
-ContactColumns contact_columns(const TextTable& table, bool local_dump) {
+ContactColumns contact_columns(const NumberTable& table, bool local_dump) {
   ContactColumns c;
   if (table.names().empty() || (local_dump && !table.find(names_of_i))) {
     if (table.width() == 2) return c;
@@ -65,7 +65,7 @@ ContactColumns contact_columns(const TextTable& table, bool local_dump) {
 }
 
 /// The unit that the names of levers and offsets carry; none where none does.
-std::optional<double> unit_of_contact_lengths(const TextTable& table, const ContactColumns& columns) {
+std::optional<double> unit_of_contact_lengths(const NumberTable& table, const ContactColumns& columns) {
   const auto& [shifts, levers, normals, offsets] = columns.optional;
   if (!levers[0] || table.names().empty()) return {};
   const std::string& unit = table.names()[*levers[0]].unit;
@@ -94,7 +94,7 @@ std::string table_of_local_dump(std::string_view text) {
 std::vector<ContactRow> read_contact_rows(std::string_view text) {
   const bool local_dump = text.starts_with("ITEM:");
   const std::string kept = local_dump ? table_of_local_dump(text) : std::string();
-  TextTable table(local_dump ? std::string_view(kept) : text);
+  NumberTable table(local_dump ? std::string_view(kept) : text);
   const ContactColumns columns = contact_columns(table, local_dump);
   const auto& [shifts, levers, normals, offsets] = columns.optional;
   const std::optional<double> unit = unit_of_contact_lengths(table, columns);

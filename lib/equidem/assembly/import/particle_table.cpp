@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "equidem/assembly/import/length_unit.hpp"
+#include "equidem/assembly/import/number_table.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
-#include "equidem/assembly/import/text_table.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -22,7 +22,7 @@ struct ParticleColumns {
   bool is_diameter = false;
 };
 
-ParticleColumns particle_columns(const TextTable& table) {
+ParticleColumns particle_columns(const NumberTable& table) {
   ParticleColumns c;
   if (table.names().empty()) {
     if (table.width() != 3 && table.width() != 4)
@@ -45,7 +45,7 @@ ParticleColumns particle_columns(const TextTable& table) {
 }
 
 /// The unit that the names of all lengths carry; none where none does.
-std::optional<double> unit_of_columns(const TextTable& table, const ParticleColumns& columns) {
+std::optional<double> unit_of_columns(const NumberTable& table, const ParticleColumns& columns) {
   if (table.names().empty()) return {};
   std::string unit = table.names()[columns.x].unit;
   for (const ColumnPlace place :
@@ -60,7 +60,7 @@ std::optional<double> unit_of_columns(const TextTable& table, const ParticleColu
 }
 
 /// Ellipses and clumps of files of grains.
-void refuse_other_shapes(const TextTable& table) {
+void refuse_other_shapes(const NumberTable& table) {
   for (const char* name : {"short_half_axis", "discs"}) {
     const auto place = table.find({name});
     if (!place || table.cells()[*place].empty()) continue;
@@ -73,7 +73,7 @@ void refuse_other_shapes(const TextTable& table) {
 }  // namespace
 
 ParticleRows read_particle_table(std::string_view text) {
-  TextTable table(text);
+  NumberTable table(text);
   const ParticleColumns columns = particle_columns(table);
   ParticleRows result{.format = table.by_yade() ? "a text export of YADE" : "a table of particles"};
   result.unit = unit_of_columns(table, columns);

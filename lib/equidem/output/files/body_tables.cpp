@@ -81,7 +81,7 @@ void write_contact_csv(const std::filesystem::path& path, const AssemblyState& s
   write_csv(path, table, overwrite);
 }
 
-void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite) {
+void write_grain_csv(const std::filesystem::path& path, const WrittenGrains& rows, bool overwrite) {
   const std::span<const Grain> grains = rows.grains;
   assert(rows.groups.size() == grains.size());
   assert(rows.densities.empty() || rows.densities.size() == grains.size());

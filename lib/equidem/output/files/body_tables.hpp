@@ -28,7 +28,7 @@ void write_disc_csv(const std::filesystem::path& path, const AssemblyState& stat
 void write_contact_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite);
 
 /// Colliding bodies with the data of their rows.
-struct GrainRows {
+struct WrittenGrains {
   std::span<const Grain> grains;
   std::span<const Clump> clumps;
   std::span<const std::string> groups;        ///< of each grain
@@ -42,7 +42,7 @@ struct GrainRows {
 /// there where there are numbers, ellipses (empty of other bodies), densities, a period (the same in all rows) and
 /// clumps ("x y r; x y r" in the frame of the body, empty of other bodies). A case file reads it back with [grains]
 /// path, to the same bits, but refuses a period. \throws Error (bad_input) as write_file does
-void write_grain_csv(const std::filesystem::path& path, const GrainRows& rows, bool overwrite);
+void write_grain_csv(const std::filesystem::path& path, const WrittenGrains& rows, bool overwrite);
 
 /// One row per contact of the last step: i, j (empty where it is a wall), wall (its name), overlap_m, closing_m_per_s,
 /// normal_x, normal_y (from i), normal_force_N, tangential_force_N (of discs _N_per_m, compression positive), mode,

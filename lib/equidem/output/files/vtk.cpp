@@ -64,7 +64,7 @@ std::string piece_name(const std::string& name, const char* what, int piece) {
 
 }  // namespace
 
-std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
+std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
                           const double* time) {
   // The points: the bodies, then the ends at walls and at images behind the period.
   struct End {

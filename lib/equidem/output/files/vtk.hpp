@@ -15,7 +15,7 @@
 namespace equidem {
 
 /// Bodies as the ends of contacts.
-struct PlacedBodies {
+struct BodyPlaces {
   std::span<const Vec2> places;               ///< centres, m
   std::span<const DiscMotion> motions = {};   ///< displacement of each from its place; empty: not written
   std::span<const std::size_t> numbers = {};  ///< of each, ascending, by which contacts name it; empty: its place here
@@ -31,7 +31,7 @@ struct ContactLoads {
 /// say force (3-vector, on i), normal_force, tangential_force, bending_moment (body_contact.hpp); of points:
 /// displacement, and a radius of zero, so that Glyph draws circles of discs only.
 /// \param time see PolyData::text
-std::string contacts_text(const PlacedBodies& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
+std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
                           const double* time = nullptr);
 
 /// Write NAME.vtm, the index to open, and beside it NAME_discs.vtp and NAME_contacts.vtp (VTK XML PolyData, appended

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/assembly/import/text_table.hpp"
+#include "equidem/assembly/import/number_table.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -47,7 +47,7 @@ bool is_number(std::string_view text) {
 
 }  // namespace
 
-TextTable::TextTable(std::string_view text) : lines_(without_byte_order_mark(text)) {
+NumberTable::NumberTable(std::string_view text) : lines_(without_byte_order_mark(text)) {
   while (lines_.next()) {
     const std::string_view line = lines_.line();
     if (line.empty()) continue;
@@ -74,11 +74,11 @@ TextTable::TextTable(std::string_view text) : lines_(without_byte_order_mark(tex
   lines_.fail("the table has no rows", "", "Write it again");
 }
 
-void TextTable::split(std::string_view line) {
+void NumberTable::split(std::string_view line) {
   cells_ = separator_ == ' ' ? words_of(line) : parts_of(line, separator_);
 }
 
-void TextTable::take_names(const std::vector<std::string_view>& words, int line) {
+void NumberTable::take_names(const std::vector<std::string_view>& words, int line) {
   names_.clear();
   for (const std::string_view word : words) {
     ColumnName column = column_name(word);
@@ -89,7 +89,7 @@ void TextTable::take_names(const std::vector<std::string_view>& words, int line)
   line_of_names_ = line;
 }
 
-void TextTable::take_comment(std::string_view comment) {
+void NumberTable::take_comment(std::string_view comment) {
   constexpr std::string_view format = "format ";
   if (comment.starts_with(format)) {
     const std::string_view name = trimmed(comment.substr(format.size()));
@@ -109,7 +109,7 @@ void TextTable::take_comment(std::string_view comment) {
   line_of_comment_ = lines_.number();
 }
 
-std::optional<std::size_t> TextTable::find(const std::vector<std::string>& names) const {
+std::optional<std::size_t> NumberTable::find(const std::vector<std::string>& names) const {
   for (const std::string& name : names) {
     const auto found = std::ranges::find(names_, name, &ColumnName::name);
     if (found != names_.end()) return found - names_.begin();
@@ -117,7 +117,7 @@ std::optional<std::size_t> TextTable::find(const std::vector<std::string>& names
   return {};
 }
 
-std::size_t TextTable::need(const std::vector<std::string>& names, const std::string& why) const {
+std::size_t NumberTable::need(const std::vector<std::string>& names, const std::string& why) const {
   if (const auto found = find(names)) return *found;
   std::vector<std::string> given;
   for (const ColumnName& column : names_) given.push_back(column.name);
@@ -136,7 +136,7 @@ std::size_t TextTable::need(const std::vector<std::string>& names, const std::st
                      : fmt::format("Add it; the columns are {}", joined(given)));
 }
 
-bool TextTable::next() {
+bool NumberTable::next() {
   const std::size_t width = cells_.size();
   do {
     if (!lines_.next()) return false;

@@ -18,12 +18,12 @@ struct ColumnName {
   std::string unit;  ///< "mm" of "x_mm", "x [mm]" and "x (mm)"; may be empty
 };
 
-class TextTable {
+class NumberTable {
  public:
   /// Reads up to the first row of numbers.
   /// \param text must outlive the object
   /// \throws Error (bad_input) where there is no row, a format of YADE is not known, or names are repeated
-  explicit TextTable(std::string_view text);
+  explicit NumberTable(std::string_view text);
 
   /// Empty where the table names none.
   [[nodiscard]] const std::vector<ColumnName>& names() const { return names_; }
