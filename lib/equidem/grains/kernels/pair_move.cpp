@@ -70,10 +70,9 @@ double move(GrainSystem& system, std::size_t block) {
 
 }  // namespace
 
-void move_pair_bodies(GrainSystem& system) {
+double move_pair_bodies(GrainSystem& system, std::size_t block) {
   const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
-  find_longest_way(system,
-                   [&](std::size_t block) { return turning ? move<true>(system, block) : move<false>(system, block); });
+  return turning ? move<true>(system, block) : move<false>(system, block);
 }
 
 }  // namespace equidem

@@ -127,8 +127,9 @@ void load_pair_bodies(GrainSystem& system);
 /// Mark the bodies that overlap as touching.
 void touch_near_pairs(GrainSystem& system);
 
-/// Set system.bodies.next as move_by_euler(), and the body data of the loop for the next step.
-void move_pair_bodies(GrainSystem& system);
+/// Set system.bodies.next of a block as move_by_euler(), and the body data of the loop for the next step.
+/// \return square of the longest displacement, m²
+double move_pair_bodies(GrainSystem& system, std::size_t block);
 
 /// A pair with the state of its contact, without its constants; j may be an image.
 Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
