@@ -39,11 +39,12 @@ void measure_resistance(GrainSystem& system) {
       if (!(distance > 0)) continue;
       const double spring = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
       const double k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1);
-      const double c = block.groups[g].dashpot[k], c_n = law.dashpot != nullptr ? law.dashpot(c, overlap) : c;
+      const double c = block.groups[g].dashpot[k] / system.dt(),
+                   c_n = law.dashpot != nullptr ? law.dashpot(c, overlap) : c;
       double k_t = 0, c_t = 0;
       if (system.friction) {
         k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        c_t = block.slips[g].dashpot[k];
+        c_t = block.slips[g].dashpot[k] / system.dt();
       }
       // stretched along x, the ends of a branch part by l_x along x
       const Vec2 normal = branch / distance;

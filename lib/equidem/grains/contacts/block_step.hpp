@@ -18,8 +18,8 @@ using BlockMove = void (*)(GrainSystem& system, std::size_t block, bool free_fli
 bool touches_walls_alone(const GrainSystem& system);
 
 /// Set the impulses of all bodies to those of their contacts in this step, and count their sums.
-/// \param move of each block, made as soon as its impulses are known, while they are in the cache: touches_walls_alone();
-///        null: none
+/// \param move of each block, made as soon as its impulses are known, while they are in the cache, if
+///        touches_walls_alone(); null: none
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move);
 
 }  // namespace equidem

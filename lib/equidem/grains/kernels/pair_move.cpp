@@ -6,7 +6,7 @@
 namespace equidem {
 namespace {
 
-using eight::Pair;
+using Pair = eight::Two;
 
 /// Two numbers anywhere: copied byte by byte they would go through general registers. A struct, because Clang 14 takes
 /// an alias of a vector type with less alignment for the aligned type.

@@ -327,7 +327,7 @@ void touch_near_parts(GrainSystem& system) {
         if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
         PartGroup& group = list.groups[p / lanes_of_pairs];
         const std::size_t k = p % lanes_of_pairs;
-        group.since[k] = system.step - (system.options.verlet() ? 1 : 0);
+        group.since[k] = system.step + (system.options.verlet() ? 0 : 1);
         group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
         ++system.counters.contacts;
       }
@@ -353,7 +353,7 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
     pair.apart = normal;
     return {candidate, pair};
   }
-  candidate.steps = system.step - group.since[k];
+  candidate.steps = system.step + 1 - group.since[k];
   candidate.normal = normal;
   candidate.impulse = number(PartGroup::impulse);
   candidate.tangential_impulse = number(PartGroup::tangential_impulse);
@@ -379,7 +379,7 @@ void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartP
       taken[l].add(pair.i, pair.j, contact.normal);
       PartGroup& group = lists[l].groups.back();
       const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
-      group.since[k] = system.step - contact.steps;
+      group.since[k] = system.step + 1 - contact.steps;
       const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
       set(PartGroup::impulse, contact.impulse);
       set(PartGroup::tangential_impulse, contact.tangential_impulse);
