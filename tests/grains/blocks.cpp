@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grains/bonded_scenes.hpp"
+#include "grains/cell_scenes.hpp"
 #include "grains/one_by_one.hpp"
 #include "grains/resuming.hpp"
 #include "grains/shapes.hpp"
@@ -65,6 +66,10 @@ std::vector<BlockScene> block_scenes(const Stepping& stepping) {
   scenes.push_back({"shapes", mixed_box(stepping.law, 5, 5, 85)});
   scenes.push_back({"needles", flying_needles(24, 86)});
   scenes.push_back({"tied pairs", box_of_tied_pairs(stepping)});
+  scenes.push_back({"cell", busy_cell(stepping.law, 5, 5, 87)});
+  if (stepping.integrator != GrainIntegrator::velocity_verlet) return scenes;
+  scenes.push_back({"sheared cell", busy_cell(stepping.law, 5, 5, 88)});
+  scenes.back().scene.cell->rate_xy = {.value = 0.5};
   return scenes;
 }
 

@@ -19,26 +19,53 @@ namespace {
 
 thread_local bool inside_task = false;
 
+/// Tasks begin .. end of a job, on a cache line of its own.
+struct alignas(64) Share {
+  std::size_t begin = 0, end = 0;
+  bool last_first = false;  ///< the last task comes first
+  std::atomic<std::size_t> taken{0};
+
+  [[nodiscard]] std::size_t task(std::size_t k) const {
+    if (!last_first) return begin + k;
+    return k == 0 ? end - 1 : begin + k - 1;
+  }
+};
+
 /// One loop handed to the pool.
 struct Job {
-  std::size_t tasks = 0;
   const std::function<void(std::size_t, int)>* body = nullptr;
-  alignas(64) std::atomic<std::size_t> next{0};
+  std::vector<Share> shares;  ///< one for all threads, or one for each
   std::mutex failure_mutex;
   std::exception_ptr failure;
 
+  Job(std::size_t tasks, std::size_t parts, const std::function<void(std::size_t, int)>& work)
+      : body(&work), shares(parts) {
+    for (std::size_t k = 0; k < parts; ++k) {
+      shares[k].begin = tasks * k / parts;
+      shares[k].end = tasks * (k + 1) / parts;
+      shares[k].last_first = parts > 1;
+    }
+  }
+
   void work(int worker) {
     inside_task = true;
-    for (std::size_t task = next++; task < tasks; task = next++) {
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      work(shares[(static_cast<std::size_t>(worker) + k) % shares.size()], worker);
+    inside_task = false;
+  }
+
+ private:
+  void work(Share& share, int worker) {
+    const std::size_t tasks = share.end - share.begin;
+    for (std::size_t k = share.taken++; k < tasks; k = share.taken++) {
       try {
-        (*body)(task, worker);
+        (*body)(share.task(k), worker);
       } catch (...) {
         const std::lock_guard lock(failure_mutex);
         if (!failure) failure = std::current_exception();
-        next = tasks;
+        for (Share& other : shares) other.taken = other.end;
       }
     }
-    inside_task = false;
   }
 };
 
@@ -128,17 +155,28 @@ void set_thread_count(int count) {
   requested_threads = count;
 }
 
-void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t, int)>& body) {
-  const int threads = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(thread_count()), tasks));
-  if (threads <= 1 || inside_task) {
+namespace {
+
+/// \param each one share for each thread, not one for all
+void share_out(std::size_t tasks, bool each, const std::function<void(std::size_t, int)>& body) {
+  const int threads = thread_count();
+  if (threads <= 1 || tasks <= 1 || inside_task) {
     for (std::size_t task = 0; task < tasks; ++task) body(task, 0);
     return;
   }
-  Job job;
-  job.tasks = tasks;
-  job.body = &body;
-  pool().run(job, thread_count());
+  Job job(tasks, each ? static_cast<std::size_t>(threads) : 1, body);
+  pool().run(job, threads);
   if (job.failure) std::rethrow_exception(job.failure);
+}
+
+}  // namespace
+
+void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t, int)>& body) {
+  share_out(tasks, false, body);
+}
+
+void parallel_shares(std::size_t tasks, const std::function<void(std::size_t, int)>& body) {
+  share_out(tasks, true, body);
 }
 
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {

@@ -20,6 +20,11 @@ void set_thread_count(int count);
 /// once all running tasks have ended. Inside a running task it runs serially, with worker = 0.
 void parallel_tasks(std::size_t tasks, const std::function<void(std::size_t task, int worker)>& body);
 
+/// As parallel_tasks, but every thread begins with a share of the tasks that are next to one another, the same in every
+/// call with as many: what it wrote for them in the call before is in the cache of its processor. It takes the last
+/// task of its share first, then the others in ascending order, and then tasks of shares that others are late with.
+void parallel_shares(std::size_t tasks, const std::function<void(std::size_t task, int worker)>& body);
+
 /// Call body(begin, end) for pieces of [0, count) of at most `grain` indices.
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);

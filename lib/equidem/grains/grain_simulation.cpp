@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -43,6 +44,8 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.bodies.sums.resize(system.bodies.blocks.count());
   system.bodies.ways.resize(system.bodies.blocks.count());
   system.bodies.inwards.resize(system.bodies.blocks.count());
+  system.bodies.earliest.resize(system.bodies.blocks.count());
+  std::iota(system.bodies.earliest.begin(), system.bodies.earliest.end(), std::size_t{0});
   order_by_place(system, scene, order);
   set_cell(system);
   std::vector<std::size_t> numbers = tie_bonds(system, scene);
@@ -65,8 +68,8 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     system.smallest_radius = std::min(system.smallest_radius, part.b);
   }
   system.bodies.next = system.bodies.motions;
-  self.collide = system.shapes.parts.empty() ? collide_function(options.law, system.friction)
-                                             : collide_parts_function(options.law, system.friction);
+  self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
+                                             : part_candidate_loop(options.law, system.friction);
   self.flow = flow_function(options.law);
   if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
@@ -93,7 +96,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   }
   system.contacts.near.record = true;
   if (self.verlet()) {
-    self.find_impulses();
+    self.find_impulses(nullptr);
     system.lost = {};  // there was no drift before the start
     // The force that servo walls find in the first step: walls got half of it, as from a step with no force before.
     for (WallLoad& load : system.walls.loads)
@@ -129,8 +132,8 @@ void GrainSimulation::Implementation::step_together() {
 void GrainSimulation::Implementation::step_by_euler() {
   system.deepest = 0;
   begin_loads_of_walls(system);
-  find_impulses();
-  move_by_euler(system);
+  find_impulses(move_by_euler);
+  take_longest_way(system);
   update_candidates();
   start_next_step();
 }
@@ -144,13 +147,18 @@ void GrainSimulation::Implementation::step_by_verlet() {
   start_next_step();
   system.deepest = 0;
   begin_loads_of_walls(system);  // servo walls were steered by those of the last step
-  find_impulses();
-  (deforms ? kick_in_cell : kick_of_verlet)(system);
+  find_impulses(deforms ? nullptr : kick_of_verlet);
+  if (deforms) kick_in_cell(system);
+  give_touch_impulses(system);
 }
 
-void GrainSimulation::Implementation::find_impulses() {
-  collide(system);
+void GrainSimulation::Implementation::find_impulses(BlockMove move) {
+  const bool at_once = system.bonds.tied.empty() && touches_walls_alone(system);
+  if (system.contacts.near_parts.active) load_part_bodies(system);
+  collide_bodies(system, collide, at_once ? move : nullptr);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
+  if (at_once || !move) return;
+  system.bodies.blocks.each([&](std::size_t block) { move(system, block, system.free_flight); });
 }
 
 void GrainSimulation::Implementation::update_candidates() {

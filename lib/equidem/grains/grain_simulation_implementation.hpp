@@ -13,8 +13,8 @@ namespace equidem {
 struct GrainSimulation::Implementation {
   GrainSystem system;
   Effects effects;
-  CollideFunction collide = nullptr;  ///< force laws and maps
-  FlowFunction flow = nullptr;        ///< simultaneous laws
+  CandidateLoop collide = nullptr;  ///< force laws and maps
+  FlowFunction flow = nullptr;      ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
   double bond_limit = 0;  ///< largest step that the bonds allow, s
   SavedState kept;        ///< a recent state, restored when a step fails
@@ -27,8 +27,9 @@ struct GrainSimulation::Implementation {
   /// Velocity Verlet: half kick, drift, impulses from the velocities at the half step, half kick.
   void step_by_verlet();
   // Stages of both schemes:
-  /// Compute the impulses of contacts and bonds from the present positions and velocities.
-  void find_impulses();
+  /// Compute the impulses of contacts and bonds from the present positions and velocities, and move the bodies by them.
+  /// \param move null: none
+  void find_impulses(BlockMove move);
   /// Update the pairs that may touch at the positions after the step.
   /// \throws Error (computation_failed) if bodies would pass through one another
   void update_candidates();

@@ -83,10 +83,11 @@ struct WallPlace {
 struct BlockSums {
   EnergyLedger lost;
   std::vector<TouchImpulse> touch_impulses;
+  std::vector<WallLoad> on_walls;              ///< empty: none of its bodies is near a wall
   std::int64_t evaluations = 0, contacts = 0;  ///< as in GrainCounters
   double deepest = 0;                          ///< deepest overlap, m
 
-  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, nullptr}; }
+  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, &on_walls}; }
 };
 
 /// The control of a servo wall at the start of a step.
@@ -109,8 +110,9 @@ struct ServoState {
 /// The bodies sorted by position.
 struct GrainBodies {
   BodyBlocks blocks;
-  std::vector<BlockSums> sums;  ///< of each block
-  std::vector<double> ways;     ///< of each block: square of the longest displacement in the present step, m²
+  std::vector<BlockSums> sums;        ///< of each block
+  std::vector<double> ways;           ///< of each block: square of the longest displacement in the present step, m²
+  std::vector<std::size_t> earliest;  ///< of each block: the first one with a near pair that acts on it
   std::vector<std::vector<InwardImpulse>> inwards;  ///< of each block: impulses by near pairs of earlier blocks
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
@@ -243,7 +245,8 @@ double dashpot_of(const GrainSystem& system, const Candidate& candidate);
 /// Set the constants of a pair that the law needs.
 void set_constants(const GrainSystem& system, Candidate& candidate);
 
-/// Connect the impulses of pairs with bodies of later blocks, when lists of near pairs have been found.
+/// Connect the impulses of pairs with bodies of later blocks, when lists of near pairs have been found, and set
+/// GrainBodies::earliest.
 void connect_blocks(GrainSystem& system);
 
 /// Find all candidates within the margin again; existing contacts keep their state.

@@ -199,11 +199,11 @@ void measure_resistance(GrainSystem& system) {
                           system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
       const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
       if (!(distance > 0)) continue;
-      Resistances of =
-          along(near.equal ? near.law.stiffness : block.laws[g].stiffness[k], block.groups[g].dashpot[k], overlap);
+      const double stiffness_of_pair = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
+      Resistances of = along(stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
       if (system.friction) {
         of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        of.c_t = block.slips[g].dashpot[k];
+        of.c_t = block.slips[g].dashpot[k] / system.dt();
       }
       add_resistance(branch, branch / distance, of, stiffness, viscosity);
     }

@@ -2,6 +2,7 @@
 #include "equidem/grains/contacts/block_step.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "equidem/grains/contacts/move_bodies.hpp"
 
@@ -37,44 +38,90 @@ void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
     turn_rims(impulses[i], system.bodies.constants[i]);
 }
 
-void count_sums(GrainSystem& system) {
-  for (BlockSums& sums : system.bodies.sums) {
-    for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value += sums.lost.*term.value;
-    system.counters.evaluations += sums.evaluations;
-    system.counters.contacts += sums.contacts;
-    if (sums.evaluations > 0) system.free_flight = false;
-    system.deepest = std::max(system.deepest, sums.deepest);
-    system.touch_impulses.insert(system.touch_impulses.end(), sums.touch_impulses.begin(), sums.touch_impulses.end());
-    sums = {};
-  }
+/// The contacts of a block with walls.
+void collide_with_walls(GrainSystem& system, std::size_t block, CandidateLoop loop) {
+  const std::vector<Candidate>& candidates = system.contacts.candidates;
+  const auto from = [&](std::size_t body) {
+    return static_cast<std::size_t>(
+        std::ranges::lower_bound(candidates, static_cast<std::int32_t>(body), {}, &Candidate::i) - candidates.begin());
+  };
+  const std::size_t begin = from(system.bodies.blocks.begin(block)), end = from(system.bodies.blocks.end(block));
+  if (begin == end) return;
+  BlockSums& sums = system.bodies.sums[block];
+  sums.on_walls.assign(system.walls.loads.size(), {});
+  loop(system, begin, end, sums);
+}
+
+void count_sums(GrainSystem& system, BlockSums& sums) {
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value += sums.lost.*term.value;
+  system.counters.evaluations += sums.evaluations;
+  system.counters.contacts += sums.contacts;
+  if (sums.evaluations > 0) system.free_flight = false;
+  system.deepest = std::max(system.deepest, sums.deepest);
+  system.touch_impulses.insert(system.touch_impulses.end(), sums.touch_impulses.begin(), sums.touch_impulses.end());
+  for (std::size_t w = 0; w < sums.on_walls.size(); ++w) system.walls.loads[w].add_in_step(sums.on_walls[w]);
+  sums = {};
 }
 
 }  // namespace
 
-void collide_near(GrainSystem& system, bool clear) {
+bool touches_walls_alone(const GrainSystem& system) {
+  if (system.shapes.parts.empty() || system.cell.active) return system.contacts.near.active;
+  const std::size_t discs = system.bodies.constants.size() - system.shapes.shaped.size();
+  return system.contacts.near_parts.active && (system.contacts.near.active || discs < 2);
+}
+
+void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   if (!system.cell.images.empty()) place_images(system);
+  if (system.friction) system.bodies.impulses_before.swap(system.bodies.impulses);
+  const bool clear = system.friction || !system.free_flight;
+  if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
+  system.free_flight = true;
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();
-  system.bodies.blocks.each([&](std::size_t block) { collide_block(system, block, clear); });
-  if (turning || system.bodies.blocks.count() > 1 || !system.cell.images.empty())
-    system.bodies.blocks.each([&](std::size_t block) { complete_impulses(system, block, turning); });
-  count_sums(system);
+  const bool walls_alone = touches_walls_alone(system);
+  system.bodies.blocks.each_in_turn(
+      system.bodies.earliest, [&](std::size_t block) { collide_block(system, block, clear); },
+      [&](std::size_t block) {
+        complete_impulses(system, block, turning);
+        if (walls_alone) collide_with_walls(system, block, loop);
+        if (move) move(system, block, false);
+      });
+  if (!walls_alone) {
+    BlockSums& sums = system.bodies.sums[0];
+    sums.on_walls.assign(system.walls.loads.size(), {});
+    loop(system, 0, system.contacts.candidates.size(), sums);
+  }
+  for (BlockSums& sums : system.bodies.sums) count_sums(system, sums);
 }
 
 void connect_blocks(GrainSystem& system) {
   const BodyBlocks& blocks = system.bodies.blocks;
   std::vector<std::vector<InwardImpulse>>& inwards = system.bodies.inwards;
   for (std::vector<InwardImpulse>& inward : inwards) inward.clear();
+  std::vector<std::size_t>& earliest = system.bodies.earliest;
+  std::iota(earliest.begin(), earliest.end(), std::size_t{0});
+  std::size_t from = 0;
   const auto connect = [&](const OutwardImpulses& outward) {
     for (std::size_t k = 0; k < outward.bodies.size(); ++k) {
       const std::int32_t body = system.body_of(outward.bodies[k]);
-      inwards[blocks.of(static_cast<std::size_t>(body))].push_back({body, &outward.impulses[k]});
+      const std::size_t to = blocks.of(static_cast<std::size_t>(body));
+      inwards[to].push_back({body, &outward.impulses[k]});
+      earliest[to] = std::min(earliest[to], from);
     }
   };
-  for (std::size_t block = 0; block < blocks.count(); ++block) {
-    if (system.contacts.near.active) connect(system.contacts.near.blocks[block].outward);
+  for (; from < blocks.count(); ++from) {
+    if (system.contacts.near.active) connect(system.contacts.near.blocks[from].outward);
     if (!system.contacts.near_parts.active) continue;
-    for (const NearParts::List& list : system.contacts.near_parts.blocks[block].lists) connect(list.outward);
+    for (const NearParts::List& list : system.contacts.near_parts.blocks[from].lists) connect(list.outward);
   }
+}
+
+void take_longest_way(GrainSystem& system) {
+  double longest = 0;
+  for (const double way : system.bodies.ways) {
+    if (way > longest || way != way) longest = way;  // a NaN persists: no number compares as larger
+  }
+  system.longest_way = longest;
 }
 
 }  // namespace equidem

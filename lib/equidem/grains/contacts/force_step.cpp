@@ -104,21 +104,18 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
   return {mean, along - rims - half * closing * (along + rims), geometry.overlap - mean * dt};
 }
 
-/// By a Verlet scheme, when the pairs that are near have had their turn.
 template <class Law, bool friction>
-void collide_candidates_by_verlet(GrainSystem& system) {
-  for (Candidate& candidate : system.contacts.candidates) {
+void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
+  for (std::size_t c = begin; c < end; ++c) {
+    Candidate& candidate = system.contacts.candidates[c];
     const ContactGeometry geometry = geometry_of(system, candidate);
     const TouchPlace place = place_of(geometry, candidate.j < 0);
     if (!(geometry.overlap > 0)) {
       if (candidate.touching)
-        end_contact<Law>(system, candidate, place, drift_of(system, candidate, geometry), system.sums());
+        end_contact<Law>(system, candidate, place, drift_of(system, candidate, geometry), sums.sums());
       continue;
     }
-    system.free_flight = false;
-    if (!candidate.touching) ++system.counters.contacts;
-    ++system.counters.evaluations;
-    system.deepest = std::max(system.deepest, geometry.overlap);
+    count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
     const auto others = [&] {
       const double mass = tangential_mass(system, candidate, geometry);
@@ -126,27 +123,23 @@ void collide_candidates_by_verlet(GrainSystem& system) {
     };
     const Vec2 impulse = step_contact<Law, friction>(
         system, candidate, place, -dot(relative, geometry.normal), slip_velocity(system, candidate, geometry, relative),
-        drift_of(system, candidate, geometry), candidate.sliding, others, system.sums());
+        drift_of(system, candidate, geometry), candidate.sliding, others, sums.sums());
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
   }
 }
 
 template <class Law, bool friction>
-void collide_by(GrainSystem& system) {
-  if constexpr (friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = friction || !system.free_flight;
+void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
   constexpr bool map = Law::kind == LawKind::map;
-  if (map && !system.free_flight) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
-  system.free_flight = true;
-  collide_near(system, clear);
   if constexpr (!map) {
-    if (system.options.verlet()) return collide_candidates_by_verlet<Law, friction>(system);
+    if (system.options.verlet()) return collide_by_verlet<Law, friction>(system, begin, end, sums);
   }
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
-  EnergyLedger& lost = system.lost;
-  for (Candidate& candidate : system.contacts.candidates) {
+  EnergyLedger& lost = sums.lost;
+  for (std::size_t c = begin; c < end; ++c) {
+    Candidate& candidate = system.contacts.candidates[c];
     const ContactGeometry geometry = geometry_of(system, candidate);
     if (!(geometry.overlap > 0)) {
       if (candidate.touching) forget_contact(candidate, lost);
@@ -155,9 +148,7 @@ void collide_by(GrainSystem& system) {
     if constexpr (map) {
       if (candidate.parted) forget_contact(candidate, lost);
     }
-    system.free_flight = false;
-    if (!candidate.touching) ++system.counters.contacts;
-    ++system.counters.evaluations;
+    count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
     const double closing = -dot(relative, geometry.normal);
     const double depth = geometry.overlap * per_length;
@@ -169,7 +160,6 @@ void collide_by(GrainSystem& system) {
     ++candidate.steps;
     candidate.mode = step.mode;
     candidate.overlap = geometry.overlap;
-    system.deepest = std::max(system.deepest, geometry.overlap);
     candidate.closing = closing;
     candidate.normal = geometry.normal;
     candidate.impulse = -step.change * unit;
@@ -191,47 +181,48 @@ void collide_by(GrainSystem& system) {
       push_wall(
           system, candidate.j,
           system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.lever_i * geometry.normal,
-          impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, system.sums());
+          impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
   }
 }
 
 }  // namespace
 
-CollideFunction collide_function(NormalLaw law, bool friction) {
-  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CollideFunction {
+CandidateLoop candidate_loop(NormalLaw law, bool friction) {
+  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
     if constexpr (Law::kind == LawKind::simultaneous) {
       return nullptr;
     } else {
-      return friction ? collide_by<Law, true> : collide_by<Law, false>;
+      return friction ? collide<Law, true> : collide<Law, false>;
     }
   });
 }
 
-void move_by_euler(GrainSystem& system) {
+void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  if (system.contacts.near.active) return move_pair_bodies(system);
-  if (system.free_flight) {
-    move_bodies(system, [&](std::size_t i) {
+  if (system.contacts.near.active) {
+    system.bodies.ways[block] = move_pair_bodies(system, block);
+  } else if (free_flight) {
+    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
       GrainMotion motion = system.bodies.motions[i];
       motion.velocity += fall;
       motion.position += dt * motion.velocity;
       motion.angle += dt * motion.spin;
       return motion;
     });
-    return;
+  } else {
+    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
+      const GrainBody& body = system.bodies.constants[i];
+      const BodyImpulse& push = system.bodies.impulses[i];
+      GrainMotion motion = system.bodies.motions[i];
+      motion.velocity += body.inverse_mass * push.impulse + fall;
+      motion.spin += body.inverse_moment * push.torque;
+      motion.position += dt * motion.velocity;
+      if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
+      motion.angle += dt * motion.spin;
+      return motion;
+    });
   }
-  move_bodies(system, [&](std::size_t i) {
-    const GrainBody& body = system.bodies.constants[i];
-    const BodyImpulse& push = system.bodies.impulses[i];
-    GrainMotion motion = system.bodies.motions[i];
-    motion.velocity += body.inverse_mass * push.impulse + fall;
-    motion.spin += body.inverse_moment * push.torque;
-    motion.position += dt * motion.velocity;
-    if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
-    motion.angle += dt * motion.spin;
-    return motion;
-  });
 }
 
 void drift_of_verlet(GrainSystem& system) {
@@ -273,22 +264,18 @@ void drift_of_verlet(GrainSystem& system) {
   });
 }
 
-void kick_of_verlet(GrainSystem& system) {
+void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight) {
   const Vec2 fall = system.dt() * system.scene.gravity;
-  const BodyBlocks& blocks = system.bodies.blocks;
-  blocks.each([&](std::size_t block) {
-    for (std::size_t i = blocks.begin(block); i < blocks.end(block); ++i) {
-      GrainMotion& motion = system.bodies.motions[i];
-      if (system.free_flight) {
-        motion.velocity += 0.5 * fall;
-        continue;
-      }
-      const GrainBody& body = system.bodies.constants[i];
-      motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
-      motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+    GrainMotion& motion = system.bodies.motions[i];
+    if (free_flight) {
+      motion.velocity += 0.5 * fall;
+      continue;
     }
-  });
-  give_touch_impulses(system);
+    const GrainBody& body = system.bodies.constants[i];
+    motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
+    motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+  }
 }
 
 }  // namespace equidem

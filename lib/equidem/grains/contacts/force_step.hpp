@@ -3,17 +3,23 @@
 /// Steps in which every contact is evaluated by itself: force laws and maps.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
-#include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 
 namespace equidem {
 
-using CollideFunction = void (*)(GrainSystem&);
+/// The loop compiled for a force law or a map, with or without friction: impulses of this step from positions and
+/// velocities. Null for a simultaneous law.
+CandidateLoop candidate_loop(NormalLaw law, bool friction);
 
-/// The loop over contacts compiled for a force law or a map, with or without friction: impulses of this step from
-/// positions and velocities. Null for a simultaneous law.
-CollideFunction collide_function(NormalLaw law, bool friction);
+/// Count a contact that acts in this step.
+inline void count_contact(const Candidate& candidate, double overlap, BlockSums& sums) {
+  if (!candidate.touching) ++sums.contacts;
+  ++sums.evaluations;
+  sums.deepest = std::max(sums.deepest, overlap);
+}
 
 /// Energy lost in the dashpot of a contact in a step, J, and that lost by the spring where attraction is cut: the force
 /// times the mean velocity of the step, of second order in the step. The velocity change by other forces is taken from
@@ -30,12 +36,13 @@ double dashpot_heat(const Candidate& candidate, const ContactStep& step, double 
   return (spring - step.change) * unit * (closing + 0.5 * (eccentric * step.change * unit_speed + by_others));
 }
 
-/// Set system.bodies.next from the impulses: v' = v + a dt, x' = x + v' dt (+ the shifts of maps).
-void move_by_euler(GrainSystem& system);
+/// Set system.bodies.next of a block from the impulses: v' = v + a dt, x' = x + v' dt (+ the shifts of maps); and
+/// system.bodies.ways.
+void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight);
 
 /// Set system.bodies.next: half kick by the impulses of the last step, then the drift.
 void drift_of_verlet(GrainSystem& system);
-/// Second half kick, by the impulses computed from the velocities at the half step.
-void kick_of_verlet(GrainSystem& system);
+/// Second half kick of a block, by the impulses computed from the velocities at the half step.
+void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight);
 
 }  // namespace equidem

@@ -22,21 +22,20 @@ inline void turn_rims(BodyImpulse& push, const GrainBody& body) {
   push.rim = 0;
 }
 
+/// Set system.longest_way to the largest of system.bodies.ways.
+void take_longest_way(GrainSystem& system);
+
 /// Set system.longest_way to the largest of way_of(block), the squares of the longest displacements of blocks, m².
 template <class Way>
 void find_longest_way(GrainSystem& system, const Way& way_of) {
-  std::vector<double>& ways = system.bodies.ways;
-  system.bodies.blocks.each([&](std::size_t block) { ways[block] = way_of(block); });
-  double longest = 0;
-  for (const double way : ways) {
-    if (way > longest || way != way) longest = way;  // a NaN persists: no number compares as larger
-  }
-  system.longest_way = longest;
+  system.bodies.blocks.each([&](std::size_t block) { system.bodies.ways[block] = way_of(block); });
+  take_longest_way(system);
 }
 
-/// Set system.bodies.next[i] = motion(i), the motion after the step, and system.longest_way in the same loop.
+/// Set system.bodies.next[i] = motion(i), the motion after the step, for the bodies of a block.
+/// \return square of the longest displacement, m²
 template <class Motion>
-void move_bodies(GrainSystem& system, const Motion& motion) {
+double move_block(GrainSystem& system, std::size_t block, const Motion& motion) {
   const GrainMotion* before = system.bodies.motions.data();
   GrainMotion* after = system.bodies.next.data();
   const auto move = [&](std::size_t i, double& longest) {
@@ -45,20 +44,24 @@ void move_bodies(GrainSystem& system, const Motion& motion) {
     const double square = dot(way, way);
     longest = square > longest || square != square ? square : longest;  // a NaN persists: no number compares as larger
   };
-  find_longest_way(system, [&](std::size_t block) {
-    constexpr std::size_t lanes = 4;  // independent maxima, so that comparisons do not wait for one another
-    std::array<double, lanes> longest{};
-    const std::size_t begin = system.bodies.blocks.begin(block), end = system.bodies.blocks.end(block);
-    const std::size_t whole = end - (end - begin) % lanes;
-    for (std::size_t i = begin; i < whole; i += lanes) {
-      for (std::size_t k = 0; k < lanes; ++k) move(i + k, longest[k]);
-    }
-    for (std::size_t i = whole; i < end; ++i) move(i, longest[0]);
-    for (std::size_t k = 1; k < lanes; ++k) {
-      if (longest[k] > longest[0] || longest[k] != longest[k]) longest[0] = longest[k];
-    }
-    return longest[0];
-  });
+  constexpr std::size_t lanes = 4;  // independent maxima, so that comparisons do not wait for one another
+  std::array<double, lanes> longest{};
+  const std::size_t begin = system.bodies.blocks.begin(block), end = system.bodies.blocks.end(block);
+  const std::size_t whole = end - (end - begin) % lanes;
+  for (std::size_t i = begin; i < whole; i += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) move(i + k, longest[k]);
+  }
+  for (std::size_t i = whole; i < end; ++i) move(i, longest[0]);
+  for (std::size_t k = 1; k < lanes; ++k) {
+    if (longest[k] > longest[0] || longest[k] != longest[k]) longest[0] = longest[k];
+  }
+  return longest[0];
+}
+
+/// As move_block for all blocks; sets system.longest_way, too.
+template <class Motion>
+void move_bodies(GrainSystem& system, const Motion& motion) {
+  find_longest_way(system, [&](std::size_t block) { return move_block(system, block, motion); });
 }
 
 }  // namespace equidem

@@ -56,7 +56,7 @@ struct PartContact {
   return 1 / inverse;
 }
 
-/// (1/m' of the contact points along the normal)/(1/m of the centres); see collide_parts_function.
+/// (1/m' of the contact points along the normal)/(1/m of the centres); see part_candidate_loop.
 [[gnu::always_inline]] inline double eccentricity(const PartContact& contact) {
   const PartGeometry& geometry = contact.geometry;
   const double lever_i = cross(geometry.arm_i, geometry.normal);
@@ -139,17 +139,12 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
 }
 
 template <class Law, bool friction>
-void collide_parts(GrainSystem& system) {
-  load_part_bodies(system);
-  if constexpr (friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = friction || !system.free_flight;
-  system.free_flight = true;
-  collide_near(system, clear);
+void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
   const bool verlet = system.options.verlet();
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+  for (std::size_t c = begin; c < end; ++c) {
     Candidate& candidate = system.contacts.candidates[c];
     PartPair& pair = system.contacts.part_pairs[c];
     const PartGeometry geometry = geometry_of_parts(system, candidate, pair);
@@ -157,15 +152,13 @@ void collide_parts(GrainSystem& system) {
       if (!candidate.touching) continue;
       if (verlet) {
         const TouchPlace place = place_before(candidate, pair);
-        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place), system.sums());
+        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place), sums.sums());
       } else {
-        forget_contact(candidate, system.lost);
+        forget_contact(candidate, sums.lost);
       }
       continue;
     }
-    system.free_flight = false;
-    if (!candidate.touching) ++system.counters.contacts;
-    ++system.counters.evaluations;
+    count_contact(candidate, geometry.overlap, sums);
     const PartContact contact(system, candidate, geometry);
     const Vec2 relative = relative_velocity(system, contact);
     if (verlet) {
@@ -174,7 +167,6 @@ void collide_parts(GrainSystem& system) {
           drift_of(system, candidate, place, candidate.steps > 0 ? place_before(candidate, pair) : place);
       pair.arm_i = geometry.arm_i;
       pair.arm_j = geometry.arm_j;
-      system.deepest = std::max(system.deepest, geometry.overlap);
       const auto others = [&] {
         const double mass = tangential_mass(contact, 0);
         return SlipByOthers{gain_of_slip(system, contact, mass), mass};
@@ -182,19 +174,18 @@ void collide_parts(GrainSystem& system) {
       push(system.bodies.impulses, contact,
            step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),
                                        dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
-                                       others, system.sums()));
+                                       others, sums.sums()));
       continue;
     }
     const double closing = -dot(relative, geometry.normal);
     const double depth = geometry.overlap * per_length, sigma = closing * per_speed;
     const ContactStep step = force_step<Law>(depth, sigma, candidate.a, candidate.dissipation, candidate.attraction);
     const double unit = candidate.reduced_mass * unit_speed;
-    system.lost.lost_dashpot +=
+    sums.lost.lost_dashpot +=
         dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed, eccentricity(contact));
     candidate.touching = true;
     ++candidate.steps;
     candidate.overlap = geometry.overlap;
-    system.deepest = std::max(system.deepest, geometry.overlap);
     candidate.closing = closing;
     candidate.normal = geometry.normal;
     pair.arm_i = geometry.arm_i;
@@ -204,7 +195,7 @@ void collide_parts(GrainSystem& system) {
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0) {
         candidate.tangential_impulse = slide(system, candidate, pair, contact, dot(relative, contact.tangent()),
-                                             std::max(candidate.impulse, 0.0) / dt, system.lost);
+                                             std::max(candidate.impulse, 0.0) / dt, sums.lost);
         impulse += candidate.tangential_impulse * contact.tangent();
       }
     }
@@ -212,14 +203,14 @@ void collide_parts(GrainSystem& system) {
     if (candidate.j < 0)
       push_wall(system, candidate.j,
                 system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.arm_i, impulse,
-                system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, system.sums());
+                system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
   }
 }
 
 }  // namespace
 
-CollideFunction collide_parts_function(NormalLaw law, bool friction) {
-  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CollideFunction {
+CandidateLoop part_candidate_loop(NormalLaw law, bool friction) {
+  return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
     if constexpr (Law::kind == LawKind::force) {
       return friction ? collide_parts<Law, true> : collide_parts<Law, false>;
     } else {

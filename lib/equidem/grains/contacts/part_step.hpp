@@ -14,6 +14,6 @@ namespace equidem {
 /// (Sukegawa 2010, (2.27)). An eccentric impact has the smaller mass m', 1/m' = 1/m + (arm_i x n)²/I_i + (arm_j x
 /// n)²/I_j: its duration is shorter by sqrt(m'/m), and zeta' = zeta sqrt(m/m') makes its restitution smaller than
 /// prescribed. The tangential dashpot is 2 zeta_T sqrt(m_T kT) with the tangential mass of the present arms.
-CollideFunction collide_parts_function(NormalLaw law, bool friction);
+CandidateLoop part_candidate_loop(NormalLaw law, bool friction);
 
 }  // namespace equidem

@@ -54,6 +54,11 @@ struct WallLoad {
   double step_angular = 0;     ///< about the place of the wall, N m s
   double work = 0;             ///< done by the wall, J
 
+  void add_in_step(const WallLoad& other) {
+    step_impulse += other.step_impulse;
+    step_angular += other.step_angular;
+    work += other.work;
+  }
   void begin_step() {
     impulse += step_impulse;
     step_impulse = {};
@@ -65,7 +70,7 @@ struct WallLoad {
 struct ContactSums {
   EnergyLedger& lost;                      ///< losses and work since the start
   std::vector<TouchImpulse>& corrections;  ///< corrected_verlet: of the next kick
-  std::vector<WallLoad>* on_walls;         ///< none for pairs of bodies alone
+  std::vector<WallLoad>* on_walls;         ///< of each wall; may be empty where no wall is touched
 };
 
 /// Count the energy lost by a contact in the drift in which it began or ended; corrected_verlet: add its correction.

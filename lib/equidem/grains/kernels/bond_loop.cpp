@@ -13,25 +13,13 @@ namespace {
 
 using namespace eight;
 
-static_assert(sizeof(BodyImpulse) == sizeof(Half));
+static_assert(sizeof(BodyImpulse) == sizeof(Four));
 
 enum class BondTask { resist_exactly, resist_explicitly };
 
-/// Four columns of eight rows.
-EQUIDEM_ALWAYS_INLINE void columns_of(const Half (&row)[8], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  Lanes twos[4];
-  for (int k = 0; k < 4; ++k) twos[k] = __builtin_shufflevector(row[k], row[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-  const Lanes even_low = even_of(twos[0], twos[1]), even_high = even_of(twos[2], twos[3]);
-  const Lanes odd_low = odd_of(twos[0], twos[1]), odd_high = odd_of(twos[2], twos[3]);
-  a = __builtin_shufflevector(even_low, even_high, 0, 1, 8, 9, 4, 5, 12, 13);
-  b = __builtin_shufflevector(odd_low, odd_high, 0, 1, 8, 9, 4, 5, 12, 13);
-  c = __builtin_shufflevector(even_low, even_high, 2, 3, 10, 11, 6, 7, 14, 15);
-  d = __builtin_shufflevector(odd_low, odd_high, 2, 3, 10, 11, 6, 7, 14, 15);
-}
-
 /// Decay::mean to 1e-15: the series of decay() at y = x/2^doublings <= 1/2, its even powers beside the odd ones,
 /// doubled so many times by mean(2 y) = mean(y) (1 - y mean(y)/2).
-template <int doublings>
+template <int doublings, class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes mean_by_series(const Lanes& x) {
   const Lanes y = x * (1.0 / (1 << doublings)), square = y * y;
   Lanes even{}, odd{};
@@ -48,9 +36,10 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_by_series(const Lanes& x) {
 }
 
 /// Each lane by its own x alone; a second series only where one is large.
+template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes mean_of_decay(const Lanes& x) {
   Lanes mean = mean_by_series<2>(x);
-  const Choice large = negative(2 - x);
+  const Bits<Lanes> large = negative(2 - x);
   if (any(large)) {
     mean = choose(large, choose(negative(40 - x), 1 / x, mean_by_series<7>(x)), mean);
   }
@@ -58,6 +47,7 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_of_decay(const Lanes& x) {
 }
 
 /// Bonds at the start of the step: the way they lie, rates, and what the impulses as they stand add to these.
+template <class Lanes>
 struct BondLanes {
   Lanes nx, ny, share;  ///< share: levers over radii
   Lanes normal_rate, tangential_rate, normal_gain, tangential_gain;
@@ -65,35 +55,37 @@ struct BondLanes {
 
 /// Contribution of the present impulses to the rates of bond k: along x, along y, to the speed of the rims by torques
 /// and by impulses along them.
-EQUIDEM_ALWAYS_INLINE Half gain_by_impulses(const BondGroup& group, const BodyImpulse* impulses, int k) {
-  Half push_i, push_j, gain_i, gain_j;
-  std::memcpy(&push_i, &impulses[group.i[k]], sizeof push_i);
-  std::memcpy(&push_j, &impulses[group.j[k]], sizeof push_j);
-  std::memcpy(&gain_i, group.gain_i[k], sizeof gain_i);
-  std::memcpy(&gain_j, group.gain_j[k], sizeof gain_j);
-  return push_i * gain_i + push_j * gain_j;
+template <class Numbers>
+EQUIDEM_ALWAYS_INLINE Numbers gain_by_impulses(const BondGroup& group, const BodyImpulse* impulses, std::size_t k) {
+  return load<Numbers>(&impulses[group.i[k]]) * load<Numbers>(group.gain_i[k]) +
+         load<Numbers>(&impulses[group.j[k]]) * load<Numbers>(group.gain_j[k]);
 }
 
+template <class Lanes>
 struct BondFrames {
   Lanes nx, ny, share;
 };
 
-EQUIDEM_ALWAYS_INLINE BondFrames frames_of(const BondGroup& group, const Lanes& bx, const Lanes& by) {
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE BondFrames<Lanes> frames_of(const BondGroup& group, const Lanes& bx, const Lanes& by) {
   const Lanes square = bx * bx + by * by;
   const Lanes distance = square_root(square), inverse = distance * (1 / square);
-  return {bx * inverse, by * inverse, distance * load(group.per_reach)};
+  return {bx * inverse, by * inverse, distance * load<Lanes>(group.per_reach)};
 }
 
-EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const BodyImpulse* impulses, const PairBody* bodies) {
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE BondLanes<Lanes> look_at(const BondGroup& group, const BodyImpulse* impulses,
+                                               const PairBody* bodies) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
-  const Choice difference = {minus, minus, minus, minus, 0, 0, 0, 0};
-  Lanes m[8];
-  Half row[8];
-  for (int k = 0; k < 8; ++k) {
-    const Lanes of_i = load(&bodies[group.i[k]].position.x), of_j = load(&bodies[group.j[k]].position.x);
-    m[k] = of_j + reinterpret_cast<Lanes>(reinterpret_cast<Choice>(of_i) ^ difference);
-    row[k] = gain_by_impulses(group, impulses, k);
+  alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, 0, 0, 0, 0};
+  const auto turned = load<Bits<Lanes>>(difference);
+  Lanes m[lanes_of_pairs];
+  Row<Lanes> row[lanes_of_pairs];
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const auto of_i = load<Lanes>(&bodies[group.i[k]].position.x);
+    m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(of_i) ^ turned);
+    row[k] = gain_by_impulses<Row<Lanes>>(group, impulses, k);
   }
   transpose(m);
   const Lanes &u = m[2], &v = m[3], &rims = m[4];
@@ -112,57 +104,62 @@ EQUIDEM_ALWAYS_INLINE BondLanes look_at(const BondGroup& group, const BodyImpuls
 /// In the half kick that opens a step of a Verlet scheme, at the mean rates of which a quarter of all impulses has
 /// acted.
 struct CountOpeningKicks {
+  template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
 };
 
+template <class Lanes>
 void CountOpeningKicks::run(GrainSystem& system) {
   const GrainMotion* motions = system.bodies.motions.data();
   const GrainBody* bodies = system.bodies.constants.data();
   const BodyImpulse* impulses = system.bodies.impulses.data();
   Lanes lost{};
   for (const BondGroup& group : system.bonds.packed.groups) {
-    Lanes m[8];
-    for (int k = 0; k < 8; ++k) {
+    Row<Lanes> apart[lanes_of_pairs], gain[lanes_of_pairs];
+    PairLanes speeds;
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
       const std::int32_t i = group.i[k], j = group.j[k];
-      Half of_i, of_j;  // position and velocity
-      std::memcpy(&of_i, &motions[i], sizeof of_i);
-      std::memcpy(&of_j, &motions[j], sizeof of_j);
-      const Half rims = {0, 0, motions[i].spin * bodies[i].radius + motions[j].spin * bodies[j].radius, 0};
-      m[k] = __builtin_shufflevector(of_j - of_i, rims + 0.25 * gain_by_impulses(group, impulses, k), 0, 1, 2, 3, 4, 5,
-                                     6, 7);
+      // position and velocity
+      apart[k] = load<Row<Lanes>>(&motions[j]) - load<Row<Lanes>>(&motions[i]);
+      gain[k] = 0.25 * gain_by_impulses<Row<Lanes>>(group, impulses, k);
+      speeds[k] = motions[i].spin * bodies[i].radius + motions[j].spin * bodies[j].radius;
     }
-    transpose(m);
-    const auto [nx, ny, share] = frames_of(group, m[0], m[1]);
-    const Lanes u = m[2] + m[4], v = m[3] + m[5];
-    lost -= load(group.normal_impulse) * (u * nx + v * ny) +
-            load(group.tangential_impulse) * (v * nx - u * ny - share * (m[6] + m[7]));
+    Lanes bx, by, u, v, gx, gy, by_torque, by_rim;
+    columns_of(apart, bx, by, u, v);
+    columns_of(gain, gx, gy, by_torque, by_rim);
+    const auto [nx, ny, share] = frames_of(group, bx, by);
+    u += gx;
+    v += gy;
+    const Lanes rims = (load<Lanes>(speeds) + by_torque) + by_rim;
+    lost -= load<Lanes>(group.normal_impulse) * (u * nx + v * ny) +
+            load<Lanes>(group.tangential_impulse) * (v * nx - u * ny - share * rims);
   }
-  double sum = 0;
-  for (int k = 0; k < 8; ++k) sum += lost[k];
-  system.lost.lost_bond += 0.5 * sum;
+  system.lost.lost_bond += 0.5 * add_up(lost);
 }
 
 template <BondTask task>
 struct Resist {
+  template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system);
 };
 
 template <BondTask task>
+template <class Lanes>
 void Resist<task>::run(GrainSystem& system) {
   const PairBody* seen = system.contacts.near.bodies.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   const bool verlet = system.options.verlet();
-  const Lanes half = all(verlet ? 0.25 : 0.5);  // share of all impulses of a step that has acted
-  Lanes lost{}, nearest = all(1);
+  const double half = verlet ? 0.25 : 0.5;  // share of all impulses of a step that has acted
+  Lanes lost{}, nearest = all<Lanes>(1);
   for (BondGroup& group : system.bonds.packed.groups) {
-    const BondLanes bond = look_at(group, impulses, seen);
+    const BondLanes<Lanes> bond = look_at<Lanes>(group, impulses, seen);
     nearest = smaller(bond.share, nearest);
-    const Lanes mass = load(group.mass), tangential_dashpot = load(group.tangential);
-    const Lanes tangential_mass = mass + bond.share * bond.share * load(group.turning);
-    Lanes normal = -load(group.normal) * bond.normal_rate, tangential;
+    const auto mass = load<Lanes>(group.mass), tangential_dashpot = load<Lanes>(group.tangential);
+    const Lanes tangential_mass = mass + bond.share * bond.share * load<Lanes>(group.turning);
+    Lanes normal = -load<Lanes>(group.normal) * bond.normal_rate, tangential;
     if constexpr (task == BondTask::resist_exactly) {
       const Lanes mean = mean_of_decay(tangential_dashpot * tangential_mass);
-      normal -= load(group.normal_gain) * bond.normal_gain;
+      normal -= load<Lanes>(group.normal_gain) * bond.normal_gain;
       tangential =
           -(tangential_dashpot * mean) * bond.tangential_rate - (1 - mean) / tangential_mass * bond.tangential_gain;
     } else {
@@ -175,26 +172,24 @@ void Resist<task>::run(GrainSystem& system) {
     // of both bodies the rim is pushed the same way round, and its lever is the radius
     const Lanes x = normal * bond.nx - tangential * bond.ny, y = normal * bond.ny + tangential * bond.nx;
     const Lanes rim = bond.share * tangential;
-    Half on_i[8], on_j[8];
+    Row<Lanes> on_i[lanes_of_pairs], on_j[lanes_of_pairs];
     if (verlet) {
-      rows_of(x, y, rim * load(group.radius_i), Lanes{}, on_i);
-      rows_of(x, y, rim * -load(group.radius_j), Lanes{}, on_j);
+      rows_of(x, y, rim * load<Lanes>(group.radius_i), Lanes{}, on_i);
+      rows_of(x, y, rim * -load<Lanes>(group.radius_j), Lanes{}, on_j);
     } else {  // the move of bodies turns rims
       rows_of(x, y, Lanes{}, rim, on_i);
       rows_of(x, y, Lanes{}, -rim, on_j);
     }
-    for (int k = 0; k < 8; ++k) {
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
       subtract(&impulses[group.i[k]], on_i[k]);
       add(&impulses[group.j[k]], on_j[k]);
     }
   }
-  double sum = 0, least = 1;
-  for (int k = 0; k < 8; ++k) {
-    sum += lost[k];
-    least = std::min(least, nearest[k]);
-  }
+  const double sum = add_up(lost);
+  PairLanes least;
+  store(nearest, least);
   system.lost.lost_bond += verlet ? 0.5 * sum : sum;
-  if (least <= nearest_centres_of_bonds) refuse_crept_bonds(system);
+  if (*std::min_element(std::begin(least), std::end(least)) <= nearest_centres_of_bonds) refuse_crept_bonds(system);
 }
 
 void put_row(const GrainBody& body, double sign, BondGroup::Row& row) {

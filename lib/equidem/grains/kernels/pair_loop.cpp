@@ -15,7 +15,6 @@ namespace {
 
 using namespace eight;
 
-constexpr Lanes all_one = {1, 1, 1, 1, 1, 1, 1, 1};
 /// So many go through each part of the work before the next begins: a processor sees several of them at a time, and
 /// does not wait for the roots and quotients of one.
 constexpr std::size_t groups_at_once = 8;
@@ -28,76 +27,79 @@ struct PairLoopKind {
   bool rigid = false;   ///< friction without springs
 };
 
+template <class Lanes>
 struct LoopNumbers {
-  LawLanes law;  ///< where equal; made once, as compilers make eight instructions of each
+  LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
-  std::int64_t now = 0;  ///< step before the one being made
+  std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
   bool corrected = false;
   bool record = false;
   const GrainSystem* system = nullptr;
   BlockSums* block = nullptr;
 };
 
-template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE LawLanes law_of(const LoopNumbers& numbers, const PairLaws* laws) {
+template <PairLoopKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
     return numbers.law;
   } else {
-    const Lanes spring = load(laws->tangential_stiffness);
-    return {load(laws->stiffness),  load(laws->least),
-            load(laws->friction),   spring,
-            load(laws->beyond_cap), 1 / (spring > 0 ? spring : all(1))};
+    const Lanes spring = load<Lanes>(laws->tangential_stiffness);
+    const Lanes compliance = 1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1));
+    return law_lanes(load<Lanes>(laws->stiffness), load<Lanes>(laws->least), load<Lanes>(laws->friction), spring,
+                     compliance, load<Lanes>(laws->beyond_cap), numbers.dt);
   }
 }
 
 /// Relative positions and velocities of eight pairs: from i to j, along the normal and across it.
+template <class Lanes>
 struct Geometry {
-  Lanes square, distance, share, overlap, nx, ny, closing;
+  Lanes square, distance, share, overlap, nx, ny, opening;
   Lanes inverse, along, rims;  ///< Verlet schemes; 1/distance
   /// With half of what the last step did; of the slip all but the rims.
-  Lanes middle_closing, middle_slip, middle_rims;
+  Lanes middle_opening, middle_slip, middle_rims;
 };
 
 /// Results of the contacts of a group.
+template <class Lanes>
 struct Outcome {
   Lanes px, py, rim;  ///< impulse on j
-  Lanes normal_loss, slip_loss, dashpot_loss, release;
+  Lanes normal_loss, slip_loss, dashpot_loss;
   bool any;
 };
 
-template <PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, Geometry& found) {
+template <PairLoopKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, Geometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
-  const Choice difference = {minus, minus, minus, minus, 0, minus, minus, 0};
-  Lanes m[8];
-  for (int k = 0; k < 8; ++k) {
-    const Lanes i = load(&bodies[group.i[k]].position.x);
-    const Lanes j = load(&bodies[group.j[k]].position.x);
-    m[k] = j + reinterpret_cast<Lanes>(reinterpret_cast<Choice>(i) ^ difference);
+  alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, 0, minus, minus, 0};
+  const auto turned = load<Bits<Lanes>>(difference);
+  Lanes m[lanes_of_pairs];
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const auto i = load<Lanes>(&bodies[group.i[k]].position.x);
+    m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(i) ^ turned);
   }
   transpose(m);
-  const Lanes &bx = m[0], &by = m[1], &u = m[2], &v = m[3];
+  const Lanes bx = m[0] + least_distance;
+  const Lanes &by = m[1], &u = m[2], &v = m[3];
   const Lanes square = bx * bx + by * by;
   const Lanes distance = square_root(square);
-  const Choice distinct = square > 0;
-  const Lanes reach = load(group.reach);
-  const Lanes quotient = 1 / (distinct ? distance * reach : all_one);
+  const auto reach = load<Lanes>(group.reach);
+  const Lanes quotient = 1 / (distance * reach);
   const Lanes inverse = reach * quotient;
-  const Lanes nx = distinct ? bx * inverse : all_one, ny = distinct ? by * inverse : Lanes{};
+  const Lanes nx = bx * inverse, ny = by * inverse;
   found.square = square;
-  found.distance = distance;
-  if constexpr (kind.verlet) found.inverse = inverse;
-  if constexpr (kind.friction) found.share = square * quotient;
   found.overlap = reach - distance;
   found.nx = nx;
   found.ny = ny;
-  found.closing = -(u * nx + v * ny);
+  found.opening = u * nx + v * ny;
+  if constexpr (kind.friction) found.share = square * quotient;
   if constexpr (kind.verlet) {
+    found.distance = distance;
+    found.inverse = inverse;
     found.along = v * nx - u * ny;
     if constexpr (kind.friction) found.rims = m[4];
   } else {
-    found.middle_closing = -(m[5] * nx + m[6] * ny);
+    found.middle_opening = m[5] * nx + m[6] * ny;
   }
   if constexpr (kind.friction && (kind.rigid || !kind.verlet)) {
     found.middle_slip = m[6] * nx - m[5] * ny;
@@ -105,152 +107,154 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
   }
 }
 
-template <class Law, PairLoopKind kind>
-EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers& numbers, const Geometry& geometry, PairGroup& group,
-                                   PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums& sums,
-                                   Outcome& outcome) {
+/// The levers of the contacts, for count_instants().
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE void add_levers(const GrainSystem& system, const PairGroup& group,
+                                      const Geometry<Lanes>& geometry, Touches<Lanes>& touches) {
+  PairLanes radius;
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k)
+    radius[k] = system.bodies.constants[static_cast<std::size_t>(group.i[k])].radius;
+  const Lanes lever = load<Lanes>(radius) / load<Lanes>(group.reach) * geometry.distance;
+  const Lanes other = lever - geometry.distance;
+  touches.nx = geometry.nx;
+  touches.ny = geometry.ny;
+  touches.arm_i_x = lever * geometry.nx;
+  touches.arm_i_y = lever * geometry.ny;
+  touches.arm_j_x = other * geometry.nx;
+  touches.arm_j_y = other * geometry.ny;
+}
+
+/// Of a lane apart all comes out as zero: its impulse and its stretch are zero, and so is the yield of friction. What
+/// dashpots beyond a cap do is chosen in every step, the rest where contacts begin or end.
+template <class Law, PairLoopKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geometry<Lanes>& geometry, PairGroup& group,
+                                   PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums<Lanes>& sums,
+                                   Outcome<Lanes>& outcome) {
   const double dt = numbers.dt;
-  const Lanes &square = geometry.square, &inverse = geometry.inverse, &overlap = geometry.overlap, &nx = geometry.nx,
-              &ny = geometry.ny, &closing = geometry.closing;
-  Choice since;
-  std::memcpy(&since, group.since, sizeof since);
+  const Lanes &overlap = geometry.overlap, &nx = geometry.nx, &ny = geometry.ny, &opening = geometry.opening;
+  const auto since = load<Bits<Lanes>>(group.since);
   const Lanes zero{};
-  const Choice touch = negative(zero - overlap) & ~negative(since - PairGroup::apart);
-  const Choice alive = ~negative(since - (PairGroup::apart + 1));
-  const Choice begun = touch & ~alive, ended = alive & ~touch;
+  const Bits<Lanes> touch = negative(zero - overlap), alive = ~(since >> 63);
   const long long which = bits_of_all((touch & 1) | ((touch ^ alive) & 2));
   const bool changes = (which & 2) != 0;
+  outcome.any = which != 0;
+  if (which == 0) return;
+  const Bits<Lanes> begun = touch & ~alive, ended = alive & ~touch;
   if (changes) {
-    since = choose(begun, Choice{} + numbers.now,
-                   choose(ended, Choice{} + static_cast<long long>(PairGroup::apart), since));
-    std::memcpy(group.since, &since, sizeof since);
+    store(choose(begun, all<Bits<Lanes>>(numbers.now), choose(ended, all<Bits<Lanes>>(PairGroup::apart), since)),
+          group.since);
     sums.begun -= begun;
-  } else if (which == 0) {
-    outcome.any = false;
-    return;
   }
-  outcome.any = true;
   sums.evaluations -= touch;
 
-  const LawLanes law = law_of<kind>(numbers, laws);
-  const Lanes dashpot = load(group.dashpot);
+  const LawLanes<Lanes> law = law_of<kind>(numbers, laws);
+  const auto dashpot = load<Lanes>(group.dashpot), half_mobility = load<Lanes>(group.half_mobility);
   const Lanes deep = only(touch, overlap);
-  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
-  const Lanes force = only(touch, larger(elastic + drag, law.least));
-  const Lanes impulse = force * dt;
-  const Lanes mass = load(group.mass), impulse_before = load(group.impulse);
+  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * opening;
+  const Lanes impulse = only(touch, larger(elastic - drag, law.least));
+  const auto impulse_before = load<Lanes>(group.impulse);
   store(impulse, group.impulse);
-  Lanes mean_closing, deep_before, elastic_before, normal_loss;
+  Lanes mean_closing, deep_before, elastic_before;
   if constexpr (kind.verlet) {
     // over the drift, in which the normal turns; the dashpot gives half of the kicks before and after it each
-    mean_closing = closing + (0.5 * dt) * inverse * geometry.along * geometry.along;
+    mean_closing = (0.5 * dt) * geometry.inverse * geometry.along * geometry.along - opening;
     deep_before = larger(overlap - mean_closing * dt, zero);
     elastic_before = Law::spring(law.stiffness, deep_before);
-    normal_loss =
-        only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
+    outcome.normal_loss =
+        only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before) + (impulse - elastic)));
   } else {
     // of the mean over the step the part of this contact is known, not only that of the last step
-    mean_closing = 0.5 * mass * (impulse_before - impulse) + geometry.middle_closing;
-    normal_loss = only(touch, (force - elastic) * mean_closing * dt);
+    mean_closing = half_mobility * (impulse_before - impulse) - geometry.middle_opening;
+    outcome.normal_loss = (impulse - elastic) * mean_closing;
   }
   sums.deepest = larger(deep, sums.deepest);
   Lanes slip{}, tangential_kick{}, sticking_dashpot{}, kept{};
-  Choice slides{};
+  Bits<Lanes> slides{};
   Lanes px = impulse * nx, py = impulse * ny;
   if constexpr (kind.friction) {
     Lanes stretch{}, slip_dashpot{};
     if constexpr (!kind.rigid) {
-      stretch = load(slips->stretch);
-      slip_dashpot = load(slips->dashpot);
+      stretch = load<Lanes>(slips->stretch);
+      slip_dashpot = load<Lanes>(slips->dashpot);
     }
-    const Lanes impulse_along_before = load(slips->impulse);
+    const auto tangential_before = load<Lanes>(slips->impulse);
     const Lanes& share = geometry.share;
-    Lanes velocity, mean_slip{}, half{};
+    Lanes velocity, mean_slip{}, mobility{};
     if constexpr (kind.rigid || !kind.verlet) {
-      half = 0.5 * (mass + load(slips->turning) * square);
+      mobility = half_mobility + load<Lanes>(slips->half_turning) * geometry.square;
       // without this contact's own part in it
-      velocity = geometry.middle_slip - share * geometry.middle_rims - half * impulse_along_before;
+      velocity = geometry.middle_slip - share * geometry.middle_rims - mobility * tangential_before;
     }
     if constexpr (kind.verlet) {
       const Lanes rims = share * geometry.rims;
       const Lanes now = geometry.along - rims;
       velocity = kind.rigid ? 2 * velocity - now : now;
-      mean_slip = now - ((0.5 * dt) * closing * inverse) * (geometry.along + rims);
+      mean_slip = now + ((0.5 * dt) * opening * geometry.inverse) * (geometry.along + rims);
       if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
         stretch -= before_touch * velocity * dt;
       }
     }
-    const Lanes yield = law.friction * larger(force, zero);
-    Tangent tangent;
+    const Lanes yield = law.friction * larger(impulse, zero);
+    Tangent<Lanes> tangent;
     if constexpr (kind.rigid) {
-      tangent = slide_without_spring<kind.verlet>(law, velocity, mean_slip, dt * half, impulse_along_before, yield, dt);
+      tangent = slide_without_spring<kind.verlet>(law, velocity, mean_slip, mobility, tangential_before, yield);
     } else {
-      tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half,
-                                               impulse_along_before, yield, dt);
+      tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
+                                               tangential_before, yield, dt);
     }
-    const Lanes tangential = only(touch, -dt * tangent.force);
-    if constexpr (!kind.rigid) store(only(touch, tangent.stretch), slips->stretch);
+    if constexpr (!kind.equal) tangent.impulse = only(touch, tangent.impulse);
+    const Lanes tangential = -tangent.impulse;
+    if (changes || !kind.equal) {
+      const Bits<Lanes> lasting = kind.verlet ? touch & alive : touch;
+      tangent.slip_loss = only(lasting, tangent.slip_loss);
+      tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
+    }
+    if (changes) [[unlikely]] {
+      if constexpr (kind.verlet) {
+        slip = mean_slip;
+        slides = tangent.slides;
+        tangential_kick = choose(begun, tangential, tangential_before);
+        sticking_dashpot = only(begun & ~slides, -slip_dashpot * velocity);
+        kept = choose(begun, tangent.stretch, stretch);
+      } else {
+        add_release(only(ended, law.half_spring * stretch * stretch), sums);
+      }
+    }
+    if constexpr (!kind.rigid) store(tangent.stretch, slips->stretch);
     store(tangential, slips->impulse);
-    Choice lasting = touch;
-    Lanes release{};
-    if constexpr (kind.verlet) {
-      lasting = touch & alive;
-      slip = mean_slip;
-      slides = tangent.slides;
-      tangential_kick = choose(begun, tangential, impulse_along_before);
-      sticking_dashpot = only(begun & ~slides, -dt * slip_dashpot * velocity);
-      kept = choose(begun, tangent.stretch, stretch);
-    } else {
-      release = only(ended, 0.5 * law.tangential_stiffness * stretch * stretch);
-    }
-    outcome.slip_loss = only(lasting, tangent.slip_loss);
-    outcome.dashpot_loss = only(lasting, tangent.dashpot_loss);
-    outcome.release = release;
+    outcome.slip_loss = tangent.slip_loss;
+    outcome.dashpot_loss = tangent.dashpot_loss;
     px -= tangential * ny;
     py += tangential * nx;
     outcome.rim = share * tangential;
   }
-  outcome.normal_loss = normal_loss;
   outcome.px = px;
   outcome.py = py;
   if constexpr (kind.verlet) {
     if (changes) [[unlikely]] {
-      Lanes lever;
-      for (int k = 0; k < 8; ++k)
-        lever[k] = numbers.system->bodies.constants[static_cast<std::size_t>(group.i[k])].radius;
-      lever = lever / load(group.reach) * geometry.distance;
-      const Lanes other = lever - geometry.distance;
-      count_instants(*numbers.system,
-                     {begun,
-                      ended,
-                      slides,
-                      group.i,
-                      group.j,
-                      nx,
-                      ny,
-                      lever * nx,
-                      lever * ny,
-                      other * nx,
-                      other * ny,
-                      mean_closing,
-                      slip,
-                      choose(begun, deep, deep_before),
-                      choose(begun, elastic, elastic_before) * dt,
-                      choose(begun, impulse, impulse_before),
-                      dashpot,
-                      mass,
-                      law.least,
-                      tangential_kick,
-                      sticking_dashpot,
-                      0.5 * law.tangential_stiffness * kept * kept},
-                     *numbers.block);
+      Touches<Lanes> touches{.begun = begun,
+                             .ended = ended,
+                             .slides = slides,
+                             .closing = mean_closing,
+                             .slip = slip,
+                             .deep = choose(begun, deep, deep_before),
+                             .spring = choose(begun, elastic, elastic_before),
+                             .impulse = choose(begun, impulse, impulse_before),
+                             .dashpot = dashpot,
+                             .mobility = 2 * half_mobility,
+                             .least = law.least,
+                             .tangential = tangential_kick,
+                             .tangential_dashpot = sticking_dashpot,
+                             .stored = law.half_spring * kept * kept};
+      add_levers(*numbers.system, group, geometry, touches);
+      count_instants(*numbers.system, group.i, group.j, touches, *numbers.block);
     }
   }
   if (numbers.record) {
     store(overlap, records->overlap);
-    store(closing, records->closing);
+    store(-opening, records->closing);
     store(nx, records->normal_x);
     store(ny, records->normal_y);
   }
@@ -264,31 +268,31 @@ struct Receivers {
 };
 
 /// \tparam outward some bodies are behind the block
-template <PairLoopKind kind, bool outward>
-EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, Receivers& to, LaneSums& sums) {
-  constexpr long long minus = std::numeric_limits<long long>::min();
+template <PairLoopKind kind, bool outward, class Lanes>
+EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, Receivers& to,
+                                LaneSums<Lanes>& sums) {
   if (!outcome.any) {
-    for (int k = 0; outward && k < 8; ++k) {
+    for (std::size_t k = 0; outward && k < lanes_of_pairs; ++k) {
       if (group.j[k] >= to.end) *to.outward++ = {};
     }
     return;
   }
-  Half row[8];
+  Row<Lanes> row[lanes_of_pairs];
   if constexpr (kind.friction) {
-    rows_of(outcome.normal_loss, outcome.slip_loss, outcome.dashpot_loss, outcome.release, row);
-    for (const Half& lost : row) sums.lost += lost;
+    add_losses(outcome.normal_loss, outcome.slip_loss, outcome.dashpot_loss, sums);
     rows_of(outcome.px, outcome.py, Lanes{}, outcome.rim, row);
   } else {
-    for (int k = 0; k < 8; ++k) sums.lost[0] += outcome.normal_loss[k];
+    add_losses(outcome.normal_loss, sums);
     rows_of(outcome.px, outcome.py, Lanes{}, Lanes{}, row);
   }
   // of both bodies the rim is pushed the same way round, and its lever is the radius
-  const HalfChoice turned = {0, 0, 0, minus};
-  for (int k = 0; k < 8; ++k) {
+  alignas(32) constexpr long long rim[4] = {0, 0, 0, std::numeric_limits<long long>::min()};
+  const auto turned = load<Bits<Row<Lanes>>>(rim);
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     subtract(&to.impulses[group.i[k]], row[k]);
-    if constexpr (kind.friction) row[k] = reinterpret_cast<Half>(reinterpret_cast<HalfChoice>(row[k]) ^ turned);
+    if constexpr (kind.friction) row[k] = as<Row<Lanes>>(bits_of(row[k]) ^ turned);
     if (outward && group.j[k] >= to.end) {
-      put(row[k], to.outward++);
+      store(row[k], to.outward++);
     } else {
       add(&to.impulses[group.j[k]], row[k]);
     }
@@ -297,30 +301,32 @@ EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome& outcome, 
 
 template <class Law, PairLoopKind kind>
 struct CollidePairs {
+  template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t b);
 };
 
 template <class Law, PairLoopKind kind>
+template <class Lanes>
 void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const NearPairs& near = system.contacts.near;
   PairBlock& block = system.contacts.near.blocks[b];
-  const bool verlet = system.options.verlet();
   const PairLaw& law = near.law;
-  const LoopNumbers numbers{{all(law.stiffness), all(law.least), all(law.friction), all(law.tangential_stiffness),
-                             Lanes{}, all(1 / law.tangential_stiffness)},
-                            system.dt(),
-                            system.step - (verlet ? 1 : 0),
-                            system.options.integrator == GrainOptions::Integrator::corrected_verlet,
-                            near.record,
-                            &system,
-                            &system.bodies.sums[b]};
+  const LoopNumbers<Lanes> numbers{
+      law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
+                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), Lanes{}, system.dt()),
+      system.dt(),
+      system.step + (system.options.verlet() ? 0 : 1),
+      system.options.integrator == GrainOptions::Integrator::corrected_verlet,
+      near.record,
+      &system,
+      &system.bodies.sums[b]};
   block.records.resize(near.record ? block.groups.size() : 0);
-  LaneSums sums;
+  LaneSums<Lanes> sums;
   const PairBody* bodies = near.bodies.data();
   Receivers to{system.bodies.impulses.data(), block.outward.impulses.data(),
                static_cast<std::int32_t>(system.bodies.blocks.end(b))};
-  Geometry geometry[groups_at_once];
-  Outcome outcome[groups_at_once];
+  Geometry<Lanes> geometry[groups_at_once];
+  Outcome<Lanes> outcome[groups_at_once];
   const std::size_t count = block.groups.size();
   PairGroup* groups = block.groups.data();
   PairSlips* slips = block.slips.data();

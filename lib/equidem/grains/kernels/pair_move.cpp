@@ -6,7 +6,7 @@
 namespace equidem {
 namespace {
 
-using eight::Pair;
+using Pair = eight::Two;
 
 /// Two numbers anywhere: copied byte by byte they would go through general registers. A struct, because Clang 14 takes
 /// an alias of a vector type with less alignment for the aligned type.
@@ -70,10 +70,9 @@ double move(GrainSystem& system, std::size_t block) {
 
 }  // namespace
 
-void move_pair_bodies(GrainSystem& system) {
+double move_pair_bodies(GrainSystem& system, std::size_t block) {
   const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
-  find_longest_way(system,
-                   [&](std::size_t block) { return turning ? move<true>(system, block) : move<false>(system, block); });
+  return turning ? move<true>(system, block) : move<false>(system, block);
 }
 
 }  // namespace equidem

@@ -16,12 +16,13 @@ using namespace eight;
 constexpr double most_turns = 1e9, rounder = 6755399441055744.0;
 
 /// sine_of_turns(), bit by bit.
+template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
   x -= (x + rounder) - rounder;
-  const Choice beyond = negative(0.25 - magnitude(x));
-  x = choose(beyond, with_sign(all(0.5), x) - x, x);
+  const Bits<Lanes> beyond = negative(0.25 - magnitude(x));
+  x = choose(beyond, with_sign(all<Lanes>(0.5), x) - x, x);
   const Lanes y = (2 * std::numbers::pi) * x, square = y * y;
-  Lanes sum = all(1);
+  Lanes sum = all<Lanes>(1);
 #pragma GCC unroll 11
   for (int k = 22; k >= 2; k -= 2) sum = 1 - square * (1.0 / (k * (k + 1))) * sum;
   return y * sum;
@@ -29,10 +30,12 @@ EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
 
 /// Two eights at a time: of one alone each product would wait for the last.
 struct TurnAxes {
+  template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t begin, std::size_t end);
 };
 
 /// Of the shaped bodies begin .. end.
+template <class Lanes>
 void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
   constexpr std::size_t most = 16;
   for (std::size_t first = begin; first < end; first += most) {
@@ -45,7 +48,7 @@ void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
     double x[most], y[most];
 #pragma GCC unroll 2
     for (std::size_t k = 0; k < most; k += 8) {
-      const Lanes turns = load(angle + k) / (2 * std::numbers::pi);
+      const Lanes turns = load<Lanes>(angle + k) / (2 * std::numbers::pi);
       store(sines_of_turns(turns + 0.25), x + k);
       store(sines_of_turns(turns), y + k);
     }

@@ -21,108 +21,109 @@ struct PartLoopKind {
 
 struct PartLoopNumbers {
   double dt = 0;
-  std::int64_t now = 0;  ///< step before the one being made
+  std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
   bool corrected = false, record = false;
   const GrainSystem* system = nullptr;
   BlockSums* block = nullptr;
   std::int32_t end = 0;  ///< of the bodies of the block
 };
 
-EQUIDEM_ALWAYS_INLINE Lanes closing_of(const Standing& s, const Vectors& n, const Vectors& arm_i,
-                                       const Vectors& arm_j) {
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes closing_of(const Standing<Lanes>& s, const Vectors<Lanes>& n, const Vectors<Lanes>& arm_i,
+                                       const Vectors<Lanes>& arm_j) {
   return -(dot(s.velocity, n) + (s.spin_j * cross(arm_j, n) - s.spin_i * cross(arm_i, n)));
 }
-EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing& s, const Vectors& n, const Vectors& arm_i, const Vectors& arm_j) {
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing<Lanes>& s, const Vectors<Lanes>& n, const Vectors<Lanes>& arm_i,
+                                    const Vectors<Lanes>& arm_j) {
   return cross(n, s.velocity) + (s.spin_j * dot(arm_j, n) - s.spin_i * dot(arm_i, n));
 }
 
-EQUIDEM_ALWAYS_INLINE LawLanes law_of(const PartGroup& group) {
-  const Lanes spring = load(group.numbers[PartGroup::tangential_stiffness]);
-  return {load(group.numbers[PartGroup::stiffness]),  load(group.numbers[PartGroup::least]),
-          load(group.numbers[PartGroup::friction]),   spring,
-          load(group.numbers[PartGroup::beyond_cap]), 1 / (spring > 0 ? spring : all(1))};
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartGroup& group, double dt) {
+  const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
+  return law_lanes(column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
+                   column<Lanes>(group, PartGroup::friction), spring,
+                   1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)),
+                   column<Lanes>(group, PartGroup::beyond_cap), dt);
 }
 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
-template <class Law, PartLoopKind kind>
+template <class Law, PartLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const PartBody* bodies,
                                          const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
-                                         BodyImpulse*& outward, LaneSums& sums) {
+                                         BodyImpulse*& outward, LaneSums<Lanes>& sums) {
   const double dt = numbers.dt;
-  Choice since;
-  std::memcpy(&since, group.since, sizeof since);
-  const Choice used = ~negative(since - PairGroup::apart), alive = ~negative(since - (PairGroup::apart + 1));
-  const Standing s = standing_of<kind.round>(bodies, group);
-  const Vectors normal_before{load(group.numbers[PartGroup::normal_x]), load(group.numbers[PartGroup::normal_y])};
-  GeometryLanes at;
+  const auto since = load<Bits<Lanes>>(group.since);
+  const Bits<Lanes> used = ~((since - PairGroup::apart) >> 63), alive = ~(since >> 63);
+  const Standing<Lanes> s = standing_of<kind.round, Lanes>(bodies, group);
+  const Vectors<Lanes> normal_before{column<Lanes>(group, PartGroup::normal_x),
+                                     column<Lanes>(group, PartGroup::normal_y)};
+  GeometryLanes<Lanes> at;
   if constexpr (kind.round) {
     at = geometry_of_round_parts(group, s, used);
   } else {
     at = geometry_of_ellipses(group, s, used, alive);
   }
-  const Choice touch = at.touch, begun = touch & ~alive, ended = alive & ~touch;
+  const Bits<Lanes> touch = at.touch, begun = touch & ~alive, ended = alive & ~touch;
   const bool changes = any(touch ^ alive);
   if (changes) {
-    since = choose(begun, Choice{} + numbers.now,
-                   choose(ended, Choice{} + static_cast<long long>(PairGroup::apart), since));
-    std::memcpy(group.since, &since, sizeof since);
+    store(choose(begun, all<Bits<Lanes>>(numbers.now), choose(ended, all<Bits<Lanes>>(PairGroup::apart), since)),
+          group.since);
     sums.begun -= begun;
   } else if (!any(touch)) {
-    for (int k = 0; outward && k < 8; ++k) {
+    for (std::size_t k = 0; outward && k < lanes_of_pairs; ++k) {
       if (body_of_part[group.j[k]] >= numbers.end) *outward++ = {};
     }
     return;
   }
   sums.evaluations -= touch;
 
-  const Vectors n = at.normal, t = perpendicular(n);
+  const Vectors<Lanes> n = at.normal, t = perpendicular(n);
   const Lanes across_i = cross(at.arm_i, n), across_j = cross(at.arm_j, n);
   const Lanes closing = -(dot(s.velocity, n) + (s.spin_j * across_j - s.spin_i * across_i));
-  const Lanes inverse_mass = load(group.numbers[PartGroup::inverse_mass]);
-  const Lanes turning_i = load(group.numbers[PartGroup::inverse_moment_i]),
-              turning_j = load(group.numbers[PartGroup::inverse_moment_j]);
-  const Lanes stiffness = load(group.numbers[PartGroup::stiffness]), least = load(group.numbers[PartGroup::least]);
-  const Lanes dashpot = load(group.numbers[PartGroup::dashpot]);
+  const auto inverse_mass = column<Lanes>(group, PartGroup::inverse_mass);
+  const auto turning_i = column<Lanes>(group, PartGroup::inverse_moment_i);
+  const auto turning_j = column<Lanes>(group, PartGroup::inverse_moment_j);
+  const LawLanes<Lanes> law = law_of<Lanes>(group, dt);
+  const Lanes dashpot = dt * column<Lanes>(group, PartGroup::dashpot);
   const Lanes deep = only(touch, at.overlap);
-  const Lanes elastic = Law::spring(stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
-  const Lanes force = only(touch, larger(elastic + drag, least));
-  const Lanes impulse = force * dt, impulse_before = load(group.numbers[PartGroup::impulse]);
+  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
+  const Lanes impulse = only(touch, larger(elastic + drag, law.least));
+  const auto impulse_before = column<Lanes>(group, PartGroup::impulse);
   store(impulse, group.numbers[PartGroup::impulse]);
   Lanes normal_loss, mean_closing, deep_before, elastic_before;
-  Vectors arm_i_before, arm_j_before;
+  Vectors<Lanes> arm_i_before, arm_j_before;
   if constexpr (kind.verlet) {
     // over the drift, from the places at both ends of it; the dashpot gives half of the kicks before and after it each
-    arm_i_before = {load(group.numbers[PartGroup::arm_i_x]), load(group.numbers[PartGroup::arm_i_y])};
-    arm_j_before = {load(group.numbers[PartGroup::arm_j_x]), load(group.numbers[PartGroup::arm_j_y])};
+    arm_i_before = {column<Lanes>(group, PartGroup::arm_i_x), column<Lanes>(group, PartGroup::arm_i_y)};
+    arm_j_before = {column<Lanes>(group, PartGroup::arm_j_x), column<Lanes>(group, PartGroup::arm_j_y)};
     mean_closing = choose(begun, closing, closing_of(s, normal_before, arm_i_before, arm_j_before));
     mean_closing = choose(ended, mean_closing, 0.5 * (closing + mean_closing));
-    deep_before = larger(load(group.numbers[PartGroup::overlap]), Lanes{});
-    elastic_before = Law::spring(stiffness, deep_before);
-    normal_loss =
-        only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before * dt) + (force - elastic) * dt));
+    deep_before = larger(column<Lanes>(group, PartGroup::overlap), Lanes{});
+    elastic_before = Law::spring(law.stiffness, deep_before);
+    normal_loss = only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before) + (impulse - elastic)));
   } else {
     // of the mean over the step the part of this contact is known, not only that of the last step
     const Lanes mobility = inverse_mass + across_i * across_i * turning_i + across_j * across_j * turning_j;
     mean_closing = 0.5 * mobility * (impulse_before - impulse) -
                    (dot(s.middle, n) + (s.middle_spin_j * across_j - s.middle_spin_i * across_i));
-    normal_loss = only(touch, (force - elastic) * mean_closing * dt);
+    normal_loss = only(touch, (impulse - elastic) * mean_closing);
   }
   sums.deepest = larger(deep, sums.deepest);
-  Vectors push = impulse * n;
+  Vectors<Lanes> push = impulse * n;
   Lanes torque_i = impulse * across_i, torque_j = impulse * across_j;
   Lanes mean_slip{}, tangential_kick{}, sticking_dashpot{}, stored{};
-  Choice slides{};
-  Half row[8];
+  Bits<Lanes> slides{};
   if constexpr (kind.friction) {
-    const LawLanes law = law_of(group);
     const Lanes along_i = dot(at.arm_i, n), along_j = dot(at.arm_j, n);
     const Lanes rim_i = along_i + at.sunk_i, rim_j = along_j - at.sunk_j;
     const Lanes at_rim = inverse_mass + rim_i * rim_i * turning_i + rim_j * rim_j * turning_j;
-    const Lanes slip_dashpot = load(group.numbers[PartGroup::tangential_damping]) * square_root(1 / at_rim);
-    const Lanes tangential_before = load(group.numbers[PartGroup::tangential_impulse]);
-    const Lanes yield = law.friction * larger(force, Lanes{});
-    Lanes stretch = load(group.numbers[PartGroup::stretch]);
-    Lanes velocity, half{};
+    const Lanes slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / at_rim);
+    const auto tangential_before = column<Lanes>(group, PartGroup::tangential_impulse);
+    const Lanes yield = law.friction * larger(impulse, Lanes{});
+    auto stretch = column<Lanes>(group, PartGroup::stretch);
+    Lanes velocity, mobility{};
     if constexpr (kind.verlet) {
       velocity = dot(s.velocity, t) + (s.spin_j * along_j - s.spin_i * along_i);
       mean_slip = choose(begun, velocity, slip_of(s, normal_before, arm_i_before, arm_j_before));
@@ -133,68 +134,64 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
         stretch -= before_touch * velocity * dt;
       }
     } else {
-      half = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
+      mobility = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
       // without this contact's own part in it
-      velocity = dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i) - half * tangential_before;
+      velocity =
+          dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i) - mobility * tangential_before;
     }
-    const Tangent tangent = slide<kind.verlet, false>(law, slip_dashpot, stretch, velocity, mean_slip, dt * half,
-                                                      tangential_before, yield, dt);
-    const Lanes tangential = only(touch, -dt * tangent.force);
+    const Tangent<Lanes> tangent = slide<kind.verlet, false>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
+                                                             tangential_before, yield, dt);
+    const Lanes tangential = only(touch, -tangent.impulse);
     store(only(touch, tangent.stretch), group.numbers[PartGroup::stretch]);
     store(tangential, group.numbers[PartGroup::tangential_impulse]);
-    Choice lasting = touch;
-    Lanes release{};
+    Bits<Lanes> lasting = touch;
     if constexpr (kind.verlet) {
       lasting = touch & alive;
       slides = tangent.slides;
       tangential_kick = choose(begun, tangential, tangential_before);
-      sticking_dashpot = only(begun & ~slides, -dt * slip_dashpot * velocity);
+      sticking_dashpot = only(begun & ~slides, -slip_dashpot * velocity);
       const Lanes kept = choose(begun, tangent.stretch, stretch);
-      stored = 0.5 * law.tangential_stiffness * kept * kept;
-    } else {
-      release = only(ended, 0.5 * law.tangential_stiffness * stretch * stretch);
+      stored = law.half_spring * kept * kept;
+    } else if (changes) {
+      add_release(only(ended, law.half_spring * stretch * stretch), sums);
     }
-    rows_of(normal_loss, only(lasting, tangent.slip_loss), only(lasting, tangent.dashpot_loss), release, row);
-    for (const Half& lost : row) sums.lost += lost;
+    add_losses(normal_loss, only(lasting, tangent.slip_loss), only(lasting, tangent.dashpot_loss), sums);
     push = push + tangential * t;
     torque_i += tangential * along_i;
     torque_j += tangential * along_j;
   } else {
-    for (int k = 0; k < 8; ++k) sums.lost[0] += normal_loss[k];
+    add_losses(normal_loss, sums);
   }
   if constexpr (kind.verlet) {
     if (changes) [[unlikely]] {
-      std::int32_t i[8], j[8];
-      for (int k = 0; k < 8; ++k) {
+      std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
+      for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
         i[k] = body_of_part[group.i[k]];
         j[k] = body_of_part[group.j[k]];
       }
-      const Vectors normal = choose(begun, n, normal_before);
-      const Vectors arm_i = choose(begun, at.arm_i, arm_i_before), arm_j = choose(begun, at.arm_j, arm_j_before);
-      count_instants(*numbers.system,
-                     {begun,
-                      ended,
-                      slides,
-                      i,
-                      j,
-                      normal.x,
-                      normal.y,
-                      arm_i.x,
-                      arm_i.y,
-                      arm_j.x,
-                      arm_j.y,
-                      mean_closing,
-                      mean_slip,
-                      choose(begun, deep, deep_before),
-                      choose(begun, elastic, elastic_before) * dt,
-                      choose(begun, impulse, impulse_before),
-                      dashpot,
-                      inverse_mass,
-                      least,
-                      tangential_kick,
-                      sticking_dashpot,
-                      stored},
-                     *numbers.block);
+      const Vectors<Lanes> normal = choose(begun, n, normal_before);
+      const Vectors<Lanes> arm_i = choose(begun, at.arm_i, arm_i_before), arm_j = choose(begun, at.arm_j, arm_j_before);
+      const Touches<Lanes> touches{.begun = begun,
+                                   .ended = ended,
+                                   .slides = slides,
+                                   .nx = normal.x,
+                                   .ny = normal.y,
+                                   .arm_i_x = arm_i.x,
+                                   .arm_i_y = arm_i.y,
+                                   .arm_j_x = arm_j.x,
+                                   .arm_j_y = arm_j.y,
+                                   .closing = mean_closing,
+                                   .slip = mean_slip,
+                                   .deep = choose(begun, deep, deep_before),
+                                   .spring = choose(begun, elastic, elastic_before),
+                                   .impulse = choose(begun, impulse, impulse_before),
+                                   .dashpot = dashpot,
+                                   .mobility = inverse_mass,
+                                   .least = law.least,
+                                   .tangential = tangential_kick,
+                                   .tangential_dashpot = sticking_dashpot,
+                                   .stored = stored};
+      count_instants(*numbers.system, i, j, touches, *numbers.block);
     }
   }
   if (kind.verlet || numbers.record) {
@@ -209,35 +206,37 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
     store(n.x, group.numbers[PartGroup::normal_x]);
     store(n.y, group.numbers[PartGroup::normal_y]);
   }
-  Half other[8];
-  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_i), Lanes{}, row);
-  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, other);
-  for (int k = 0; k < 8; ++k) {
-    subtract(&impulses[body_of_part[group.i[k]]], row[k]);
+  Row<Lanes> on_i[lanes_of_pairs], on_j[lanes_of_pairs];
+  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_i), Lanes{}, on_i);
+  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, on_j);
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    subtract(&impulses[body_of_part[group.i[k]]], on_i[k]);
     const std::int32_t receiver = body_of_part[group.j[k]];
     if (outward && receiver >= numbers.end) {
-      put(other[k], outward++);
+      store(on_j[k], outward++);
     } else {
-      add(&impulses[receiver], other[k]);
+      add(&impulses[receiver], on_j[k]);
     }
   }
 }
 
 template <class Law, PartLoopKind kind>
 struct CollideParts {
+  template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, NearParts::List& list, std::size_t block);
 };
 
 template <class Law, PartLoopKind kind>
+template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
   const PartLoopNumbers numbers{system.dt(),
-                                system.step - (kind.verlet ? 1 : 0),
+                                system.step + (kind.verlet ? 0 : 1),
                                 system.options.integrator == GrainOptions::Integrator::corrected_verlet,
                                 system.contacts.near.record,
                                 &system,
                                 &system.bodies.sums[block],
                                 static_cast<std::int32_t>(system.bodies.blocks.end(block))};
-  LaneSums sums;
+  LaneSums<Lanes> sums;
   BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
     collide_group<Law, kind>(numbers, system.contacts.near_parts.bodies.data(), system.shapes.body_of_part.data(),

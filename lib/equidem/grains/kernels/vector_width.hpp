@@ -23,19 +23,35 @@ VectorWidth vector_width();
 /// Limit the width from the next simulation on, so that widths can be compared.
 void allow_vectors_up_to(VectorWidth widest);
 
-/// Kernel::run for vectors of the three widths; it is a static function that is EQUIDEM_ALWAYS_INLINE.
+namespace eight {
+
+// Numbers in one vector of the processor.
+using Two = double __attribute__((vector_size(16)));
+using Four = double __attribute__((vector_size(32)));
+using Eight = double __attribute__((vector_size(64)));
+
+/// Twice as many numbers: compilers make slow code of vectors wider than those of the processor.
+template <class Half>
+struct Twice {
+  Half low, high;
+};
+
+}  // namespace eight
+
+/// Kernel::run<Lanes> for vectors of the three widths, Lanes being the eight numbers (pair_lanes.hpp); it is a static
+/// function that is EQUIDEM_ALWAYS_INLINE.
 template <class Kernel, class... Arguments>
 void run_plain(Arguments... arguments) {
-  Kernel::run(arguments...);
+  Kernel::template run<eight::Twice<eight::Twice<eight::Two>>>(arguments...);
 }
 #if defined(__x86_64__)
 template <class Kernel, class... Arguments>
 EQUIDEM_BY_FOURS void run_by_fours(Arguments... arguments) {
-  Kernel::run(arguments...);
+  Kernel::template run<eight::Twice<eight::Four>>(arguments...);
 }
 template <class Kernel, class... Arguments>
 EQUIDEM_BY_EIGHTS void run_by_eights(Arguments... arguments) {
-  Kernel::run(arguments...);
+  Kernel::template run<eight::Eight>(arguments...);
 }
 #endif
 

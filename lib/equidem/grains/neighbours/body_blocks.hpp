@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "equidem/core/threads.hpp"
@@ -39,14 +40,21 @@ class BodyBlocks {
   /// Call work(block) for each block, on all threads.
   template <class Work>
   void each(const Work& work) const {
-    parallel_tasks(count(), [&](std::size_t block, int) { work(block); });
+    parallel_shares(count(), [&](std::size_t block, int) { work(block); });
   }
 
   /// Call work(begin, end) for pieces of [0, count) as long as blocks, on all threads; count: of some of the bodies.
   template <class Work>
   void each_piece(std::size_t count, const Work& work) const {
-    parallel_ranges(count, per_block_, work);
+    parallel_shares((count + per_block_ - 1) / per_block_, [&](std::size_t piece, int) {
+      work(piece * per_block_, std::min(count, (piece + 1) * per_block_));
+    });
   }
+
+  /// Call first(block), then second(block) for each block, on all threads: the second once the first has returned for
+  /// the blocks from earliest[block] to this one. What the first wrote is mostly in the cache of the processor then.
+  void each_in_turn(const std::vector<std::size_t>& earliest, const std::function<void(std::size_t block)>& first,
+                    const std::function<void(std::size_t block)>& second) const;
 
  private:
   std::size_t bodies_ = 0, per_block_ = 1;

@@ -104,16 +104,16 @@ class PairLists {
     near_.groups.back().since[k] = PairGroup::apart;
     near_.groups.back().reach[k] = system_.bodies.constants[static_cast<std::size_t>(i)].radius +
                                    system_.bodies.constants[static_cast<std::size_t>(other)].radius;
-    near_.groups.back().dashpot[k] = dashpot_of(system_, candidate);
+    near_.groups.back().dashpot[k] = dashpot_of(system_, candidate) * system_.dt();
     const GrainBody &bi = system_.bodies.constants[static_cast<std::size_t>(i)],
                     &bj = system_.bodies.constants[static_cast<std::size_t>(other)];
-    near_.groups.back().mass[k] = bi.inverse_mass + bj.inverse_mass;
+    near_.groups.back().half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
     near_.groups.back().impulse[k] = 0;
     if (system_.friction) {
       const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
       PairSlips& slips = near_.slips.back();
-      slips.turning[k] = share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment;
-      slips.dashpot[k] = candidate.sliding.dashpot;
+      slips.half_turning[k] = 0.5 * (share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment);
+      slips.dashpot[k] = candidate.sliding.dashpot * system_.dt();
       slips.stretch[k] = slips.impulse[k] = 0;
     }
     if (!equal_) {
@@ -139,7 +139,7 @@ class PairLists {
       std::fill_n(near_.groups.back().i, lanes_of_pairs, i);
       std::fill_n(near_.groups.back().j, lanes_of_pairs, i);
       std::fill_n(near_.groups.back().since, lanes_of_pairs, PairGroup::unused);
-      std::fill_n(near_.groups.back().reach, lanes_of_pairs, 1.0);  // anything that can be divided by
+      std::fill_n(near_.groups.back().reach, lanes_of_pairs, -1.0);
       if (system_.friction) near_.slips.emplace_back();
       if (!equal_) near_.laws.emplace_back();
       if (!records_.empty()) near_.records.emplace_back();
@@ -159,9 +159,10 @@ class PairLists {
     const std::size_t g = at_ / lanes_of_pairs, from = lane(), to = make_room(before.i[from], before.j[from]);
     PairGroup& group = near_.groups.back();
     group.since[to] = before.since[from];
-    copy(before, from, group, to, &PairGroup::reach, &PairGroup::dashpot, &PairGroup::mass, &PairGroup::impulse);
+    copy(before, from, group, to, &PairGroup::reach, &PairGroup::dashpot, &PairGroup::half_mobility,
+         &PairGroup::impulse);
     if (system_.friction) {
-      copy(slips_[g], from, near_.slips.back(), to, &PairSlips::turning, &PairSlips::dashpot, &PairSlips::stretch,
+      copy(slips_[g], from, near_.slips.back(), to, &PairSlips::half_turning, &PairSlips::dashpot, &PairSlips::stretch,
            &PairSlips::impulse);
     }
     if (!equal_) {
@@ -307,7 +308,7 @@ void touch_near_pairs(GrainSystem& system) {
       const auto j = static_cast<std::size_t>(system.body_of(block.second(p)));
       const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
       if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
-      block.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step - (verlet ? 1 : 0);
+      block.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step + (verlet ? 0 : 1);
       ++system.counters.contacts;
     }
   }
@@ -320,7 +321,7 @@ Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::si
   candidate.j = near.second(p);
   candidate.touching = near.touching(p);
   if (!candidate.touching) return candidate;
-  candidate.steps = system.step - near.groups[g].since[k];
+  candidate.steps = system.step + 1 - near.groups[g].since[k];
   candidate.impulse = near.groups[g].impulse[k];
   if (system.friction) {
     candidate.stretch = near.slips[g].stretch[k];
@@ -371,7 +372,7 @@ void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts
     for (; contact != contacts.end() && blocks.of(static_cast<std::size_t>(contact->i)) == b; ++contact) {
       lists.add(contact->i, contact->j);
       const std::size_t k = (block.count - 1) % lanes_of_pairs;
-      block.groups.back().since[k] = system.step - contact->steps;
+      block.groups.back().since[k] = system.step + 1 - contact->steps;
       block.groups.back().impulse[k] = contact->impulse;
       PairRecords& records = block.records.back();
       records.overlap[k] = contact->overlap;

@@ -37,22 +37,23 @@ struct alignas(64) PairBody {
 
 /// Eight pairs i < j.
 struct alignas(64) PairGroup {
-  static constexpr std::int64_t apart = -2, unused = -3;
+  static constexpr std::int64_t apart = -1, unused = -2;
   std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< j: a body, or an image (periodic_images.hpp)
-  std::int64_t
-      since[lanes_of_pairs];  ///< step before the first step of the contact; `apart`: no contact; `unused`: no pair
-  PairLanes reach;            ///< r_i + r_j, m
-  PairLanes dashpot;          ///< normal; N s/m, hertz: N s/m^(5/4)
-  PairLanes mass;             ///< 1/m_i + 1/m_j
-  PairLanes impulse;          ///< normal, of the last step, N s
+  /// First step of the contact, counted from 1 (Verlet schemes: from 0); `apart`: no contact; `unused`: no pair.
+  std::int64_t since[lanes_of_pairs];
+  PairLanes reach;          ///< r_i + r_j, m; of lanes without a pair negative, so that they never touch
+  PairLanes dashpot;        ///< normal, times dt; kg, hertz: kg/m^(1/4)
+  PairLanes half_mobility;  ///< (1/m_i + 1/m_j)/2
+  PairLanes impulse;        ///< normal, of the last step, N s
 };
 
-/// Friction data of the pairs of a PairGroup. Mobility of the contact: PairGroup::mass + turning * distance².
+/// Friction data of the pairs of a PairGroup. Half the mobility along the contact: PairGroup::half_mobility +
+/// half_turning * distance².
 struct alignas(64) PairSlips {
-  PairLanes turning;  ///< (r_i²/I_i + r_j²/I_j)/(r_i + r_j)²
-  PairLanes dashpot;  ///< N s/m
-  PairLanes stretch;  ///< m
-  PairLanes impulse;  ///< tangential, of the last step, N s
+  PairLanes half_turning;  ///< (r_i²/I_i + r_j²/I_j)/(r_i + r_j)²/2
+  PairLanes dashpot;       ///< times dt, kg
+  PairLanes stretch;       ///< m
+  PairLanes impulse;       ///< tangential, on j, of the last step, N s
 };
 
 /// Law constants if all pairs have the same.
@@ -127,8 +128,9 @@ void load_pair_bodies(GrainSystem& system);
 /// Mark the bodies that overlap as touching.
 void touch_near_pairs(GrainSystem& system);
 
-/// Set system.bodies.next as move_by_euler(), and the body data of the loop for the next step.
-void move_pair_bodies(GrainSystem& system);
+/// Set system.bodies.next of a block as move_by_euler(), and the body data of the loop for the next step.
+/// \return square of the longest displacement, m²
+double move_pair_bodies(GrainSystem& system, std::size_t block);
 
 /// A pair with the state of its contact, without its constants; j may be an image.
 Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
