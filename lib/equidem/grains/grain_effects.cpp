@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
@@ -74,6 +75,22 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
             "few grains: threads would wait for one another longer than they work"),
   };
   return effects;
+}
+
+double GrainSimulation::bytes_per_body() const {
+  const GrainSystem& system = implementation_->system;
+  const double bytes = static_cast<double>(
+      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
+      system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
+      2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
+      (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
+      system.contacts.candidates.capacity() * sizeof(Candidate) +
+      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
+      system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
+      system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
+      (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
+      (system.bonds.breakable ? system.bonds.breakable->bytes() : 0) + system.scene.grains.capacity() * sizeof(Grain));
+  return bytes / static_cast<double>(system.bodies.constants.size());
 }
 
 }  // namespace equidem

@@ -306,19 +306,4 @@ const Effects& GrainSimulation::effects() const {
   return implementation_->effects;
 }
 
-double GrainSimulation::bytes_per_body() const {
-  const GrainSystem& system = implementation_->system;
-  const double bytes = static_cast<double>(
-      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
-      system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
-      2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
-      (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
-      system.contacts.candidates.capacity() * sizeof(Candidate) +
-      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
-      system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
-      system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
-      system.cell.images.capacity() * sizeof(PeriodicImage) + system.scene.grains.capacity() * sizeof(Grain));
-  return bytes / static_cast<double>(system.bodies.constants.size());
-}
-
 }  // namespace equidem

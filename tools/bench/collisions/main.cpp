@@ -3,6 +3,7 @@
 /// Cost of colliding bodies, law by law, of a step and at equal accuracy, and of effects that the scene lacks:
 /// bench_collisions --help.
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "accuracy.hpp"
 #include "bench.hpp"
@@ -56,7 +58,7 @@ GrainScene packed_bed(int columns, int rows, const PairProperties& pair) {
   return scene;
 }
 
-Entry entry_of(const std::string& name, GrainSimulation& simulation) {
+Entry entry_of(const std::string& name, AnySimulation& simulation) {
   return {name, [&simulation](std::int64_t steps) { simulation.advance(steps); }};
 }
 
@@ -163,12 +165,16 @@ std::string compare_friction(int rounds) {
   pair.tangential_ratio = 0.5;
   FrictionlessDiscs by_hand(smooth, 0.1, dt);
   GrainSimulation without = start(smooth, variants[0], dt), with = start(packed_bed(side, side, pair), variants[0], dt);
+  StagedSimulation staged({{.name = "all", .scene = smooth, .steps = std::numeric_limits<std::int64_t>::max()}},
+                          {.law = variants[0].law, .time_step = dt});
   const Entry entries[] = {{"by hand, without friction", [&](std::int64_t n) { by_hand.advance(n); }},
                            entry_of("C, friction 0", without),
+                           entry_of("C, friction 0, as a case of one stage", staged),
                            entry_of("C, friction 0.5 with springs", with)};
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
   check_alike(without, by_hand, 1e-6);
-  const double bytes[] = {0, without.bytes_per_body(), with.bytes_per_body()};
+  check_alike(staged.present(), by_hand, 1e-6);
+  const double bytes[] = {0, without.bytes_per_body(), staged.bytes_per_body(), with.bytes_per_body()};
   return table_beside_hand_loop(entries, seconds, bytes, static_cast<double>(side * side * steps));
 }
 

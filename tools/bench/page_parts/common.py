@@ -54,7 +54,9 @@ class Run:
         return f"studies/{name}.png"
 
     def command(self):
-        quick = " --quick" if self.options.quick else f" --discs {self.options.discs}"
+        quick = " --quick" if self.options.quick else "" if self.options.only == "effects" else f" --discs {self.options.discs}"
+        if self.options.only:
+            quick += f" --only {self.options.only}"
         return f"tools/bench/pages build/release/tools/equidem{quick} --budget {self.options.budget:g} --rounds {self.options.rounds}"
 
 

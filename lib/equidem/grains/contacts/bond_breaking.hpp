@@ -41,6 +41,11 @@ struct BreakableBonds {
 
   /// Takes the bonds that tie_bonds has tied. \param numbers of the scene, in the same order
   BreakableBonds(const GrainSystem& system, const ContactStrengths& strengths, std::vector<std::size_t> numbers);
+
+  [[nodiscard]] std::size_t bytes() const {
+    return all.capacity() * sizeof(TiedPair) + number.capacity() * sizeof(std::size_t) +
+           (tension.capacity() + shear.capacity()) * sizeof(double) + broken.capacity();
+  }
 };
 
 /// Breaks bonds by the present motions, and lets their discs collide.

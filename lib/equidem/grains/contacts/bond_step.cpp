@@ -101,6 +101,7 @@ void push_springs(GrainSystem& system) {
   const double dt = system.dt();
   for (const std::size_t b : system.bonds.packed.sprung) {
     const TiedPair& bond = system.bonds.tied[b];
+    if (!is_wide(system, bond)) refuse_crept_bonds(system);
     const BondForces<double> force = bond_forces(bond.springs, motion_of_bond(system, bond));
     BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
     BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];

@@ -36,6 +36,9 @@ struct TiedPair {
   ContactFrame frame;
   BondModes rate, gained;
 
+  [[nodiscard]] bool has_dashpots() const {
+    return dashpots.normal > 0 || dashpots.tangential > 0 || dashpots.rolling > 0;
+  }
   [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
 

@@ -235,6 +235,7 @@ void pack_bonds(GrainSystem& system) {
   for (std::size_t b = 0; b < system.bonds.tied.size(); ++b) {
     TiedPair& bond = system.bonds.tied[b];
     if (bond.has_springs()) system.bonds.packed.sprung.push_back(b);
+    if (!bond.has_dashpots()) continue;
     const bool alone =
         bonds_of[static_cast<std::size_t>(bond.i)] == 1 && bonds_of[static_cast<std::size_t>(bond.j)] == 1;
     if (!system.contacts.near.active || !alone || bond.dashpots.rolling > 0 || system.cell.active) {

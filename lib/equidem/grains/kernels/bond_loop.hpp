@@ -38,7 +38,7 @@ struct alignas(64) BondGroup {
 
 struct PackedBonds {
   LaneVector<BondGroup> groups;
-  std::vector<std::size_t> one_by_one;  ///< bonds not packed, ascending
+  std::vector<std::size_t> one_by_one;  ///< bonds with dashpots that are not packed, ascending
   std::vector<std::size_t> sprung;      ///< bonds with springs, packed or not, ascending
 
   [[nodiscard]] std::size_t bytes() const {
