@@ -64,9 +64,9 @@ TEST_CASE("closest_points_of_eight_pairs_of_ellipses_are_exact") {
       eight.set(k++, pair, truth, std::pow(10, random.uniform(-9, -2)) * (random.uniform(0, 1) < 0.5 ? 1 : -1));
     }
     const PartGroup before = eight.group;
-    const eight::Standing standing = eight::standing_of<false>(eight.bodies.data(), eight.group);
-    const eight::Choice all = ~eight::Choice{};
-    const eight::GeometryLanes found = eight::geometry_of_ellipses(eight.group, standing, all, all);
+    const auto standing = eight::standing_of<false, eight::Eight>(eight.bodies.data(), eight.group);
+    const auto all = ~eight::Bits<eight::Eight>{};
+    const auto found = eight::geometry_of_ellipses(eight.group, standing, all, all);
     for (int k = 0; k < 8; ++k, ++count) {
       const auto at = static_cast<std::size_t>(k);
       const TwoEllipses& pair = eight.pairs[at];

@@ -8,6 +8,11 @@
 #include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
+namespace {
+
+using PartColumn = PartGroup::Column;
+
+}  // namespace
 
 void load_part_bodies(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;
