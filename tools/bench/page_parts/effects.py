@@ -37,13 +37,13 @@ Contacts of law C are computed several at a time, with tangential springs and wi
 Ellipses and clumps have loops of their own beside that of the discs. The contacts of maps are computed one by one. Torques come with
 the tangential springs; a scene without them has no rotations at all, in memory or in time.
 
-Walls that move, are shaken or follow a stress, rows of histories and a case of one stage are beside the loop over contacts: what
-they add lies within the noise, some per cent. Where a stage begins, the scene is checked, sorted and searched for neighbours as at
-the start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
-Lees and Edwards) count the stress in every step. Bonds of discs that have more than one are stepped one after the other, with all
-their springs whether they are zero or not; their dashpots are solved exactly, and those with strengths are computed once more in
-each step and kept twice. A network in which nothing collides or breaks is stepped faster as bonded discs, in finite motion too (the
-first table).
+Walls that move, are shaken or follow a stress, their histories and a case of one stage are beside the loop over contacts: they add
+some per cent at most, which is the noise. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the
+start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
+Lees and Edwards) count the stress in every step, and a row of their history sorts all contacts. Bonds of discs that have more than
+one are stepped one after the other, with all their springs whether they are zero or not; their dashpots are solved exactly, and
+those with strengths are computed once more in each step and kept twice. A network in which nothing collides or breaks is stepped
+faster as bonded discs, in finite motion too (the first table).
 
 ## What is off costs nothing
 
