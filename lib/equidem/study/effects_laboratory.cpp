@@ -159,7 +159,7 @@ void add_box(Study& study, int side) {
 }
 
 void add_cell(Study& study, int side) {
-  constexpr const char* problem = "colliding discs, law C, in a periodic cell";
+  constexpr const char* problem = "colliding discs, law C, in a cell";
   const GrainOptions options{.law = NormalLaw::linear_dashpot,
                              .integrator = GrainOptions::Integrator::velocity_verlet,
                              .time_step = time_step};
@@ -167,7 +167,7 @@ void add_cell(Study& study, int side) {
   const PeriodicCell whole{.width = box.spacing * side, .height = 0.5 * std::numbers::sqrt3 * box.spacing * side};
   const LaboratoryCase cases[] = {
       {"between four walls", [](GrainScene&) {}},
-      {"or periodic along x, between a floor and a lid",
+      {"or periodic along x, with floor and lid",
        [whole](GrainScene& s) {
          s.walls.resize(2);
          s.cell = PeriodicCell{.along = PeriodicCell::Along::x, .width = whole.width};
@@ -178,7 +178,7 @@ void add_cell(Study& study, int side) {
          s.walls.clear();
          s.cell = whole;
        }},
-      {"+ shear at a constant rate (Lees, Edwards)", [](GrainScene& s) { s.cell->rate_xy = {.value = 1}; }},
+      {"+ shear at a constant rate", [](GrainScene& s) { s.cell->rate_xy = {.value = 1}; }},
       {"+ a stress that it keeps",
        [box](GrainScene& s) {
          s.cell->servo = CellServo{.stress_yy = Schedule{.value = -box.stress}, .max_rate = 10};

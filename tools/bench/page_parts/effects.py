@@ -37,11 +37,13 @@ Contacts of law C are computed several at a time, with tangential springs and wi
 Ellipses and clumps have loops of their own beside that of the discs. The contacts of maps are computed one by one. Torques come with
 the tangential springs; a scene without them has no rotations at all, in memory or in time.
 
-Walls that move, are shaken or follow a stress, rows of histories and a case of one stage are beside the loop over contacts: what they
-add lies within the noise, some per cent. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the start
-of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform count the stress in every step. Bonds
-are stepped one after the other, in double precision, where a disc has more than one; those with strengths are looked at once more in
-each step, and kept twice.
+Walls that move, are shaken or follow a stress, their histories and a case of one stage are beside the loop over contacts: they add
+some per cent at most, which is the noise. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the
+start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
+Lees and Edwards) count the stress in every step, and a row of their history sorts all contacts. Bonds of discs that have more than
+one are stepped one after the other, with all their springs whether they are zero or not; their dashpots are solved exactly, and
+those with strengths are computed once more in each step and kept twice. A network in which nothing collides or breaks is stepped
+faster as bonded discs, in finite motion too (the first table).
 
 ## What is off costs nothing
 
@@ -49,8 +51,7 @@ Each loop beside one that is written by hand for its scene alone, without anythi
 memory and the same vectors: 1.00 means that effects which the scene lacks take no time.
 
 {bonded}The loops by hand for colliding discs lack also what every run of such bodies has: the search for neighbours, the ledger of energies,
-walls that may move. A packed bed beside a loop that knows its pairs beforehand; no wall, cell, bond
-or stage of the tables above costs it anything:
+walls that may move. A packed bed, which lacks what the tables above add, beside a loop that knows its pairs beforehand:
 
 {bed}Free flight, where nothing else is left to do, beside `v += g dt; x += v dt`:
 
@@ -108,11 +109,12 @@ def statics(run):
             continue
         ns, values = nanoseconds(result, row), row["values"]
         plain = plain or ns
-        rows.append([row["method"], f"{values['unknowns']:.3g}", f"{values['factor_entries']:.0f}", f"{values['factor_bytes']:.0f}",
+        entries = f"{values['factor_entries']:.0f}" if values["factor_entries"] else "none: multigrid"
+        rows.append([row["method"], f"{values['unknowns']:.3g}", entries, f"{values['factor_bytes']:.0f}",
                      f"{1e-3 * ns:.3g}", f"{ns / plain:.2f}", f"{values['residual']:.0e}"])
     return (f"## At rest\n\n{result['title']}: processor time of the whole answer, which holds checks, ordering, factorization, solution and "
             f"refinement; one thread, {result['rounds']} rounds.\n\n![Time of a solution]({plot})\n\n" +
-            table(["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the factor per disc", "µs per disc",
+            table(["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the solver per disc", "µs per disc",
                    "over the plain scene", "relative residual"], rows))
 
 
