@@ -111,3 +111,26 @@ TEST_CASE("contacts_that_slide_always_keep_their_bits_for_every_margin_and_on_re
     CHECK(bits_of(other) == bits_of(chosen));
   }
 }
+
+// Any number beside zero grows there: a column is as unstable as a rod on its tip.
+TEST_CASE("discs_above_one_another_stay_so_to_the_last_bit") {
+  const Stepping stepping =
+      GENERATE(from_range(std::vector<Stepping>(all_steppings.begin(), all_steppings.begin() + 6)));
+  const double friction = GENERATE(0.0, 0.4);
+  std::vector<Grain> column;
+  for (int k = 0; k < 20; ++k) column.push_back(ball({0, 1.0 + 1.99 * k}, 1));
+  PairProperties pair;
+  pair.stiffness = 1e4;
+  pair.restitution = 0.5;
+  pair.friction = friction;
+  GrainSimulation simulation(scene_of(column, {line("floor", {0, 0}, {0, 1})}, pair, {0, -1}),
+                             options_of(stepping, 0.001));
+  simulation.advance(500);
+  CAPTURE(stepping.name(), friction);
+  CHECK(simulation.counters().contacts > 19);
+  for (const Grain& grain : simulation.grains()) {
+    CHECK(grain.position.x == 0);
+    CHECK(grain.velocity.x == 0);
+    CHECK(grain.spin == 0);
+  }
+}

@@ -17,9 +17,6 @@
 
 namespace equidem::eight {
 
-/// Added to a coordinate of a branch, it changes nothing but the normal of centres that coincide: (1, 0).
-constexpr double least_distance = 1e-150;
-
 template <class Lanes>
 constexpr bool in_halves = requires(Lanes lanes) {
   lanes.low;
@@ -163,6 +160,16 @@ EQUIDEM_ALWAYS_INLINE Bits<Lanes> negative(const Lanes& x) {
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes choose(const Bits<Lanes>& choice, const Lanes& a, const Lanes& b) {
   return as<Lanes>((choice & bits_of(a)) | (~choice & bits_of(b)));
+}
+/// Square of the branch (x, y). Centres that coincide get a branch so short that nothing but their normal comes from
+/// it: (1, 0). A number added to x without a choice would make the normals of branches along y turn.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes square_of_branch(Lanes& x, const Lanes& y) {
+  constexpr double shortest = 1e-150;
+  const Lanes square = x * x + y * y;
+  const Bits<Lanes> distinct = negative(Lanes{} - square);
+  x = choose(distinct, x, all<Lanes>(shortest));
+  return choose(distinct, square, all<Lanes>(shortest * shortest));
 }
 /// a where chosen, zero elsewhere.
 template <class Lanes>

@@ -79,9 +79,9 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
     m[k] = load<Lanes>(&bodies[group.j[k]].position.x) + as<Lanes>(bits_of(i) ^ turned);
   }
   transpose(m);
-  const Lanes bx = m[0] + least_distance;
+  Lanes& bx = m[0];
   const Lanes &by = m[1], &u = m[2], &v = m[3];
-  const Lanes square = bx * bx + by * by;
+  const Lanes square = square_of_branch(bx, by);
   const Lanes distance = square_root(square);
   const auto reach = load<Lanes>(group.reach);
   const Lanes quotient = 1 / (distance * reach);

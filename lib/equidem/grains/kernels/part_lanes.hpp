@@ -105,8 +105,9 @@ struct GeometryLanes {
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_round_parts(const PartGroup& group, const Standing<Lanes>& s,
                                                                    const Bits<Lanes>& used) {
-  const Lanes bx = s.branch.x + least_distance, &by = s.branch.y;
-  const Lanes square = bx * bx + by * by, distance = square_root(square);
+  Lanes bx = s.branch.x;
+  const Lanes& by = s.branch.y;
+  const Lanes square = square_of_branch(bx, by), distance = square_root(square);
   const Lanes overlap = column<Lanes>(group, PartGroup::reach) - distance;
   const Lanes inverse = distance * (1 / square);  // the division is independent of the root
   const Vectors<Lanes> normal{bx * inverse, by * inverse};
