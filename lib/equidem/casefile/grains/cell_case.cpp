@@ -118,8 +118,7 @@ void bind_cell(File<GrainTables>& file) {
 
 void bind_stage_cell(File<GrainTables>& file) {
   file.table("stage.cell", "how the periodic cell deforms from now on").holds_tables();
-  file.table("stage.cell.motion",
-             "rates until the stage ends, 0 too; a component given here keeps no stress")
+  file.table("stage.cell.motion", "rates until the stage ends, 0 too; a component given here keeps no stress")
       .described(cell_motion_keys());
   file.table("stage.cell.servo", "stresses from now on; a component that is not given keeps the stress that it has")
       .described(cell_servo_keys());

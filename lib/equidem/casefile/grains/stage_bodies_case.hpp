@@ -47,7 +47,7 @@ class StagePopulation {
   [[nodiscard]] const std::vector<std::string>& groups() const { return groups_; }
   /// The groups of the bodies in which the run has them first.
   [[nodiscard]] const std::vector<std::string>& first_groups() const { return first_groups_; }
-  /// What was read last. \param grains those of the population, with their kinds
+  /// Returns what was read last. \param grains those of the population, with their kinds
   [[nodiscard]] StageBodies changes(const std::vector<Grain>& grains) const;
 
  private:

@@ -39,7 +39,7 @@ struct Resistances {
   double k_n = 0, k_t = 0, c_n = 0, c_t = 0;
 };
 
-/// What they add to the resistance of the cell: stretched along x, the ends of a branch part by l_x along x.
+/// Adds their part in the resistance of the cell: stretched along x, the ends of a branch part by l_x along x.
 void add_resistance(Vec2 branch, Vec2 normal, const Resistances& of, Vec2& stiffness, Vec2& viscosity) {
   const double xx = normal.x * normal.x, yy = normal.y * normal.y;
   stiffness += Vec2{squared(branch.x) * (of.k_n * xx + of.k_t * yy), squared(branch.y) * (of.k_n * yy + of.k_t * xx)};

@@ -76,7 +76,7 @@ EQUIDEM_ALWAYS_INLINE void operator|=(Twice<Half>& a, const Other& b) {
 template <class Lanes>
 using Bits = decltype(std::declval<Lanes>() < std::declval<Lanes>());
 
-/// The same bits as numbers, or as whole numbers.
+/// Reads the same bits as numbers, or as whole numbers.
 template <class To, class From>
 EQUIDEM_ALWAYS_INLINE To as(const From& lanes) {
   if constexpr (in_halves<From>) {

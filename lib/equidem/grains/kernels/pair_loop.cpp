@@ -124,7 +124,7 @@ EQUIDEM_ALWAYS_INLINE void add_levers(const GrainSystem& system, const PairGroup
   touches.arm_j_y = other * geometry.ny;
 }
 
-/// Of a lane apart all comes out as zero: its impulse and its stretch are zero, and so is the yield of friction. What
+/// A lane apart gives zeros: its impulse and its stretch are zero, and so is the yield of friction. What
 /// dashpots beyond a cap do is chosen in every step, the rest where contacts begin or end.
 template <class Law, PairLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geometry<Lanes>& geometry, PairGroup& group,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What the loops over near parts read of bodies, and what they know of contacts.
+/// Bodies as the loops over near parts read them, and the contacts that these loops keep.
 #include <utility>
 
 #include "equidem/grains/contacts/part_geometry.hpp"

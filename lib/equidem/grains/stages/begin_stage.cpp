@@ -18,7 +18,7 @@ namespace {
 
 constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
 
-/// Of each body that was there its place now; -1: it is gone. \param origins as in ChangedBodies
+/// The place that each body has now; -1: it is gone. \param origins as in ChangedBodies
 std::vector<std::int32_t> places_after(std::size_t before, const std::vector<std::int32_t>& origins) {
   std::vector<std::int32_t> places(before, -1);
   for (std::size_t k = 0; k < origins.size(); ++k)

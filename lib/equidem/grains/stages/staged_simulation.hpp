@@ -120,7 +120,7 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] std::int64_t step() const override { return present_->step(); }
   [[nodiscard]] std::int64_t milestone() const override;
   [[nodiscard]] bool over() const override;
-  /// Of all bodies of the run; not_there: those that are gone, or come later.
+  /// One for each body of the run; not_there: those that are gone, or come later.
   [[nodiscard]] std::vector<DiscMotion> motions() const override { return of_run(present_->motions()); }
   [[nodiscard]] std::vector<DiscMotion> velocities() const override { return of_run(present_->velocities()); }
   [[nodiscard]] std::vector<BodyContact> body_contacts() const override;

@@ -40,7 +40,7 @@ struct Places {
       bodies_now[static_cast<std::size_t>(bodies_then[k])] = static_cast<std::int32_t>(k);
     }
   }
-  /// Of a body or a wall (negative) of the first, as Candidate::j; none: it is gone.
+  /// The number that a body or a wall (negative) of the first has now, as Candidate::j; none: it is gone.
   [[nodiscard]] std::optional<std::int32_t> partner(std::int32_t j) const {
     const std::int32_t now = j >= 0 ? bodies_now[static_cast<std::size_t>(j)] : walls_now[static_cast<std::size_t>(~j)];
     if (now < 0) return {};
