@@ -74,7 +74,7 @@ struct SavedContact {
     const double distance = sum - numbers[at.overlap], lever = radius / sum * distance;
     return {lever * normal(), (lever - distance) * normal()};
   }
-  /// The same contact in another system.
+  /// Makes it the same contact in another system.
   void move_to(const GrainSystem& own, std::int32_t new_i, std::int32_t new_j) {
     if (!system.shapes.parts.empty()) {
       const auto move = [&](double& part, std::int32_t from, std::int32_t to) {

@@ -124,7 +124,7 @@ class UpdatedState {
     bool to_correct = false;  ///< since the last refinement it was not visited
     bool open = false;        ///< of the search at hand: its children are looked at one by one
   };
-  /// What becomes of the forces of contacts as motions are brought up to date.
+  /// Whether forces of contacts follow as motions are brought up to date.
   enum class Forces : std::uint8_t { follow, stay };
 
   [[nodiscard]] std::span<double> column(LargeVector<double>& of, std::size_t of_case) const {
@@ -146,7 +146,7 @@ class UpdatedState {
   void solve_followed();
   /// Prescribed motions, all free components at rest.
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
-  /// Of a contact by these and the mean strain.
+  /// The stretch and slip of a contact by these and the mean strain.
   [[nodiscard]] ContactDeformation driving_deformation(std::size_t contact, std::size_t of_case) const;
   [[nodiscard]] MotionLayout layout() const { return {symbolic_->block, unknowns.rotation_scale}; }
   [[nodiscard]] PreciseColumn base(std::size_t of_case) const {

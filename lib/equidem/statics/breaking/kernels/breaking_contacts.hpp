@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// What the forces of a contact follow from. Discs are named by their position in the order of elimination.
+/// A contact as its forces are evaluated. Discs are named by their position in the order of elimination.
 struct BreakingContact {
   std::int32_t i = 0, j = 0;
   Vec2 normal;

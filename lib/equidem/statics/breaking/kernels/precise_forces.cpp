@@ -61,7 +61,7 @@ EQUIDEM_INLINE DeformationOf<Twofold<Number>> deformation_of(const BreakingConta
   return d;
 }
 
-/// What rotations open a contact whose point lies beside the line of centres.
+/// The stretch by rotations of a contact whose point lies beside the line of centres.
 Twofold<double> opened_by(const ContactOffsets& offsets, const BreakingContact& contact, const MotionLayout& layout,
                           const Twofold<double>& per_scale, const PreciseColumn& motion) {
   if (layout.block != 3) return {};

@@ -17,7 +17,7 @@ struct PreciseColumn {
   const double* low = nullptr;  ///< null: 0
 };
 
-/// What a force loses as it is rounded to double precision, N/m.
+/// The part of a force beyond double precision, N/m.
 struct ForceRemainder {
   float normal = 0, tangential = 0;
 };
