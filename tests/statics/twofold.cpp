@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Numbers of two doubles against those of 113 bits.
+#include "equidem/statics/breaking/kernels/twofold.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "equidem/core/random.hpp"
-#include "equidem/statics/breaking/kernels/twofold.hpp"
 
 #include "support/catch.hpp"
 
@@ -25,7 +26,7 @@ double off(const Twofold<double>& found, Wide truth, Wide scale) {
 }
 
 Twofold<double> random_twofold(Random& random) {
-  const double high = random.uniform(-1, 1) * std::pow(2, std::floor(random.uniform(-30, 30)));
+  const double high = random.uniform(-1, 1) * std::pow(2, std::floor(random.uniform(-20, 20)));
   return twofold::sum(high, high * random.uniform(-1, 1) * 0x1p-54);
 }
 
