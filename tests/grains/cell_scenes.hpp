@@ -5,15 +5,15 @@
 
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "grains/scenes.hpp"
 
 namespace equidem::test {
 
-/// Discs of several sizes with friction that fly about in a cell.
-inline GrainScene busy_cell(NormalLaw law, int columns, int rows, std::uint64_t seed, double speed = 1) {
-  GrainScene scene = busy_box(law, columns, rows, seed);
+/// The bodies of a box in a cell of its size, without walls, gravity or momentum, their velocities times `speed`.
+inline GrainScene in_cell_of_its_size(GrainScene scene, int columns, int rows, double speed) {
   scene.walls.clear();
   scene.gravity = {};
   scene.cell = PeriodicCell{.corner = {0, 0}, .width = 1.0 * columns, .height = 1.0 * rows};
@@ -26,6 +26,11 @@ inline GrainScene busy_cell(NormalLaw law, int columns, int rows, std::uint64_t 
   }
   for (Grain& grain : scene.grains) grain.velocity -= momentum / mass;
   return scene;
+}
+
+/// Discs of several sizes with friction that fly about in a cell.
+inline GrainScene busy_cell(NormalLaw law, int columns, int rows, std::uint64_t seed, double speed = 1) {
+  return in_cell_of_its_size(busy_box(law, columns, rows, seed), columns, rows, speed);
 }
 
 inline GrainOptions verlet_options(double step = 0.005) {

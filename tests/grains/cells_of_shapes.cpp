@@ -16,19 +16,8 @@ namespace {
 /// Discs, ellipses and clumps that fly about in a cell.
 GrainScene mixed_cell(NormalLaw law, int columns, int rows, std::uint64_t seed, double speed = 1) {
   GrainScene scene = mixed_box(law, columns, rows, seed);
-  scene.walls.clear();
-  scene.gravity = {};
   scene.pairs[0].stiffness *= 8;  // small discs of clumps are not pressed into others
-  scene.cell = PeriodicCell{.corner = {0, 0}, .width = 1.0 * columns, .height = 1.0 * rows};
-  Vec2 momentum;
-  double mass = 0;
-  for (Grain& grain : scene.grains) {
-    grain.velocity = speed * grain.velocity;
-    momentum += grain.inertia.mass * grain.velocity;
-    mass += grain.inertia.mass;
-  }
-  for (Grain& grain : scene.grains) grain.velocity -= momentum / mass;
-  return scene;
+  return in_cell_of_its_size(std::move(scene), columns, rows, speed);
 }
 
 /// Two bodies that meet about a place in a cell of 8 by 8: 0 ellipse and disc, 1 clump and ellipse, 2 two clumps.

@@ -15,7 +15,7 @@ struct Cost {
   bool operator==(const Cost&) const = default;
 };
 
-/// What the scenes of a problem of the study cost beside time, by their names.
+/// Returns what the scenes of a problem of the study cost beside time, by their names.
 std::map<std::string, Cost> costs_of(const std::string& word) {
   std::map<std::string, Cost> costs;
   for (const StudyTask& task : effects_study(true).tasks) {

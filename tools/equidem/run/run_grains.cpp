@@ -262,7 +262,7 @@ const ContactTable& GrainRun::present_contacts() const {
   return case_.stages.empty() ? case_.contacts : case_.stages[simulation_.reports().size() - 1].contacts;
 }
 
-/// The same in all stages: the first kind of the group. Kinds of one group may differ by radius.
+/// A group keeps the colour of its first kind in all stages. Kinds of one group may differ by radius.
 int GrainRun::colour_of(const std::string& group) const {
   const std::vector<std::string>& kinds = (case_.stages.empty() ? case_.contacts : case_.stages.back().contacts).kinds;
   return static_cast<int>(std::ranges::find(kinds, group) - kinds.begin());

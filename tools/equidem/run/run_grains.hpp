@@ -41,7 +41,7 @@ class GrainRun final : public RunJob {
   void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
 
  private:
-  /// Of the present stage.
+  /// Contacts as the present stage has them.
   [[nodiscard]] const ContactTable& present_contacts() const;
   [[nodiscard]] int colour_of(const std::string& group) const;
 

@@ -12,7 +12,7 @@
 
 namespace equidem {
 
-/// What acts in all stages, the time step, then each stage, then the schedules as they are given, which the checksums
+/// Returns what acts in all stages, the time step, each stage, and the schedules as they are given, which the checksums
 /// of the stages contain as well. \param step s
 std::string case_text_of(const GrainCase& resolved, double step);
 /// The number of stages that a case text has.
