@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rate problems of contacts on their limits: an answer is found wherever there is one.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -57,8 +58,8 @@ TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
 TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
   // No contact carries a force at first, so that every one is at the apex of its law, and the forces are proportional
   // to the way of the plate. Discs between those that carry it are pushed along without a force; nothing makes them
-  // balance better than to round-off over the springs that hold loose discs (1e-9). On the way back a lattice may fall
-  // from one state to another.
+  // balance better than to round-off over the springs that hold loose discs (1e-9), and the energy of a state closes no
+  // better than its forces balance. On the way back a lattice may fall from one state to another.
   int whole = 0;
   for (const int rows : {4, 7}) {
     for (const double friction : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 3.0, 10.0}) {
@@ -74,8 +75,9 @@ TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
       REQUIRE(points.size() >= 3);
       CHECK(points[1].load > 0.1);
       CHECK(points[2].load == Approx(2 * points[1].load).epsilon(1e-9));
-      CHECK(pressed.run().counters().largest_residual < 1e-8);
-      CHECK(pressed.run().energy_error() < 1e-10);
+      const double residual = pressed.run().counters().largest_residual;
+      CHECK(residual < 1e-9);
+      CHECK(pressed.run().energy_error() < std::max(1e-10, 100 * residual));
       if (pressed.run().end() == PathEnd::legs_done) {
         ++whole;
         CHECK(std::abs(points[3].load) < 1e-9);

@@ -134,3 +134,20 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
   CHECK(compared > 900);
   for (const char* mode : {"tension", "shear", "open", "close", "slip", "stick"}) CHECK(seen[mode] > 20);
 }
+
+TEST_CASE("contacts_that_change_without_end_at_one_state_end_the_path_with_a_sentence") {
+  // Cells in which every contact slips: whatever the rates choose, another contact reaches its limit at once.
+  for (const std::uint64_t seed : {5304, 4089, 1584}) {
+    const DrawnPacking d = draw_packing(seed);
+    CAPTURE(d.name);
+    Unbonded ours(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
+    std::int64_t steps = 0;
+    while (steps < 3000 && ours.run().advance()) ++steps;
+    CAPTURE(steps, ours.run().why(), ours.run().lambda(), ours.run().state().relative_residual());
+    CHECK(steps < 3000);
+    const bool sentence = ours.run().end() == PathEnd::no_answer || ours.run().end() == PathEnd::not_balanced;
+    CHECK(sentence);
+    CHECK_FALSE(ours.run().why().empty());
+    for (const BreakEvent& event : ours.events()) CHECK(event.relative_residual < 1e-9);
+  }
+}

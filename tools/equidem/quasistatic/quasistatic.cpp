@@ -11,6 +11,7 @@
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/path_estimate.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"

@@ -8,8 +8,8 @@
 
 #include "equidem/breakage/unbonded/limit_compliance.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
+#include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/breakage/unbonded/unique_rates.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/number_unknowns.hpp"
@@ -19,67 +19,11 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
-
-std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
-  std::vector<UnbondedLaw> laws(scene.assembly.contacts.size());
-  for (std::size_t c = 0; c < laws.size(); ++c) {
-    laws[c] = {scene.springs[c], options.friction, options.rest.empty() ? ContactForce{} : options.rest[c]};
-  }
-  return laws;
-}
-
-bool is_bond(const ContactStrengths& strengths, std::size_t contact) {
-  return strengths.tension[contact] > 0 || strengths.shear[contact] > 0;
-}
-
-std::vector<ContactStatus> first_status(const BreakageScene& scene, std::span<const UnbondedLaw> laws) {
-  std::vector<ContactStatus> status(laws.size());
-  for (std::size_t c = 0; c < laws.size(); ++c) {
-    status[c] = is_bond(scene.strengths, c) ? ContactStatus::bonded
-                : laws[c].rest.normal > 0   ? ContactStatus::open
-                                            : ContactStatus::stuck;
-  }
-  return status;
-}
-
-/// Forces at rest that the law of contacts without a bond cannot carry.
-void check_rest(const BreakageScene& scene, const UnbondedOptions& options) {
-  constexpr double settled = 1e-6;  // of the largest: what bodies that came to rest leave beyond the law
-  double largest = 0;
-  for (const ContactForce& f : options.rest) largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
-  for (std::size_t c = 0; c < options.rest.size(); ++c) {
-    if (is_bond(scene.strengths, c)) continue;
-    const ContactForce& f = options.rest[c];
-    const double limit = options.friction * std::max(-f.normal, 0.0);
-    if (std::abs(f.tangential) <= limit + settled * largest) continue;
-    bad_input(
-        fmt::format("contact {} has the forces at rest N = {:g}, T = {:g} N/m and no bond", c, f.normal, f.tangential),
-        fmt::format("with the friction {:g} it carries |T| up to {:g} N/m", options.friction, limit),
-        "Give the friction with which the bodies came to rest (strength.residual_friction), or a bond");
-  }
-}
-
-void check_scene(const BreakageScene& scene, const UnbondedOptions& options) {
-  if (!(options.friction >= 0) || !std::isfinite(options.friction))
-    bad_input(fmt::format("the friction of contacts without a bond is {}", options.friction),
-              "it must be finite and not negative", "Correct it");
-  check_control_of_rubbing(scene.path);
-  check_rest(scene, options);
-}
+// Of the largest force: what may be left of a state. Discs that are pushed along with hardly any force balance to no
+// more than the round-off of the motions over the springs that hold what is loose.
+constexpr double in_balance = 1e-9;
 
 }  // namespace
-
-void check_control_of_rubbing(const LoadPath& path) {
-  if (path.control == LoadControl::path) {
-    bad_input("lambda may fall from event to event, and contacts close and slip",
-              "their state depends on the path by which lambda falls, which this control leaves open",
-              "Take control = \"load\" or \"motion\"");
-  }
-  if (path.control == LoadControl::load && path.driven_by != DrivenBy::loads) {
-    bad_input("the load is held, and a motion is imposed", "the motion would have to follow the load, not lambda",
-              "Take control = \"motion\", or drive by loads");
-  }
-}
 
 UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
                          UnbondedOptions options)
@@ -88,9 +32,9 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
       unknowns_(number_unknowns(scene.assembly, scene.springs, effects, supports)),
       contacts_(scene.assembly, unknowns_),
       solver_(contacts_, ground * scene.springs.largest()),
-      laws_(laws_of(scene, options_)),
+      laws_(laws_of(scene, options_.friction, options_.rest)),
       affine_(contacts_.affine(scene.path.pattern.gradient)) {
-  check_scene(scene_, options_);
+  check_rubbing(scene_, options_.friction, options_.rest);
   state_ = std::make_unique<UnbondedState>(scene_.assembly, scene_.springs, scene_.path, unknowns_, contacts_, laws_,
                                            first_status(scene_, laws_));
   idle_ = untouched();
@@ -322,6 +266,7 @@ void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
 void UnbondedRun::finish_stage() {
   rates_.reset();
   checked_ = false;
+  standstill_.begin();
   if (releasing()) {
     state_->end_release();
     for (const std::size_t k : breaking_) {
@@ -334,6 +279,7 @@ void UnbondedRun::finish_stage() {
   }
   if (!dead_done_) {
     dead_done_ = true;
+    travelled_ = 0;
     points_.push_back({std::ssize(events_), 0, state_->load(), state_->mean_motion()});
     return;
   }
@@ -347,10 +293,35 @@ void UnbondedRun::end(PathEnd why, std::string sentence) {
   why_ = std::move(sentence);
 }
 
+bool UnbondedRun::move(double t) {
+  if (!releasing()) travelled_ += t;
+  if (!standstill_.moved(t, releasing() ? 1 : travelled_) && standstill_.again(state_->status())) {
+    end(PathEnd::no_answer,
+        fmt::format("contacts change without end at lambda = {:g}: no states of theirs last", state_->lambda()));
+    return false;
+  }
+  if (t == 0) return true;
+  const double load = state_->load(), motion = state_->mean_motion(), lambda = state_->lambda();
+  if (releasing()) state_->release_to(share_ * (1 - t));
+  state_->move(t, *rates_, !dead_done_, by_motion(), solver_);
+  if (releasing()) share_ *= 1 - t;
+  const double by = state_->lambda() - lambda;
+  load_rate_ = by != 0 ? (state_->load() - load) / by : 0;
+  motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
+  if (state_->relative_residual() > in_balance) {
+    end(PathEnd::not_balanced,
+        fmt::format(
+            "at lambda = {:g} the forces balance to {:.1e} of the largest, not to {:g}: hardly anything resists "
+            "the motion of some discs",
+            state_->lambda(), state_->relative_residual(), in_balance));
+    return false;
+  }
+  counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());
+  return true;
+}
+
 bool UnbondedRun::advance() {
   const std::size_t before = events_.size();
-  still_ = 0;
-  const std::int64_t most_still = 1000 + 20 * std::ssize(laws_);
   while (end_ == PathEnd::none) {
     if (!releasing() && events_.size() > before) return true;
     if (scene_.path.max_events > 0 && std::ssize(events_) >= scene_.path.max_events && !releasing()) {
@@ -368,20 +339,7 @@ bool UnbondedRun::advance() {
       end(PathEnd::never_breaks, "no contact changes any more at any lambda");
       break;
     }
-    if (++still_ > most_still) {
-      end(PathEnd::no_answer, "contacts change without end at the same lambda");
-      break;
-    }
-    if (t > 0) {
-      const double load = state_->load(), motion = state_->mean_motion(), lambda = state_->lambda();
-      if (releasing()) state_->release_to(share_ * (1 - t));
-      state_->move(t, *rates_, !dead_done_, by_motion(), solver_);
-      if (releasing()) share_ *= 1 - t;
-      const double by = state_->lambda() - lambda;
-      load_rate_ = by != 0 ? (state_->load() - load) / by : 0;
-      motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
-      counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());
-    }
+    if (!move(t)) break;
     const double lambda_rate = rates_->lambda;
     rates_.reset();
     if (next.t <= stage && next.breaks) {

@@ -21,6 +21,7 @@
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
 #include "equidem/breakage/unbonded/rate_search.hpp"
+#include "equidem/breakage/unbonded/standstill.hpp"
 #include "equidem/breakage/unbonded/unbonded_state.hpp"
 
 namespace equidem {
@@ -38,11 +39,8 @@ struct UnbondedCounters {
   std::int64_t most_unchecked_contacts = 0;  ///< on limits, of such an increment
   /// Relative, of the rates of motion and of load of the first other answer.
   double largest_motion_difference = 0, largest_load_difference = 0;
-  double largest_residual = 0;
+  double largest_residual = 0;  ///< of the states of the path, relative
 };
-
-/// \throws Error (bad_input) where the control is none of those that a path with a history has
-void check_control_of_rubbing(const LoadPath& path);
 
 class UnbondedRun : public EventPath {
  public:
@@ -81,6 +79,8 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
   [[nodiscard]] std::string sentence_on(const RateSearch& search, std::size_t limits) const;
   [[nodiscard]] double stage_end() const;
+  /// \return false where the path ends
+  bool move(double t);
   void finish_stage();
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
@@ -102,8 +102,9 @@ class UnbondedRun : public EventPath {
   std::vector<double> beside_;         // per component, of a release
   std::optional<Rates> rates_;
   bool dead_done_ = false, checked_ = false;
-  std::int64_t leg_ = 0, still_ = 0;
-  double load_rate_ = 0, motion_rate_ = 0, share_ = 0;
+  Standstill standstill_;
+  std::int64_t leg_ = 0;
+  double load_rate_ = 0, motion_rate_ = 0, share_ = 0, travelled_ = 0;
   PathEnd end_ = PathEnd::none;
   std::string why_;
   UnbondedCounters counters_;

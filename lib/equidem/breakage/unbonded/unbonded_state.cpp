@@ -94,9 +94,9 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
     residual[k] = unknowns_.held[k] != 0 ? 0 : from_outside - internal_[k];
     largest = std::max(largest, std::abs(residual[k]));
   }
-  const double rounded = round_off_force();
-  force_scale_ = std::max({force_scale_, force, rounded});
-  residual_ = force_scale_ > no_force * rounded ? largest / force_scale_ : 0;
+  round_off_force_ = std::max(round_off_force_, rounded_motion * springs_.largest() * farthest());
+  force_scale_ = std::max({force_scale_, force, round_off_force_});
+  residual_ = force_scale_ > no_force * round_off_force_ ? largest / force_scale_ : 0;
 }
 
 /// Discs on which nothing acts but round-off would follow it far: no contact resists them.
@@ -182,7 +182,7 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   }
   kept_share_ = share_;
   ledger_.elastic = elastic_energy() - rest_energy_;
-  ledger_.negligible = std::max(ledger_.negligible, 10 * round_off_force() * farthest());
+  ledger_.negligible = std::max(ledger_.negligible, no_force * round_off_force() * farthest());
 }
 
 double UnbondedState::negligible_force() const {
@@ -200,10 +200,6 @@ double UnbondedState::farthest() const {
   for (const ContactDeformation& d : affine_)
     strained = std::max({strained, std::abs(d.normal), std::abs(d.tangential)});
   return std::max(far, std::abs(lambda_) * strained);
-}
-
-double UnbondedState::round_off_force() const {
-  return rounded_motion * springs_.largest() * farthest();
 }
 
 void UnbondedState::set_status(std::size_t c, ContactStatus status) {

@@ -87,8 +87,8 @@ class UnbondedState {
   [[nodiscard]] double elastic_energy() const;
   /// The largest motion, or deformation by the mean strain, m.
   [[nodiscard]] double farthest() const;
-  /// Forces that rounding of the motions may leave, N/m.
-  [[nodiscard]] double round_off_force() const;
+  /// Forces that rounding of the motions so far may leave, N/m: slip keeps what it was added up with.
+  [[nodiscard]] double round_off_force() const { return round_off_force_; }
 
   const Assembly& assembly_;
   const ContactSprings& springs_;
@@ -111,7 +111,7 @@ class UnbondedState {
   std::vector<ContactForce> forces_;
   std::vector<double> internal_;
   ContactLedger ledger_;
-  double rest_energy_ = 0, residual_ = 0, force_scale_ = 0;
+  double rest_energy_ = 0, residual_ = 0, force_scale_ = 0, round_off_force_ = 0;
 };
 
 }  // namespace equidem
