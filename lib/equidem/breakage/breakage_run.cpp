@@ -2,6 +2,7 @@
 #include "equidem/breakage/breakage_run.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -178,6 +179,11 @@ void BreakageRun::break_contact(const NextBreak& next) {
                    .motion_rate = response_.motion[1],
                    .unstable_modes = system_.unstable_modes(),
                    .relative_residual = system_.relative_residual()};
+  // A check of each costs as much as a pass over all contacts, of few states nothing.
+  if (std::has_single_bit(events_.size() + 1)) {
+    const double largest = std::max(std::abs(work_), std::abs(event.energy_before));
+    if (largest > 0) clapeyron_ = std::max(clapeyron_, std::abs(energy_of_springs() - event.energy_before) / largest);
+  }
   const double moved_before = NetworkResponse::at(response_.loads_by_motions, lambda_);
   if (scene_.path.control != LoadControl::path) {
     const double now = held_quantity(lambda_), way = direction(leg_);
@@ -248,10 +254,14 @@ double BreakageRun::released() const {
   return sum;
 }
 
+double BreakageRun::energy_of_springs() const {
+  return response_of(system_, scene_.assembly, scene_.springs, scene_.path).energy_at(lambda_);
+}
+
 double BreakageRun::energy_error() const {
   const double elastic = response_.energy_at(lambda_), crack = released();
   const double largest = std::max({std::abs(work_), std::abs(elastic), std::abs(crack)});
-  return largest > 0 ? std::abs(work_ - elastic - crack) / largest : 0;
+  return std::max(clapeyron_, largest > 0 ? std::abs(work_ - elastic - crack) / largest : 0);
 }
 
 }  // namespace equidem

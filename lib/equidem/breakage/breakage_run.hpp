@@ -55,7 +55,8 @@ class BreakageRun : public EventPath {
   [[nodiscard]] double load_left(double motion) const override;
   [[nodiscard]] double elastic_energy() const override { return response_.energy_at(lambda_); }
   [[nodiscard]] const NetworkResponse& response() const { return response_; }
-  /// Work minus elastic energy minus all that was released, over the largest of the three.
+  /// Work minus elastic energy minus all that was released, or the energy by works minus that of all springs (Clapeyron)
+  /// as contact 0, 1, 3, 7, ... of the path broke, whichever is worse; over the largest of them.
   [[nodiscard]] double energy_error() const override;
   [[nodiscard]] double released() const override;
 
@@ -66,6 +67,8 @@ class BreakageRun : public EventPath {
   [[nodiscard]] LegPoint point_at(double lambda, std::int64_t leg) const;
   void move_to(double lambda);
   void break_contact(const NextBreak& next);
+  /// The elastic energy by the forces of all contacts, N: response_ has it by works and by the contacts that opened.
+  [[nodiscard]] double energy_of_springs() const;
   void end(PathEnd why, std::string sentence);
   [[nodiscard]] double held_quantity(double lambda) const;
 
@@ -80,6 +83,7 @@ class BreakageRun : public EventPath {
   double lambda_ = 0;
   double held_ = 0;              ///< the load or the motion that the control keeps from falling
   double work_ = 0;              ///< N
+  double clapeyron_ = 0;         ///< of the energies by springs and by works so far, relative
   double no_pattern_, no_dead_;  ///< N/m: forces below are round-off
   double no_rate_;               ///< likewise of the load or the motion that is held
 };
