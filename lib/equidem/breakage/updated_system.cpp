@@ -225,8 +225,7 @@ class UpdatedSystem final : public SolvedStates {
     for (std::size_t c = 0; c < broken_.size(); ++c) {
       if (broken_[c] != 0) contacts.push_back(c);
     }
-    alone_ = make_refactorized_system(network_);
-    static_cast<void>(alone_->remove(contacts));
+    alone_ = make_refactorized_rest(network_, contacts);
     opened_ = nullptr;
     const std::vector<std::uint8_t> before = left_;
     copy_alone();
