@@ -48,7 +48,7 @@ class UpdatedSystem final : public SolvedStates {
         graph_(network_.assembly),
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
-        ways_(network_.assembly, graph_, broken_, left_),
+        ways_(network_.assembly, graph_, network_.springs, broken_, left_),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
                       .memory_limit = network_.solver.memory_limit,
