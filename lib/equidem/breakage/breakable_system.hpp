@@ -103,5 +103,7 @@ std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network)
 /// Factorizes every network anew. The assembly and the springs must outlive the system.
 /// \throws Error as StiffnessSolver does
 std::unique_ptr<BreakableSystem> make_refactorized_system(BreakableNetwork network);
+/// Likewise, of the network without the contacts `broken`.
+std::unique_ptr<BreakableSystem> make_refactorized_rest(BreakableNetwork network, std::span<const std::size_t> broken);
 
 }  // namespace equidem

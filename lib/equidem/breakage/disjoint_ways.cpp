@@ -7,13 +7,20 @@ namespace equidem {
 
 bool DisjointWays::around(std::size_t contact) {
   const Contact& c = assembly_.contacts[contact];
-  for (const std::int32_t disc : {c.i, c.j}) {
-    std::int64_t others = 0;
-    for (const auto& edge : graph_.of(disc)) others += carries_on(edge) ? 1 : 0;
-    if (others <= 2) return false;
-  }
+  if (!carries(c.i) || !carries(c.j)) return false;
   way_.clear();
   return finds_way(c) && finds_way(c);
+}
+
+bool DisjointWays::carries(std::int32_t disc) const {
+  std::int64_t others = 0;
+  bool resist_slip = assembly_.contact_arms.empty();
+  for (const auto& edge : graph_.of(disc)) {
+    if (!carries_on(edge)) continue;
+    ++others;
+    resist_slip = resist_slip && edge.other != disc && springs_[static_cast<std::size_t>(edge.contact)].kT > 0;
+  }
+  return others > 2 || (others == 2 && resist_slip);
 }
 
 bool DisjointWays::finds_way(const Contact& gone) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
 
 namespace equidem {
@@ -16,12 +17,12 @@ namespace equidem {
 class DisjointWays {
  public:
   /// All must outlive the object. \param broken per contact, `left` per disc, 1: no way goes there
-  DisjointWays(const Assembly& assembly, const ContactGraph& graph, const std::vector<std::uint8_t>& broken,
-               const std::vector<std::uint8_t>& left)
-      : assembly_(assembly), graph_(graph), broken_(broken), left_(left) {}
+  DisjointWays(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+               const std::vector<std::uint8_t>& broken, const std::vector<std::uint8_t>& left)
+      : assembly_(assembly), graph_(graph), springs_(springs), broken_(broken), left_(left) {}
 
   /// True where without this contact no disc carries nothing any more, and no part hangs by one contact or disc, that
-  /// did not before: its discs have more than two other contacts each and are joined by two ways that share nothing, so
+  /// did not before: the other contacts of its discs can carry forces, and two ways that share nothing join them, so
   /// that the parts of the graph which no single disc divides stay the same. False: nothing is found.
   [[nodiscard]] bool around(std::size_t contact);
 
@@ -29,12 +30,16 @@ class DisjointWays {
   [[nodiscard]] bool carries_on(const ContactGraph::Incidence& edge) const {
     return broken_[edge.contact] == 0 && left_[edge.other] == 0;
   }
+  /// Whether the contacts that a disc has left admit forces in balance: more than two do, and two do where both resist
+  /// slip at a point on the line of centres (statics/load_bearing.cpp).
+  [[nodiscard]] bool carries(std::int32_t disc) const;
   /// A short way between the ends of a contact over contacts and discs that no earlier way takes; in a periodic cell to
   /// the image of j that it joins to i.
   bool finds_way(const Contact& gone);
 
   const Assembly& assembly_;
   const ContactGraph& graph_;
+  const ContactSprings& springs_;
   const std::vector<std::uint8_t>&broken_, &left_;
   std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
 };

@@ -27,7 +27,7 @@ struct Rest {
 
 class RefactorizedSystem final : public SolvedStates {
  public:
-  explicit RefactorizedSystem(BreakableNetwork network)
+  RefactorizedSystem(BreakableNetwork network, std::span<const std::size_t> broken)
       : SolvedStates(network.cases.size(), network.assembly.size()),
         network_(std::move(network)),
         per_disc_(static_cast<std::size_t>(network_.effects.unknowns_per_disc())),
@@ -35,6 +35,7 @@ class RefactorizedSystem final : public SolvedStates {
         broken_(network_.assembly.contacts.size(), 0),
         held_(held_or_loaded(network_)) {
     network_.solver = factor_to_update(network_.solver);
+    for (const std::size_t c : broken) broken_[c] = 1;
     solve();
   }
 
@@ -242,8 +243,12 @@ std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network) {
   return held;
 }
 
+std::unique_ptr<BreakableSystem> make_refactorized_rest(BreakableNetwork network, std::span<const std::size_t> broken) {
+  return std::make_unique<RefactorizedSystem>(std::move(network), broken);
+}
+
 std::unique_ptr<BreakableSystem> make_refactorized_system(BreakableNetwork network) {
-  return std::make_unique<RefactorizedSystem>(std::move(network));
+  return make_refactorized_rest(std::move(network), {});
 }
 
 }  // namespace equidem

@@ -48,7 +48,7 @@ class UpdatedSystem final : public SolvedStates {
         graph_(network_.assembly),
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
-        ways_(network_.assembly, graph_, broken_, left_),
+        ways_(network_.assembly, graph_, network_.springs, broken_, left_),
         equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
                      {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
                       .memory_limit = network_.solver.memory_limit,
@@ -225,8 +225,7 @@ class UpdatedSystem final : public SolvedStates {
     for (std::size_t c = 0; c < broken_.size(); ++c) {
       if (broken_[c] != 0) contacts.push_back(c);
     }
-    alone_ = make_refactorized_system(network_);
-    static_cast<void>(alone_->remove(contacts));
+    alone_ = make_refactorized_rest(network_, contacts);
     opened_ = nullptr;
     const std::vector<std::uint8_t> before = left_;
     copy_alone();

@@ -106,7 +106,7 @@ void UpdatedState::bound_children(std::size_t number, const LoadFactorSearch& se
   for (const std::int32_t child : (*blocks_)[number].children) {
     BlockState& state = states_[child];
     state.at_worst = options.skip ? state.subtree : ClassedUtilization::unknown();
-    const bool moved = boundary_motion(child, motion);
+    const bool moved = whole_boundary_motion(child, motion);
     if (!options.skip || !(moved || state.to_correct)) continue;
     const auto worsen = [&](const std::array<double, 2>& change) {
       double rate = largest_rate_;

@@ -33,7 +33,7 @@ struct UpdatedEquilibrium::Implementation {
 
   [[nodiscard]] double claimed() const {
     constexpr double of_measuring = 4 * std::numeric_limits<double>::epsilon();
-    return measured + of_measuring + reacted + caution * state.rounding();
+    return measured * state.grown() + of_measuring + reacted + caution * state.rounding();
   }
   std::vector<HeldMechanism> change(std::size_t contact, SpringConstants springs);
   /// \param least_steps done however small the residual is
@@ -192,10 +192,10 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
       }
       state.bring_motions_up_to_date();
       residual = state.evaluate();
+      if (step > 0 && !(residual < 0.5 * last)) break;  // round-off of the residual itself: it tells no contraction
       contraction = std::max(residual / last, std::numeric_limits<double>::epsilon());
       seen_softness = softness;
       unseen = 0;
-      if (step > 0 && !(residual < 0.5 * last)) break;
     }
     return residual;
   };
@@ -238,7 +238,10 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
   } else {
     interval = std::min(2 * interval, options.most_changes_unwatched);
   }
-  if (carried) sums = state.sums();
+  if (carried) {
+    sums = state.sums();
+    state.follow_bases();
+  }
   return before;
 }
 

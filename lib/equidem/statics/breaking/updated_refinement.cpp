@@ -10,12 +10,24 @@
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
+#include "equidem/statics/breaking/kernels/twofold.hpp"
 #include "equidem/statics/breaking/updated_state.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::size_t blocks_of_contacts = 1 << 6, discs_at_once = 1 << 11;
+
+/// u := (1 + more) u, to some units of the last place of `low`.
+void grow(PreciseMotion& u, double more) {
+  u.low.resize(u.high.size(), 0.0);
+  parallel_ranges(u.high.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Twofold<double> before{u.high[k], u.low[k]}, now = before + before * more;
+      u.high[k] = now.high, u.low[k] = now.low;
+    }
+  });
+}
 
 }  // namespace
 
@@ -52,7 +64,12 @@ ContactDeformation UpdatedState::driving_deformation(std::size_t contact, std::s
 }
 
 void UpdatedState::fold_motions() {
-  for (std::size_t p = 0; p < cases.size(); ++p) base_[p].add(column(moved_, p));
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    if (more_[p] != 0) grow(base_[p], more_[p]);
+    base_[p].add(column(moved_, p));
+  }
+  more_ = {};
+  for (BlockState& state : states_) state.more = {};
   std::fill(moved_.begin(), moved_.end(), 0.0);
   std::fill(boundary_.begin(), boundary_.end(), 0.0);
   visits_ = {};
@@ -81,7 +98,7 @@ double UpdatedState::balance(std::size_t of_case) {
   using Extended = long double;
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const std::vector<double>& load = cases[of_case].force;
-  const std::span<double> left = column(left_, of_case);
+  const std::span<double> unbalanced = left(of_case);
   const auto square = sums_over<1>(assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t place = begin; place < end; ++place) {
@@ -111,7 +128,7 @@ double UpdatedState::balance(std::size_t of_case) {
         const std::size_t component = disc * b + r;
         if (!load.empty()) pull[r] += load[component];
         const double kept = unknowns.held[component] != 0 ? 0.0 : static_cast<double>(pull[r]);
-        left[place * b + r] = kept;
+        unbalanced[place * b + r] = kept;
         sum += kept * kept;
       }
     }
@@ -135,7 +152,7 @@ double UpdatedState::evaluate() {
 
 double UpdatedState::unbalanced(std::int64_t component, std::size_t of_case) const {
   const std::int64_t b = symbolic_->block;
-  return left_[of_case * components() + symbolic_->position[component / b] * b + component % b];
+  return left(of_case)[symbolic_->position[component / b] * b + component % b];
 }
 
 // The correction x has the energy x.K x = |y|², a sum over fronts. What it has of its own in a subtree, beside the
@@ -144,8 +161,12 @@ double UpdatedState::correct() {
   constexpr double margin = 1 + 1e-6;  // for round-off
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const auto& nodes = symbolic_->tree.nodes;
-  factor->forward({left_.data(), components(), cases.size()});
+  // The forces of what holds components are solved for in the same sweep, which takes little longer.
+  const std::size_t more = holds_.empty() ? 0 : cases.size();
+  if (more > 0) force_holds();
+  factor->forward({left(0).data() - more * components(), components(), cases.size() + more});
   corrected_ = true;
+  held_solved_ = more > 0;
   std::array<double, most_right_sides> energy{};      // twice that of the correction
   for (std::size_t k = 0; k < states_.size(); ++k) {  // children before their parents
     BlockState& state = states_[k];
@@ -154,7 +175,7 @@ double UpdatedState::correct() {
     for (std::size_t p = 0; p < cases.size(); ++p) {
       double square = 0;
       for (std::size_t at = nodes[block.first].begin * b; at < nodes[block.root].end * b; ++at)
-        square += squared(left_[p * components() + at]);
+        square += squared(left(p)[at]);
       for (const std::int32_t child : block.children) square += squared(states_[child].corrected[p]);
       state.corrected[p] = margin * std::sqrt(square);
       if (block.parent < 0) {
@@ -172,13 +193,14 @@ double UpdatedState::correct() {
 
 PreciseMotion UpdatedState::motion(std::size_t of_case) {
   bring_all_up_to_date();
-  PreciseMotion motion(components());
-  permute_from_elimination<double>(*symbolic_, base_[of_case].high, motion.high);
-  if (!base_[of_case].low.empty()) {
+  PreciseMotion now = base_[of_case], motion(components());
+  if (more_[of_case] != 0) grow(now, more_[of_case]);
+  now.add(column(moved_, of_case));
+  permute_from_elimination<double>(*symbolic_, now.high, motion.high);
+  if (!now.low.empty()) {
     motion.low.resize(components());
-    permute_from_elimination<double>(*symbolic_, base_[of_case].low, motion.low);
+    permute_from_elimination<double>(*symbolic_, now.low, motion.low);
   }
-  motion.add(moved(of_case));
   return motion;
 }
 

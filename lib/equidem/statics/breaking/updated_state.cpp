@@ -55,7 +55,8 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
   }
   states_.resize(blocks_->all().size());
   class_contacts();
-  left_.resize(moved_.size());
+  followed_.resize((moments() + 3 * cases.size()) * components());
+  std::fill(followed_.begin(), followed_.end(), 0.0);
   for (std::size_t p = 0; p < cases.size(); ++p) {
     const RightHandSide& given = cases[p];
     base_.emplace_back(components());
@@ -65,6 +66,7 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
       const ContactForce f = linear_spring_force(springs[c], affine_deformation_of(c, p));
       affine += f.normal * f.normal + f.tangential * f.tangential;
     }
+    grows_[p] = !given.gradient && std::ranges::all_of(base_.back().high, [](double u) { return u == 0; });
     evaluate_forces(p);
     scales.push_back(std::max(balance(p), std::sqrt(affine)));
   }
@@ -100,12 +102,35 @@ bool UpdatedState::boundary_motion(std::size_t number, std::vector<double>& moti
   return any;
 }
 
+bool UpdatedState::whole_boundary_motion(std::size_t number, std::vector<double>& motion) const {
+  bool any = boundary_motion(number, motion);
+  const auto& rows = symbolic_->rows[(*blocks_)[number].root];
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    const double grown = grown_since_visit(number, p);
+    if (grown == 0) continue;
+    any = true;
+    double* to = motion.data() + p * rows.size() * b;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (std::size_t r = 0; r < b; ++r) to[k * b + r] += grown * base_[p].high[rows[k] * b + r];
+    }
+  }
+  return any;
+}
+
 UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* path, int worker, Forces forces) {
   thread_local std::vector<double> motion;
   Visit done;
   const std::array<double, 2> reached = std::exchange(states_[number].reached, {});
   const bool to_correct = std::exchange(states_[number].to_correct, false);
-  if (!boundary_motion(number, motion) && path == nullptr && !to_correct) return done;  // nothing in it has moved
+  std::array<double, 2> grown{};
+  for (std::size_t p = 0; p < cases.size(); ++p) grown[p] = grown_since_visit(number, p);
+  const bool grew = grown[0] != 0 || grown[1] != 0;
+  if (!boundary_motion(number, motion) && path == nullptr && !to_correct && !grew) return done;  // nothing has moved
+  // Forces are those of (1 + more) times the base and of what was moved beside it: the former grow by this share.
+  std::array<double, 2> share{};
+  for (std::size_t p = 0; p < cases.size(); ++p) share[p] = grown[p] / (1 + states_[number].more[p]);
+  states_[number].more = more_;
   for (const std::int32_t child : (*blocks_)[number].children) {
     for (std::size_t p = 0; p < cases.size(); ++p) states_[child].reached[p] += reached[p];
   }
@@ -137,23 +162,30 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
       if (path != nullptr && path_offset_[t] >= 0) {
         std::copy_n(path->values.data() + path_offset_[t] + p * pivots, pivots, to);
       } else if (to_correct) {
-        std::copy_n(left_.data() + p * n + own, pivots, to);
+        std::copy_n(left(p).data() + own, pivots, to);
       } else {
         std::fill_n(to, pivots, 0.0);
       }
+      if (grown[p] == 0) continue;
+      const double* base = of_base(p).data() + own;
+      for (std::size_t k = 0; k < pivots; ++k) to[k] -= grown[p] * base[k];
     }
     factor->backward(t, {x.data(), n, cases.size()});
   }
   const std::span<const double> stiffness = factor->stiffness_in_order();
   for (std::size_t p = 0; p < cases.size(); ++p) {
     const double turned = rigid[p].spin * blocks_->extent();
+    const double* base = grown[p] != 0 ? of_base(p).data() : nullptr;
     for (std::int32_t place = nodes[block.first].begin; place < nodes[block.root].end; ++place) {
       const std::array<double, 3> rigidly = blocks_->motion_at(rigid[p], number, place);
       for (std::size_t r = 0; r < b; ++r) {
         const std::size_t k = place * b + r;
         double& moved = moved_[p * n + k];
+        const double before = moved;
         moved += x[p * n + k] + rigidly[r];
         done.moved[p] += squared(stiffness[k] * x[p * n + k]);
+        x[p * n + k] -= share[p] * before;
+        if (base != nullptr) done.moved[p] += stiffness[k] * squared(grown[p] * base[k]);
         done.accumulated[p] += squared(stiffness[k]) * (squared(moved) + squared(turned));
       }
     }
@@ -161,9 +193,21 @@ UpdatedState::Visit UpdatedState::visit(std::size_t number, const FactorPath* pa
   if (forces == Forces::follow) {
     const auto begin = static_cast<std::size_t>(block.contacts_begin);
     const std::size_t count = static_cast<std::size_t>(block.contacts_end) - begin;
-    for (std::size_t p = 0; p < cases.size(); ++p)
-      add_forces(std::span(contacts_).subspan(begin, count), offsets(begin, count), layout(), x.data() + p * n,
-                 std::span(forces_[p]).subspan(begin, count));
+    for (std::size_t p = 0; p < cases.size(); ++p) {
+      const std::span<ContactForce> to = std::span(forces_[p]).subspan(begin, count);
+      if (share[p] != 0) {
+        for (ContactForce& force : to)
+          force = {force.normal + share[p] * force.normal, force.tangential + share[p] * force.tangential};
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+          for (std::size_t r = 0; r < b; ++r) {
+            const std::size_t component = rows[k] * b + r;
+            const double before = moved_[p * n + component] - motion[(p * rows.size() + k) * b + r];
+            x[p * n + component] -= share[p] * before;
+          }
+        }
+      }
+      add_forces(std::span(contacts_).subspan(begin, count), offsets(begin, count), layout(), x.data() + p * n, to);
+    }
     evaluate_block(number);
     states_[number].subtree = ClassedUtilization::unknown();  // until its children are looked at
   }
@@ -187,6 +231,7 @@ void UpdatedState::bring_up_to_date(std::span<const std::int32_t> blocks, const 
 
 void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> blocks) {
   reach_beside(path);
+  grow_by(path);
   std::int32_t offset = 0;
   for (const std::int32_t t : path.fronts) {
     path_offset_[t] = offset;
@@ -213,7 +258,9 @@ ContactDeformation UpdatedState::deformation(std::size_t number, std::size_t of_
   const ContactDeformation first = opening_of(c, beside, layout(), base(of_case));
   const ContactDeformation since = opening_of(c, beside, layout(), moved_.data() + of_case * components());
   const ContactDeformation affine = affine_deformation_of(number, of_case);
-  return {affine.normal + first.normal + since.normal, affine.tangential + first.tangential + since.tangential};
+  const double grown = 1 + more_[of_case];
+  return {affine.normal + grown * first.normal + since.normal,
+          affine.tangential + grown * first.tangential + since.tangential};
 }
 
 void UpdatedState::bring_all_up_to_date(Forces forces) {
@@ -277,13 +324,8 @@ double UpdatedState::hold(std::int64_t component) {
 
 double UpdatedState::moved_by(std::int64_t component, std::size_t of_case) const {
   const std::int64_t b = symbolic_->block;
-  return moved_[of_case * components() + symbolic_->position[component / b] * b + component % b];
-}
-
-std::vector<double> UpdatedState::moved(std::size_t of_case) const {
-  std::vector<double> x(components());
-  permute_from_elimination<double>(*symbolic_, std::span(moved_).subspan(of_case * components(), components()), x);
-  return x;
+  const std::int64_t place = symbolic_->position[component / b] * b + component % b;
+  return moved_[of_case * components() + place] + more_[of_case] * base_[of_case].high[place];
 }
 
 bool UpdatedState::factorize() {
@@ -310,8 +352,7 @@ bool UpdatedState::factorize() {
 double UpdatedState::bytes() const {
   const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
   double bytes = factor->report().bytes + blocks_->bytes() + of(states_) + of(contacts_) + of(offsets_) + of(classes_) +
-                 of(slot_) + of(moved_) + of(boundary_) + of(left_) + of(remainders_) + of(path_offset_) +
-                 of(followed_);
+                 of(slot_) + of(moved_) + of(boundary_) + of(remainders_) + of(path_offset_) + of(followed_);
   for (const auto& x : scratch_) bytes += of(x);
   for (const auto& forces : forces_) bytes += of(forces);
   for (const PreciseMotion& motion : base_) bytes += of(motion.high) + of(motion.low);

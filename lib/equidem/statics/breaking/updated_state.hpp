@@ -19,6 +19,9 @@
 
 namespace equidem {
 
+/// Gradients of motions whose works are the sums F_i l_j over contacts.
+constexpr std::array<Tensor2, 4> moment_gradients = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
 class UpdatedState {
  public:
   struct Held {
@@ -71,9 +74,6 @@ class UpdatedState {
   /// Since the motions were last refined, as of the last visit, m.
   [[nodiscard]] double moved_by(std::int64_t component, std::size_t of_case) const;
 
-  /// Likewise for all components, where everything is up to date.
-  [[nodiscard]] std::vector<double> moved(std::size_t of_case) const;
-
   /// A factor of the network as it is; components are held where it is singular. \return whether one was found
   bool factorize();
   /// Behind bring_motions_up_to_date(): evaluate the forces of all contacts by the contact law in extended precision,
@@ -86,6 +86,11 @@ class UpdatedState {
   /// are next brought up to date.
   /// \return the energy of the correction over that of the state, the root of it, the largest of all right-hand sides
   double correct();
+  /// Behind evaluate() and correct(): from here on motions may grow in proportion to what they are now
+  /// (updated_sums.cpp).
+  void follow_bases();
+  /// The largest factor by which motions have grown in proportion since they were last refined.
+  [[nodiscard]] double grown() const;
   /// Directly behind evaluate() or correct(): of the motions, with their correction where there is one.
   [[nodiscard]] EquilibriumSums sums() const;
   /// Motions of all components, everything brought up to date.
@@ -121,8 +126,9 @@ class UpdatedState {
     std::array<double, 2> reached{};
     /// Likewise for the correction of its interior with the boundary at rest, as of the last refinement.
     std::array<double, 2> corrected{};
-    bool to_correct = false;  ///< since the last refinement it was not visited
-    bool open = false;        ///< of the search at hand: its children are looked at one by one
+    std::array<double, 2> more{};  ///< UpdatedState::more_ at its last visit
+    bool to_correct = false;       ///< since the last refinement it was not visited
+    bool open = false;             ///< of the search at hand: its children are looked at one by one
   };
   /// Whether forces of contacts follow as motions are brought up to date.
   enum class Forces : std::uint8_t { follow, stay };
@@ -133,8 +139,18 @@ class UpdatedState {
   [[nodiscard]] std::span<const double> column(const LargeVector<double>& of, std::size_t of_case) const {
     return std::span(of).subspan(of_case * components(), components());
   }
-  /// Motion of the boundary of a block since its last visit, of each right-hand side. \return whether there was any
+  /// Motion of the boundary of a block since its last visit beside that of the base, of each right-hand side.
+  /// \return whether there was any
   bool boundary_motion(std::size_t block, std::vector<double>& motion) const;
+  /// Likewise, with that of the base.
+  bool whole_boundary_motion(std::size_t block, std::vector<double>& motion) const;
+  /// By how much of the base motions have grown since the last visit of a block.
+  [[nodiscard]] double grown_since_visit(std::size_t block, std::size_t of_case) const {
+    return more_[of_case] - states_[block].more[of_case];
+  }
+  /// Lets motions grow in proportion, by the share of the base that leaves the least beside it of what follows from a
+  /// change.
+  void grow_by(const FactorPath& path);
   Visit visit(std::size_t block, const FactorPath* path, int worker, Forces forces = Forces::follow);
   void bring_all_up_to_date(Forces forces);
   /// K u - f of a component that is held, N/m, behind evaluate().
@@ -142,8 +158,27 @@ class UpdatedState {
   void account(const Visit& visit);
   /// Adds to what has reached the subtrees beside the path of a change.
   void reach_beside(const FactorPath& path);
+  /// Number of columns of followed_ before those of the right-hand sides: of the sums F_i l_j.
+  [[nodiscard]] std::size_t moments() const { return options.force_moments ? moment_gradients.size() : 0; }
+  /// L^-1 h, with the forces h that drive the free discs.
+  [[nodiscard]] std::span<const double> of_loads(std::size_t of_case) const {
+    return column(followed_, moments() + of_case);
+  }
+  /// L^-1 K u of the base u.
+  [[nodiscard]] std::span<double> of_base(std::size_t of_case) {
+    return column(followed_, moments() + cases.size() + of_case);
+  }
+  /// Loads that were not balanced when motions were last refined, r, or y of L y = r.
+  [[nodiscard]] std::span<double> left(std::size_t of_case) {
+    return column(followed_, moments() + 2 * cases.size() + of_case);
+  }
+  [[nodiscard]] std::span<const double> left(std::size_t of_case) const {
+    return column(followed_, moments() + 2 * cases.size() + of_case);
+  }
   /// Right-hand sides whose products with a motion are works and the sums F_i l_j, solved for with L.
   void solve_followed();
+  /// What holds components, times the base, into of_base(), N/m.
+  void force_holds();
   /// Prescribed motions, all free components at rest.
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
   /// The stretch and slip of a contact by these and the mean strain.
@@ -192,13 +227,17 @@ class UpdatedState {
   std::vector<std::uint8_t> classes_;              // of contacts_, rate_class or never_breaks
   double largest_rate_ = 0;                        // utilization_rate
   std::vector<std::int32_t> slot_;                 // of each contact in contacts_
-  LargeVector<double> moved_;        // since the last refinement, in the order of elimination, case by case
-  LargeVector<double> followed_;     // solutions with L of the right-hand sides of updated_sums.cpp; likewise
+  LargeVector<double> moved_;        // since then, beside the base, in the order of elimination, case by case
+  LargeVector<double> followed_;     // solutions with L, likewise: of_loads() and others, then of_base(), then left()
   std::vector<double> boundary_;     // moved_ of the boundary of each block at its last visit
   std::vector<PreciseMotion> base_;  // when motions were last refined, in the order of elimination
-  LargeVector<double> left_;         // loads that were not balanced then, r, or y of L y = r; likewise
+  // Motions are (1 + more_) times the base and moved_. Right-hand sides of loads alone; others do not grow.
+  std::array<double, most_right_sides> more_{};
+  std::array<bool, most_right_sides> grows_{};
+  std::array<double, most_right_sides> work_of_base_{};  // of the loads on the base, N
   std::array<double, most_right_sides> twice_energy_{};  // behind evaluate(), N
   bool corrected_ = false;                               // since evaluate()
+  bool held_solved_ = false;                             // of_base() holds L^-1 of the forces of holds_ on the base
   std::vector<ForceRemainder> remainders_;               // of the forces of contacts_
   std::vector<std::int32_t> path_offset_;                // into FactorPath::values, per front; -1: not on the path
   std::vector<LargeVector<double>> scratch_;             // per worker: motion since the last visit

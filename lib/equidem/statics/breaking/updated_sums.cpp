@@ -2,7 +2,9 @@
 /// \file
 /// Works and sums over all contacts of a network whose factor is updated; of the sums F_i l_j also their changes, where
 /// most contacts are not up to date.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,8 +21,6 @@ namespace {
 // with the forces q that this motion needs, and what prescribed motions and mean strains add. q.x = (L^-1 q).(L^T x),
 // and behind a change L^T x is not zero on its path alone. The forces h that drive the free discs, h = f - K u_0 with
 // the prescribed motions and the mean strain u_0, are followed likewise.
-constexpr std::array<Tensor2, 4> moment_gradients = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-
 double product(std::span<const double> a, std::span<const double> b) {
   constexpr std::size_t entries_at_once = 1 << 13;
   return sums_over<1>(a.size(), entries_at_once, [&](std::size_t begin, std::size_t end) {
@@ -33,8 +33,7 @@ double product(std::span<const double> a, std::span<const double> b) {
 }  // namespace
 
 void UpdatedState::solve_followed() {
-  const std::size_t n = components(), moments = options.force_moments ? moment_gradients.size() : 0;
-  followed_.resize((moments + cases.size()) * n);
+  const std::size_t n = components(), moments = this->moments();
   std::vector<ContactForce> forces(moments > 0 ? assembly.contacts.size() : 0);
   std::vector<double> q(n);
   const auto keep = [&](std::size_t number) {
@@ -75,6 +74,9 @@ FactorPath UpdatedState::change_factor(std::size_t number, const SpringConstants
     const ContactDeformation d = driving_deformation(number, p);
     follow({-d.normal, -d.tangential});
   }
+  const std::int32_t slot = slot_[number];
+  for (std::size_t p = 0; p < cases.size(); ++p)
+    follow(grows_[p] ? opening_of(contacts_[slot], offsets_of(slot), layout(), base(p)) : ContactDeformation{});
   const FactorPath path = factor->change(changes, loads, followed);
   if (!options.force_moments) return path;
   const auto b = static_cast<std::size_t>(symbolic_->block);
@@ -93,6 +95,61 @@ FactorPath UpdatedState::change_factor(std::size_t number, const SpringConstants
         Tensor2{sums[0], sums[1], sums[2], sums[3]} + -1.0 * outer(force_on_i(frame, force_of(number, p)), branch);
   }
   return path;
+}
+
+// A soft network answers a change mostly by more of the motion that it has. What is a multiple of the base u leaves no
+// rounding, which is why it is kept apart: with K u = q, a motion x with K x = g is c u + d with K d = g - c q, on
+// every subtree with the part of L^-1 q there. Of loads f alone, q is f but for what the correction of u is to balance,
+// for components that are held, and for contacts that changed since then; L^-1 q follows them as L^-1 f does.
+void UpdatedState::follow_bases() {
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    if (!grows_[p]) continue;
+    const std::span<double> base = of_base(p);
+    if (!held_solved_ && !holds_.empty()) {
+      force_holds();
+      factor->forward({base.data(), components(), 1});
+    }
+    for (std::size_t k = 0; k < base.size(); ++k)
+      base[k] = of_loads(p)[k] + (holds_.empty() ? 0.0 : base[k]) - (corrected_ ? left(p)[k] : 0.0);
+    work_of_base_[p] = product(of_loads(p), base);
+  }
+  held_solved_ = false;
+}
+
+void UpdatedState::force_holds() {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    std::ranges::fill(of_base(p), 0.0);
+    for (const Held& hold : holds_) {
+      const std::size_t place = symbolic_->position[hold.component / b] * b + hold.component % b;
+      of_base(p)[place] += hold.stiffness * base_[p].high[place];
+    }
+  }
+}
+
+void UpdatedState::grow_by(const FactorPath& path) {
+  // A smaller share leaves less rounding than it saves. Multiples of `unit` add up without rounding.
+  constexpr double least = 1e-4, unit = 0x1p-30, most = 0x1p20;
+  if (!path.held.empty()) return;  // what holds a component is no part of L^-1 q yet
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    if (!grows_[p] || !(work_of_base_[p] > 0)) continue;
+    const double* y = path.values.data();
+    double work = 0;
+    for (const std::int32_t t : path.fronts) {
+      const std::size_t pivots = symbolic_->pivots(t);
+      const double* z = of_loads(p).data() + symbolic_->tree.nodes[t].begin * b;
+      for (std::size_t k = 0; k < pivots; ++k) work += z[k] * y[p * pivots + k];
+      y += pivots * cases.size();
+    }
+    const double share = work / work_of_base_[p];
+    const double more = more_[p] + unit * std::round(share / unit);
+    if (std::abs(share) >= least && std::abs(more) < most && 1 + more > 0.5) more_[p] = more;
+  }
+}
+
+double UpdatedState::grown() const {
+  return 1 + std::max(std::abs(more_[0]), std::abs(more_[1]));
 }
 
 // A correction x with K x = r and y = L^-1 r changes works by products that are known before blocks get it: that of the
@@ -144,16 +201,14 @@ EquilibriumSums UpdatedState::sums() const {
     for (std::size_t p = 0; p < cases.size(); ++p) result.moment[p] = moment_of(p);
     return result;
   }
-  const std::size_t moments = options.force_moments ? moment_gradients.size() : 0;
-  const auto followed = [&](std::size_t number) { return column(followed_, number); };
   for (std::size_t p = 0; p < cases.size(); ++p) {
     for (std::size_t q = 0; q < cases.size(); ++q) {
-      const double h_by_x = product(followed(moments + p), column(left_, q));
+      const double h_by_x = product(of_loads(p), left(q));
       if (loads[p]) result.load_work[p][q] += h_by_x;
       if (p == 0 && !loads[0]) result.imposed[q] -= h_by_x;
     }
     std::array<double, moment_gradients.size()> more{};
-    for (std::size_t g = 0; g < moments; ++g) more[g] = product(followed(g), column(left_, p));
+    for (std::size_t g = 0; g < moments(); ++g) more[g] = product(column(followed_, g), left(p));
     result.moment[p] = moment_of(p) + Tensor2{more[0], more[1], more[2], more[3]};
   }
   return result;
