@@ -94,18 +94,10 @@ void each_bonded_body(PackedBonds& packed, const Work& work) {
   });
 }
 
-/// \param springs whether with their impulses
-void look_at_bonds(GrainSystem& system, bool springs) {
+/// Step all batches by a loop. \throws Error (computation_failed) if centres of bonded discs nearly coincide
+void step_batches(GrainSystem& system, PackedBonds::Loop loop) {
   PackedBonds& packed = system.bonds.packed;
-  const PackedBonds::Loop look = springs ? packed.look : packed.look_at_rates;
-  const bool clear = springs && !packed.springs.empty();
-  each_batch(packed, [&](BondBatch& batch) {
-    batch.here = batch.before = {};
-    batch.reached.clear();
-    for (std::size_t n = batch.first_body; clear && n < batch.end_body; ++n)
-      packed.by_springs[static_cast<std::size_t>(packed.bodies[n])] = {};
-    look(system, batch);
-  });
+  each_batch(packed, [&](BondBatch& batch) { loop(system, batch); });
   for (const BondBatch& batch : packed.batches)
     if (batch.nearest <= nearest_centres_of_bonds) return refuse_crept_bonds(system);
 }
@@ -191,29 +183,32 @@ void refuse_crept_bonds(const GrainSystem& system) {
 
 void push_springs(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
-  packed.drifted = true;
+  for (BondBatch& batch : packed.batches) {
+    batch.here = batch.before = {};
+    batch.reached.clear();
+  }
   packed.state_is_new = false;
-  look_at_bonds(system, true);
+  if (packed.stretch) step_batches(system, packed.stretch);
 }
 
 void add_bond_impulses(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
   std::vector<BodyImpulse>& impulses = system.bodies.impulses;
   system.free_flight = false;
-  if (!packed.springs.empty()) {
-    each_bonded_body(packed, [&](std::size_t body) {
-      impulses[body].impulse += packed.by_springs[body].impulse;
-      impulses[body].torque += packed.by_springs[body].torque;
-    });
-  }
   if (packed.resist) {
-    each_batch(packed, [&](BondBatch& batch) { packed.resist(system, batch); });
+    packed.drifted = true;
+    step_batches(system, packed.resist);
     each_bonded_body(packed, [&](std::size_t body) {
       const double* given = packed.bonded[body].given;
       impulses[body].impulse += {given[0], given[1]};
       impulses[body].torque += given[2];
     });
     count_losses(system);
+  } else {
+    each_bonded_body(packed, [&](std::size_t body) {
+      impulses[body].impulse += packed.by_springs[body].impulse;
+      impulses[body].torque += packed.by_springs[body].torque;
+    });
   }
   for (const BondBatch& batch : packed.batches) {
     system.cell.bond_sums.here += batch.here;
@@ -225,8 +220,7 @@ void count_opening_kick(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
   if (!packed.count_opening) return;
   packed.drifted = false;
-  look_at_bonds(system, false);
-  each_batch(packed, [&](BondBatch& batch) { packed.count_opening(system, batch); });
+  step_batches(system, packed.count_opening);
   count_losses(system);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_system.hpp"
@@ -102,7 +103,8 @@ void find_batches(const GrainSystem& system, PackedBonds& packed) {
   std::vector<char> is_bonded(system.bodies.constants.size());
   for (std::size_t b = 0; b < tied.size(); ++b) {
     bonds_of[batch_of(tied[b])].push_back(static_cast<std::int32_t>(b));
-    is_bonded[static_cast<std::size_t>(tied[b].i)] = is_bonded[static_cast<std::size_t>(tied[b].j)] = 1;
+    for (const std::int32_t body : {tied[b].i, tied[b].j})
+      if (std::exchange(is_bonded[static_cast<std::size_t>(body)], char{1}) != 0) packed.alone = false;
   }
   BondGrouping grouping(tied, is_bonded.size(), packed.lanes);
   for (std::size_t k = 0; k < packed.batches.size(); ++k) {
@@ -141,13 +143,13 @@ class GroupWriter {
     group.i[lane] = bond.i;
     group.j[lane] = bond.j;
     group.per_reach[lane] = 1 / (i.radius + j.radius);
+    group.share[lane] = bond.share;
     const FiniteBond& of = bond.springs;
     if (!packed_.springs.empty()) {
       SpringGroup& spring = packed_.springs[g];
       spring.rest_x[lane] = of.branch.x;
       spring.rest_y[lane] = of.branch.y;
       spring.levers[lane] = of.lever_i + of.lever_j;
-      spring.share[lane] = of.lever_i / (of.lever_i + of.lever_j);
       spring.angle_i[lane] = bond.angle_i;
       spring.angle_j[lane] = bond.angle_j;
       spring.normal[lane] = used ? of.springs.kN * dt : 0;
@@ -185,8 +187,6 @@ class GroupWriter {
       per_gain = used && dashpot > 0 ? (1 - mean) / inverse_mass : 0;
     };
     DashpotGroup& dashpot = packed_.dashpots[g];
-    dashpot.radius_i[lane] = i.radius;
-    dashpot.radius_j[lane] = j.radius;
     dashpot.mass[lane] = i.inverse_mass + j.inverse_mass;
     dashpot.turning[lane] = i.radius * i.radius * i.inverse_moment + j.radius * j.radius * j.inverse_moment;
     set(bond.dashpots.normal, dashpot.mass[lane], dashpot.normal[lane], dashpot.normal_gain[lane]);
@@ -208,7 +208,7 @@ class GroupWriter {
 
 std::size_t PackedBonds::bytes() const {
   const auto of = [](const auto&... vectors) { return (... + (vectors.capacity() * sizeof(vectors[0]))); };
-  return of(lanes, groups, springs, strengths, images, dashpots, rolling, rates, batches, bodies, by_springs, bonded);
+  return of(lanes, groups, springs, strengths, images, dashpots, rolling, batches, bodies, by_springs, bonded);
 }
 
 void pack_bonds(GrainSystem& system) {
@@ -232,7 +232,6 @@ void pack_bonds(GrainSystem& system) {
   }
   if (system.cell.active) packed.images.resize(groups);
   if (!packed.dashpots.empty()) {
-    packed.rates.resize(groups);
     packed.bonded.resize(bodies);
     for (const std::int32_t body : packed.bodies) {
       const GrainBody& of = system.bodies.constants[static_cast<std::size_t>(body)];
@@ -247,7 +246,9 @@ void pack_bonds(GrainSystem& system) {
       if (const std::int32_t bond = packed.lanes[g][lane]; bond >= 0)
         tied[static_cast<std::size_t>(bond)].packed = static_cast<std::int32_t>(g * lanes_of_pairs + lane);
   }
-  choose_bond_loops(system);
+  packed.stretch = spring_loop(system);
+  packed.resist = dashpot_loop(system);
+  packed.count_opening = opening_loop(system);
 }
 
 void pack_images(GrainSystem& system) {

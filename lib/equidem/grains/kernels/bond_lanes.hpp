@@ -3,6 +3,8 @@
 /// Pieces of the loops over bonds.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -63,7 +65,7 @@ EQUIDEM_ALWAYS_INLINE Twice<Two> fourth_twice(const Twice<Two>& row) {
   return {row.low, __builtin_shufflevector(row.high, row.high, 1, 1)};
 }
 
-/// Gains of both bodies of a bond, of which rows are velocity, speed of the rim, spin, as rates: differences of
+/// Velocity, speed of the rim and spin of both bodies of a bond, or what these gain, as rates: differences of
 /// velocities and spins, sum of the speeds of the rims.
 template <class Numbers>
 EQUIDEM_ALWAYS_INLINE Numbers between(const Numbers& of_i, const Numbers& of_j) {
@@ -72,18 +74,74 @@ EQUIDEM_ALWAYS_INLINE Numbers between(const Numbers& of_i, const Numbers& of_j) 
   return of_j + as<Numbers>(bits_of(of_i) ^ load<Bits<Numbers>>(difference));
 }
 
-/// Rates or gains of eight bonds.
-template <class Lanes>
-struct BondLanes {
-  Lanes normal, tangential, rolling;
-};
+/// (x, y, t, 0) of a row (x, y, t, u).
+template <class Numbers>
+EQUIDEM_ALWAYS_INLINE Numbers without_fourth(const Numbers& row) {
+  alignas(32) constexpr long long three[4] = {-1, -1, -1, 0};
+  return as<Numbers>(bits_of(row) & load<Bits<Numbers>>(three));
+}
 
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE BondLanes<Lanes> rates_of(const BondRates& frame, const Row<Lanes> (&rows)[lanes_of_pairs]) {
-  Lanes x, y, rims, spin;
-  columns_of(rows, x, y, rims, spin);
-  const auto nx = load<Lanes>(frame.nx), ny = load<Lanes>(frame.ny);
-  return {x * nx + y * ny, y * nx - x * ny - load<Lanes>(frame.share) * rims, spin};
+struct LanesOfVectors {
+  Lanes x{}, y{};
+};
+
+/// Ways from the second bodies to their images.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE LanesOfVectors<Lanes> shift_of(const Periods& periods, const BondImages& images) {
+  const auto a = load<Lanes>(images.a), b = load<Lanes>(images.b);
+  return {a * periods.a.x + b * periods.b.x, a * periods.a.y + b * periods.b.y};
+}
+
+/// Sum over bonds of their impulses on images times the ways to these (CellSums).
+template <class Lanes>
+struct ImageSums {
+  Lanes xx{}, xy{}, yx{}, yy{};
+
+  EQUIDEM_ALWAYS_INLINE void add(const Lanes& x, const Lanes& y, const LanesOfVectors<Lanes>& shift) {
+    xx += x * shift.x;
+    xy += x * shift.y;
+    yx += y * shift.x;
+    yy += y * shift.y;
+  }
+  [[nodiscard]] EQUIDEM_ALWAYS_INLINE Tensor2 sum() const { return {add_up(xx), add_up(xy), add_up(yx), add_up(yy)}; }
+};
+
+/// Bonds as they lie and move.
+template <class Lanes>
+struct BondNow {
+  Lanes x, y, u, v;                        ///< branch and its rate
+  Lanes spin_i, angle_i, spin_j, angle_j;  ///< where bodies turn
+};
+
+/// \tparam turns whether bodies turn \tparam cell whether bonds are with images
+template <class Lanes, bool turns, bool cell>
+EQUIDEM_ALWAYS_INLINE BondNow<Lanes> bonds_now(const GrainSystem& system, std::size_t g) {
+  const BondGroup& group = system.bonds.packed.groups[g];
+  const GrainMotion* motions = system.bodies.motions.data();
+  Row<Lanes> apart[lanes_of_pairs], angles[lanes_of_pairs];
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const GrainMotion &i = motions[group.i[k]], &j = motions[group.j[k]];
+    apart[k] = load<Row<Lanes>>(&j) - load<Row<Lanes>>(&i);  // position and velocity
+    if constexpr (turns) angles[k] = two_and_two(&i.spin, &j.spin, Row<Lanes>{});
+  }
+  BondNow<Lanes> now{};
+  columns_of(apart, now.x, now.y, now.u, now.v);
+  if constexpr (turns) columns_of(angles, now.spin_i, now.angle_i, now.spin_j, now.angle_j);
+  if constexpr (cell) {
+    const LanesOfVectors<Lanes> shift = shift_of<Lanes>(system.cell.now, system.bonds.packed.images[g]);
+    now.x += shift.x;
+    now.y += shift.y;
+  }
+  return now;
+}
+
+/// Set BondBatch::nearest.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE void take_nearest(const Lanes& nearest, BondBatch& batch) {
+  PairLanes least;
+  store(nearest, least);
+  batch.nearest = *std::min_element(std::begin(least), std::end(least));
 }
 
 }  // namespace equidem::eight

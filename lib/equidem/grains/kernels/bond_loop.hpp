@@ -2,10 +2,10 @@
 /// \file
 /// Bonds of discs, eight at a time: springs along, across and against bending, dashpots, strengths.
 ///
-/// A step looks at all bonds where the discs are at its start: impulses of springs, what bonds bear against their
-/// strengths, rates for the dashpots. Once the impulses of contacts are known, dashpots resist one group after the
-/// other, each exactly with those before it as they are: what they take, they take from the motion, in whatever number
-/// bonds hang together. No body is twice in a group, so that the eight of a group are independent of one another.
+/// Springs push by where the discs are at the start of a step; what they bear is compared with the strengths at once.
+/// When the impulses of contacts are known, dashpots resist one group after the other, each exactly with those before
+/// it as they are: what they take, they take from the motion, in whatever number bonds hang together. No body is twice
+/// in a group, so that the eight of a group are independent of one another.
 ///
 /// Groups are in batches: first one for each block of bodies, of the bonds inside it; then one for each seam between a
 /// block and the next one; then one of all other bonds. Batches of a phase (blocks, even seams, odd seams, the others)
@@ -28,13 +28,13 @@ struct TiedPair;
 struct alignas(64) BondGroup {
   std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
   PairLanes per_reach;  ///< 1/(r_i + r_j), 1/m
+  PairLanes share;      ///< of the lever of i in the branch, r_i/(r_i + r_j)
 };
 
 /// Springs of a group (contact/finite_bond.hpp).
 struct alignas(64) SpringGroup {
   PairLanes rest_x, rest_y;      ///< l0, m
   PairLanes levers;              ///< r_i + r_j at rest, m; also the length of l0
-  PairLanes share;               ///< of the lever of i in them
   PairLanes angle_i, angle_j;    ///< of the bodies at rest, rad
   PairLanes normal, tangential;  ///< kN dt, kT dt, N s/m
   PairLanes bending;             ///< kM dt, N m s/rad
@@ -53,12 +53,11 @@ struct alignas(64) BondImages {
 };
 
 struct alignas(64) DashpotGroup {
-  PairLanes radius_i, radius_j;  ///< m
-  PairLanes mass;                ///< 1/m_n, 1/kg
-  PairLanes turning;             ///< r_i²/I_i + r_j²/I_j, 1/kg
-  PairLanes normal;              ///< impulse per rate: C_n dt times Decay::mean, or C_n dt by the explicit step, kg
-  PairLanes normal_gain;         ///< impulse per velocity gain by steady forces: (1 - Decay::mean) m_n, kg
-  PairLanes tangential;          ///< C_s dt, kg
+  PairLanes mass;         ///< 1/m_n, 1/kg
+  PairLanes turning;      ///< r_i²/I_i + r_j²/I_j, 1/kg
+  PairLanes normal;       ///< impulse per rate: C_n dt times Decay::mean, or C_n dt by the explicit step, kg
+  PairLanes normal_gain;  ///< impulse per velocity gain by steady forces: (1 - Decay::mean) m_n, kg
+  PairLanes tangential;   ///< C_s dt, kg
   // of the last step, N s
   PairLanes normal_impulse, tangential_impulse;
 };
@@ -70,13 +69,6 @@ struct alignas(64) RollingGroup {
   PairLanes rolling;       ///< as DashpotGroup::normal, kg m²
   PairLanes rolling_gain;  ///< as DashpotGroup::normal_gain, kg m²
   PairLanes impulse;       ///< of the last step, N m s
-};
-
-/// What dashpots need of how bonds lie and move at the start of a step.
-struct alignas(64) BondRates {
-  PairLanes nx, ny;
-  PairLanes share;  ///< levers over radii
-  PairLanes normal, tangential, rolling;
 };
 
 /// A bonded body in a step, for dashpots. Rows of four: velocity along x, along y, speed of the rim, spin.
@@ -112,7 +104,6 @@ struct PackedBonds {
   LaneVector<BondImages> images;
   LaneVector<DashpotGroup> dashpots;
   LaneVector<RollingGroup> rolling;
-  LaneVector<BondRates> rates;
 
   std::vector<BondBatch> batches;
   std::array<std::size_t, phases + 1> first_batch{};  ///< of each phase; the last entry is the number of batches
@@ -121,21 +112,20 @@ struct PackedBonds {
   LaneVector<BondedBody> bonded;                      ///< of all bodies
 
   // loops compiled for what these bonds have
-  Loop look = nullptr;           ///< rates, springs, strengths
-  Loop look_at_rates = nullptr;  ///< rates alone
-  Loop resist = nullptr;         ///< null: no bond has dashpots
-  Loop count_opening = nullptr;
-  double friction = 0;       ///< of the strengths
-  bool drifted = false;      ///< whether bodies have drifted in this step
-  bool state_is_new = true;  ///< whether reached strengths are unknown since the state was set from outside
+  Loop stretch = nullptr;        ///< springs, and strengths; null: no bond has springs
+  Loop resist = nullptr;         ///< dashpots; null: no bond has some
+  Loop count_opening = nullptr;  ///< likewise
+  double friction = 0;           ///< of the strengths
+  bool alone = true;             ///< no body has two bonds
+  bool drifted = false;          ///< whether bodies have drifted in this step
+  bool state_is_new = true;      ///< whether reached strengths are unknown since the state was set from outside
 
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// The loop that looks at the bonds. \param springs, rates what it computes
-PackedBonds::Loop look_loop(const GrainSystem& system, bool springs, bool rates);
-
-/// Choose the loops of packed bonds.
-void choose_bond_loops(GrainSystem& system);
+/// The loops compiled for what the packed bonds have.
+PackedBonds::Loop spring_loop(const GrainSystem& system);
+PackedBonds::Loop dashpot_loop(const GrainSystem& system);
+PackedBonds::Loop opening_loop(const GrainSystem& system);
 
 }  // namespace equidem
