@@ -208,6 +208,31 @@ TEST_CASE("grains_tied_by_dashpots_are_as_many_bodies_as_groups_of_bonds_that_ar
   CHECK(off(2) == Approx(1.0 / 2).epsilon(1e-9));
 }
 
+TEST_CASE("a_disc_that_only_spins_between_plates_that_rub_is_not_at_rest") {
+  // The forces of the plates cancel; their moments do not.
+  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const double friction = 0.3, pressed = 1e-3;
+  PairProperties pair = one_second(stepping.law, 1);
+  pair.stiffness *= 1000;
+  pair.friction = friction;
+  GrainScene scene = scene_of({ball({0, 0.5 - pressed}, 0.5)},
+                              {line("floor", {0, 0}, {0, 1}), line("lid", {0, 1 - 2 * pressed}, {0, -1})}, pair);
+  scene.grains[0].spin = 2;
+  GrainSimulation simulation(scene, options_of(stepping, 1e-4));
+  simulation.advance(10);
+  const Unbalance off = unbalance_of(simulation, {}, {});
+  const Grain spun = simulation.grains()[0];
+  Vec2 force;
+  for (const BodyContact& contact : simulation.body_contacts()) force += contact.force;
+  CAPTURE(stepping.name(), spun.spin, norm(spun.velocity), force.x, force.y, off.mean);
+  REQUIRE(simulation.contacts().size() == 2);
+  REQUIRE(spun.spin > 1);
+  REQUIRE(norm(force) < 1e-9 * norm(simulation.body_contacts()[0].force));
+  // two forces mu N at the radius, over N sqrt(1 + mu²)
+  CHECK(off.mean == Approx(2 * friction / std::sqrt(1 + friction * friction)).epsilon(1e-9));
+  CHECK(off.largest == off.mean);
+}
+
 TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shapes_are_refused") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-4);
   GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 20000};

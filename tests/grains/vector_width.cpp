@@ -3,6 +3,8 @@
 /// Processors with wide vectors and without give the same bits.
 #include "equidem/grains/kernels/vector_width.hpp"
 
+#include "equidem/grains/contacts/bond_breaking.hpp"
+
 #include "grains/bonded_scenes.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
@@ -23,6 +25,20 @@ GrainScene busy_pairs(NormalLaw law) {
   return scene;
 }
 
+/// Rows of a busy box tied by bonds, of which some break.
+GrainScene breaking_rows(NormalLaw law) {
+  GrainScene scene = busy_box(law, 8, 6, 31);
+  GrainBond like = all_of_a_bond;
+  like.normal_spring = 300, like.tangential_spring = 150, like.bending_spring = 5;
+  for (std::size_t k = 0; k + 1 < scene.grains.size(); ++k) {
+    if (k % 6 == 5) continue;
+    like.i = k, like.j = k + 1;
+    scene.bonds.push_back(like);
+  }
+  scene.strengths = bond_strengths(scene, {.tension = 30, .shear = 20, .friction = 0.2, .weibull_modulus = 3.0});
+  return scene;
+}
+
 }  // namespace
 
 TEST_CASE("every_width_of_vectors_gives_the_same_bits") {
@@ -38,7 +54,10 @@ TEST_CASE("every_width_of_vectors_gives_the_same_bits") {
   cases.push_back(cases.front());
   cases.back().name = "discs that slide";
   for (PairProperties& pair : cases.back().scene.pairs) pair.tangential_ratio = pair.tangential_damping = 0;
-  if (stepping.law == NormalLaw::linear_dashpot) cases.push_back({"bonded pairs", busy_pairs(stepping.law), 0.004});
+  if (stepping.law == NormalLaw::linear_dashpot) {
+    cases.push_back({"bonded pairs", busy_pairs(stepping.law), 0.004});
+    cases.push_back({"bonds that break", breaking_rows(stepping.law), 0.004});
+  }
   for (const Case& each : cases) {
     const auto run = [&](VectorWidth widest) {
       allow_vectors_up_to(widest);

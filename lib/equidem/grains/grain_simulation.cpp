@@ -14,6 +14,7 @@
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/pack_bonds.hpp"
 #include "equidem/grains/contacts/part_crossing.hpp"
 #include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/contacts/part_step.hpp"
@@ -113,7 +114,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
 
 void GrainSimulation::Implementation::make_step() {
   if (flow) return step_together();
-  if (system.bonds.breakable) break_bonds(system);
   if (verlet()) {
     step_by_verlet();
   } else {
@@ -139,6 +139,7 @@ void GrainSimulation::Implementation::step_by_euler() {
 }
 
 void GrainSimulation::Implementation::step_by_verlet() {
+  if (system.bonds.breakable) break_bonds(system);  // by the springs of the last kick, which are those of the first one
   const bool deforms = system.cell.deforms;
   if (deforms) steer_cell(system);
   count_opening_kick(system);
@@ -153,6 +154,9 @@ void GrainSimulation::Implementation::step_by_verlet() {
 }
 
 void GrainSimulation::Implementation::find_impulses(BlockMove move) {
+  system.cell.bond_sums = {};
+  if (!system.bonds.tied.empty()) push_springs(system);
+  if (system.bonds.breakable && !verlet() && break_bonds(system) && !system.bonds.tied.empty()) push_springs(system);
   const bool at_once = system.bonds.tied.empty() && touches_walls_alone(system);
   if (system.contacts.near_parts.active) load_part_bodies(system);
   collide_bodies(system, collide, at_once ? move : nullptr);

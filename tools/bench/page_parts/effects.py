@@ -40,9 +40,9 @@ the tangential springs; a scene without them has no rotations at all, in memory 
 Walls that move, are shaken or follow a stress, their histories and a case of one stage are beside the loop over contacts: they add
 some per cent at most, which is the noise. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the
 start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
-Lees and Edwards) count the stress in every step, and a row of their history sorts all contacts. Bonds of discs that have more than
-one are stepped one after the other, with all their springs whether they are zero or not; their dashpots are solved exactly, and
-those with strengths are computed once more in each step and kept twice. A network in which nothing collides or breaks is stepped
+Lees and Edwards) count the stress in every step, and a row of their history sorts all contacts. Bonds are computed
+eight at a time, in the loop that is compiled for the springs, the dashpots and the strengths that a scene has; strengths are compared
+with the forces where these are found. Dashpots are solved exactly, one group of bonds after the other. A network in which nothing collides or breaks is stepped
 faster as bonded discs, in finite motion too (the first table).
 
 ## What is off costs nothing

@@ -30,18 +30,20 @@ struct StageWallTable {
 std::vector<Key<UntilTable>> until_keys() {
   using U = UntilTable;
   const std::string way = "it is that of the distance of two walls, or of the cell";
-  return {key("kinetic", &U::kinetic, positive, "at rest: the kinetic energy is at most this share of the elastic one"),
-          key("unbalanced", &U::unbalanced, positive,
-              "at rest: the mean unbalanced force of a body is at most this share of the mean contact force"),
-          key("strain", &U::strain, positive, only_with({"from", "component"}, way),
-              "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
-          key("component", &U::component, only_with({"strain"}, way), not_beside({"from"}, way),
-              "of the strain of the periodic cell, as in the histories"),
-          key("from", &U::from, only_with({"to"}, way), "one of the two walls"),
-          key("to", &U::to, only_with({"strain"}, way), "and the other"),
-          key("displacement", &U::displacement, unit("m"), positive, only_with({"wall"}, "a wall is named that moves"),
-              "way of a wall since the start of the stage"),
-          key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
+  return {
+      key("kinetic", &U::kinetic, positive, "at rest: the kinetic energy is at most this share of the elastic one"),
+      key("unbalanced", &U::unbalanced, positive,
+          "at rest: the mean unbalanced force of a body, with its moment over its radius, is at most this share of the "
+          "mean contact force"),
+      key("strain", &U::strain, positive, only_with({"from", "component"}, way),
+          "change of the distance of two walls over that at the start of the stage; or of a strain of the cell"),
+      key("component", &U::component, only_with({"strain"}, way), not_beside({"from"}, way),
+          "of the strain of the periodic cell, as in the histories"),
+      key("from", &U::from, only_with({"to"}, way), "one of the two walls"),
+      key("to", &U::to, only_with({"strain"}, way), "and the other"),
+      key("displacement", &U::displacement, unit("m"), positive, only_with({"wall"}, "a wall is named that moves"),
+          "way of a wall since the start of the stage"),
+      key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
 }
 
 /// The keys of a wall, none of them required: a wall that is there gets another motion.

@@ -74,8 +74,9 @@ std::vector<Key<PackingTables>> settling_keys() {
                "h of the dashpots 2 h sqrt(m k), m the mass of a body"),
       settling("time_step", &O::time_step, or_auto, unit("s"), positive,
                "auto: a quarter of the limit of stability of the two lightest bodies"),
-      settling("unbalanced", &O::rest, range({.low = 1e-12, .high = 1, .high_open = true}),
-               "mean unbalanced force over mean contact force, at which the bodies rest"),
+      settling(
+          "unbalanced", &O::rest, range({.low = 1e-12, .high = 1, .high_open = true}),
+          "mean unbalanced force, with the moment over the radius, over mean contact force, at which the bodies rest"),
       settling("longest", &O::longest, unit("s"), positive, "longest motion, before it is given up"),
       settling("bond_share", &O::bond_share, positive,
                "dashpots of bonded pairs, relative to the largest of an explicit step: C_n = share m/dt, C_s = a "

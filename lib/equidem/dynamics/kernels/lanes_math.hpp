@@ -37,29 +37,37 @@ EQUIDEM_INLINE Lanes square_root(const Lanes& x) {
 #endif
 }
 
+/// P(z) of atan t = t + t z P(z), z = t², |t| <= tan(pi/8): the best polynomial of degree 10 (relative error 2^-59
+/// before rounding). \tparam Numbers vectors of any width
+template <class Numbers>
+EQUIDEM_INLINE Numbers arctangent_series(const Numbers& z) {
+  const Numbers z2 = z * z, z4 = z2 * z2;
+  const Numbers low =
+      (-0x1.555555555553dp-2 + z * 0x1.99999999957cdp-3) + z2 * (-0x1.24924922aa4e5p-3 + z * 0x1.c71c70e50e27dp-4);
+  const Numbers middle =
+      (-0x1.745cf8c36d549p-4 + z * 0x1.3b1117948652dp-4) + z2 * (-0x1.10eba8c075af4p-4 + z * 0x1.df0e7fb248f05p-5);
+  const Numbers high = (-0x1.9ccf7cd2124b5p-5 + z * 0x1.37ce1ac095656p-5) - z2 * 0x1.255b341c4b7f1p-6;
+  return low + z4 * (middle + z4 * high);
+}
+
+constexpr double tan_pi_8 = 0.41421356237309505;
+constexpr double rest_of_pi_4 = 0x1.1a62633145c07p-55;  // pi/4 minus its double; without it errors grow by half an ulp
+
 /// The angle of (x, y) in [-pi, pi], as std::atan2 to 2 ulp; 0 of (0, 0). Components between 1e-150 and 1e150 or 0.
 ///
-/// By symmetry to the octant of t = smaller/larger in [0, 1], by tan(a - pi/4) = (t - 1)/(t + 1) to |t| <= tan(pi/8),
-/// and there atan t = t + t z P(z), z = t², P the best polynomial of degree 10 (relative error 2^-59 before rounding).
+/// By symmetry to the octant of t = smaller/larger in [0, 1], by tan(a - pi/4) = (t - 1)/(t + 1) to |t| <= tan(pi/8).
 EQUIDEM_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
   using std::numbers::pi;
-  constexpr double tan_pi_8 = 0.41421356237309505, smallest = 1e-300;
+  constexpr double smallest = 1e-300;
   const Choice below = sign_of(y);
   const Lanes across = change_sign(x, sign_of(x)), up = change_sign(y, below);
   const Choice steep = up > across;
   const Lanes larger = steep ? up : across, smaller = steep ? across : up;
   const Choice turned = smaller > tan_pi_8 * larger;
   const Lanes t = (turned ? smaller - larger : smaller) / ((turned ? smaller + larger : larger) + smallest);
-  const Lanes z = t * t, z2 = z * z, z4 = z2 * z2;
-  const Lanes low =
-      (-0x1.555555555553dp-2 + z * 0x1.99999999957cdp-3) + z2 * (-0x1.24924922aa4e5p-3 + z * 0x1.c71c70e50e27dp-4);
-  const Lanes middle =
-      (-0x1.745cf8c36d549p-4 + z * 0x1.3b1117948652dp-4) + z2 * (-0x1.10eba8c075af4p-4 + z * 0x1.df0e7fb248f05p-5);
-  const Lanes high = (-0x1.9ccf7cd2124b5p-5 + z * 0x1.37ce1ac095656p-5) - z2 * 0x1.255b341c4b7f1p-6;
+  const Lanes z = t * t;
   const Lanes zero{}, octant = zero + pi / 4, quadrant = zero + pi / 2, half_turn = zero + pi;
-  const Lanes octant_rest =
-      zero + 0x1.1a62633145c07p-55;  // pi/4 minus its double; without it the error would grow by half an ulp
-  Lanes angle = t + (t * z * (low + z4 * (middle + z4 * high)) + (turned ? octant_rest : zero));
+  Lanes angle = t + (t * z * arctangent_series(z) + (turned ? zero + rest_of_pi_4 : zero));
   angle = turned ? octant + angle : angle;
   angle = steep ? quadrant - angle : angle;
   angle = x < 0 ? half_turn - angle : angle;
@@ -67,10 +75,12 @@ EQUIDEM_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
 }
 
 /// The angle modulo 2 pi, in [-pi, pi], with the error of an ulp of the argument. |angle| < 1e15.
-EQUIDEM_INLINE Lanes without_whole_turns(const Lanes& angle) {
+/// \tparam Numbers vectors of any width
+template <class Numbers>
+EQUIDEM_INLINE Numbers without_whole_turns(const Numbers& angle) {
   using std::numbers::pi;
   constexpr double to_integer = 0x1.8p52;  // adding it rounds to the nearest integer, the spacing of numbers there
-  const Lanes turns = (angle * (0.5 / pi) + to_integer) - to_integer;
+  const Numbers turns = (angle * (0.5 / pi) + to_integer) - to_integer;
   return angle - turns * (2 * pi);
 }
 
@@ -97,7 +107,9 @@ EQUIDEM_INLINE SineVersine sine_versine(const Lanes& angle) {
 
 /// atan of |t| <= 1/64 with z = t²: t + t z P(z), P the best polynomial of degree 2 (relative error 2^-56 before
 /// rounding).
-EQUIDEM_INLINE Lanes small_arctangent(const Lanes& t, const Lanes& z) {
+/// \tparam Numbers vectors of any width
+template <class Numbers>
+EQUIDEM_INLINE Numbers small_arctangent(const Numbers& t, const Numbers& z) {
   return t + t * z * ((-0x1.55555555551c7p-2 + z * 0x1.99999919a2fd7p-3) - z * z * 0x1.247cf5080565fp-3);
 }
 

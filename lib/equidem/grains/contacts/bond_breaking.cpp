@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/pack_bonds.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -18,6 +20,10 @@ namespace {
 double share_of_strength(double load, double strength) {
   if (strength > 0) return load / strength;
   return load >= strength ? std::numeric_limits<double>::infinity() : 0;
+}
+
+std::size_t number_of(const BreakableBonds& breakable, const TiedPair& bond) {
+  return static_cast<std::size_t>(place_of_bond(breakable.all, bond.i, bond.j) - breakable.all.begin());
 }
 
 /// The place of the bond as far as the levers say, between both centres.
@@ -59,15 +65,30 @@ void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContac
 /// The bonds that are left become those of the steps; they keep their last impulses.
 void tie_those_left(GrainSystem& system) {
   BreakableBonds& breakable = *system.bonds.breakable;
-  for (const TiedPair& bond : system.bonds.tied) {
-    place_of_bond(breakable.all, bond.i, bond.j)->impulse = last_impulse(system, bond);
-  }
+  std::vector<BondModes> impulses(breakable.all.size());
+  for (const TiedPair& bond : system.bonds.tied) impulses[number_of(breakable, bond)] = last_impulse(system, bond);
   system.bonds.tied.clear();
   for (std::size_t b = 0; b < breakable.all.size(); ++b)
     if (breakable.broken[b] == 0) system.bonds.tied.push_back(breakable.all[b]);
-  system.bonds.packed = {};
   pack_bonds(system);
-  for (TiedPair& bond : system.bonds.tied) take_last_impulse(system, bond, BondModes(bond.impulse));
+  for (const TiedPair& bond : system.bonds.tied) take_last_impulse(system, bond, impulses[number_of(breakable, bond)]);
+}
+
+/// Places in BondList::tied of bonds that may have reached their strength, ascending.
+std::vector<std::size_t> suspects_of(const GrainSystem& system) {
+  const PackedBonds& packed = system.bonds.packed;
+  std::vector<std::size_t> suspects;
+  if (packed.state_is_new) {
+    suspects.resize(system.bonds.tied.size());
+    std::iota(suspects.begin(), suspects.end(), std::size_t{0});
+    return suspects;
+  }
+  for (const BondBatch& batch : packed.batches)
+    for (const std::size_t group : batch.reached)
+      for (const std::int32_t bond : packed.lanes[group])
+        if (bond >= 0) suspects.push_back(static_cast<std::size_t>(bond));
+  std::ranges::sort(suspects);
+  return suspects;
 }
 
 }  // namespace
@@ -89,9 +110,13 @@ ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& 
   return contact_strengths(network, options);
 }
 
+double moment_to_force(const SpringConstants& k, double kM) {
+  return kM > 0 ? 6 / std::sqrt(12 * kM / k.kN) : 0;
+}
+
 std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
                                   double tension, double shear, double friction) {
-  const double width = std::sqrt(12 * kM / k.kN), by_moment = kM > 0 ? 6 * std::abs(moment) / width : 0;
+  const double by_moment = moment_to_force(k, kM) * std::abs(moment);
   const double pulled = share_of_strength(force.normal + by_moment, tension);
   const double sheared = share_of_strength(std::abs(force.tangential), shear - friction * force.normal);
   if (std::max(pulled, sheared) < 1) return {};
@@ -108,12 +133,12 @@ BreakableBonds::BreakableBonds(const GrainSystem& system, const ContactStrengths
   }
 }
 
-void break_bonds(GrainSystem& system) {
+bool break_bonds(GrainSystem& system) {
   BreakableBonds& breakable = *system.bonds.breakable;
   bool any = false;
-  for (std::size_t b = 0; b < breakable.all.size(); ++b) {
-    if (breakable.broken[b] != 0) continue;
-    const TiedPair& bond = breakable.all[b];
+  for (const std::size_t suspect : suspects_of(system)) {
+    const TiedPair& bond = system.bonds.tied[suspect];
+    const std::size_t b = number_of(breakable, bond);
     const BondMotion<double> motion = motion_of_bond(system, bond);
     const ContactForce force = linear_spring_force(bond.springs.springs, bond_deformation(bond.springs, motion));
     const double moment = bending_moment(bond.springs.kM, motion.theta_i, motion.theta_j);
@@ -125,14 +150,15 @@ void break_bonds(GrainSystem& system) {
     breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
     const NewContact contact = contact_of(system, bond);
     system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
-    if (system.options.verlet()) replace_impulses(system, *place_of_bond(system.bonds.tied, bond.i, bond.j), contact);
+    if (system.options.verlet()) replace_impulses(system, bond, contact);
     any = true;
   }
-  if (!any) return;
+  if (!any) return false;
   system.free_flight = false;
   tie_those_left(system);
   if (system.contacts.near.active) load_pair_bodies(system);
   find_candidates(system);
+  return true;
 }
 
 void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks) {

@@ -25,6 +25,9 @@ namespace equidem {
 /// \throws Error (bad_input) as contact_strengths
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options);
 
+/// The force at the outer fibre by a moment, over it: 6/w, 1/m; 0 of a bond without bending spring.
+double moment_to_force(const SpringConstants& k, double kM);
+
 /// How a bond breaks under the forces of its springs, if it does.
 /// \param moment of the bending spring, N m; \param tension, shear its strengths, N/m
 std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
@@ -48,8 +51,10 @@ struct BreakableBonds {
   }
 };
 
-/// Breaks bonds by the present motions, and lets their discs collide.
-void break_bonds(GrainSystem& system);
+/// Breaks bonds that have reached their strengths at the present motions, where push_springs() saw some that may have,
+/// and lets their discs collide.
+/// \return whether some broke
+bool break_bonds(GrainSystem& system);
 
 /// \throws Error (bad_input) where breaks of a saved state name a bond that is not there, or one twice
 void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks);

@@ -9,8 +9,9 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/pack_bonds.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
@@ -42,6 +43,8 @@ void find_images_of_bonds(GrainSystem& system) {
   };
   find(system.bonds.tied);
   if (system.bonds.breakable) find(system.bonds.breakable->all);
+  pack_images(system);
+  system.bonds.packed.state_is_new = true;
 }
 
 Tensor2 moment_of_bonds(const GrainSystem& system) {
@@ -53,32 +56,8 @@ Tensor2 moment_of_bonds(const GrainSystem& system) {
 
 namespace {
 
-/// Count the impulse on an image in the moments of a periodic cell (periodic_motion.hpp).
-void count_on_image(GrainSystem& system, const TiedPair& bond, Vec2 on_j) {
-  MovingCell& cell = system.cell;
-  if (!cell.deforms) return;
-  cell.bond_sums.here += outer(on_j, cell.now.shift(bond.image));
-  cell.bond_sums.before += outer(on_j, cell.before.shift(bond.image));
-}
-
-/// Add the impulse of dashpots along the rates of a bond in its frame to those of its bodies.
-void give_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse) {
-  BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
-  BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
-  const Vec2 on = impulse.normal * bond.frame.normal + impulse.tangential * bond.frame.tangent();
-  count_on_image(system, bond, on);
-  on_i.impulse -= on;
-  on_j.impulse += on;
-  on_i.torque -= bond.frame.lever_i * impulse.tangential + impulse.rolling;
-  on_j.torque -= bond.frame.lever_j * impulse.tangential - impulse.rolling;
-}
-
 InverseInertia inverse_of(const Grain& grain) {
   return {1 / grain.inertia.mass, 1 / grain.inertia.moment};
-}
-
-InverseInertia inverse_of(const GrainBody& body) {
-  return {body.inverse_mass, body.inverse_moment};
 }
 
 ContactFrame frame_of(Vec2 branch, double share) {
@@ -96,93 +75,35 @@ bool is_wide(const GrainSystem& system, const TiedPair& bond) {
   return norm(branch_of(system, bond)) > nearest_centres_of_bonds * radii;
 }
 
-/// Springs by where the discs are at the start of the step.
-void push_springs(GrainSystem& system) {
-  const double dt = system.dt();
-  for (const std::size_t b : system.bonds.packed.sprung) {
-    const TiedPair& bond = system.bonds.tied[b];
-    if (!is_wide(system, bond)) refuse_crept_bonds(system);
-    const BondForces<double> force = bond_forces(bond.springs, motion_of_bond(system, bond));
-    BodyImpulse& on_i = system.bodies.impulses[static_cast<std::size_t>(bond.i)];
-    BodyImpulse& on_j = system.bodies.impulses[static_cast<std::size_t>(bond.j)];
-    const Vec2 impulse = dt * Vec2{force.x, force.y};
-    on_i.impulse += impulse;
-    on_j.impulse -= impulse;
-    on_i.torque += dt * force.moment_i;
-    on_j.torque += dt * force.moment_j;
-    count_on_image(system, bond, -impulse);
+/// Step the batches of each phase on all threads, one phase after the other.
+template <class Work>
+void each_batch(PackedBonds& packed, const Work& work) {
+  for (std::size_t phase = 0; phase < PackedBonds::phases; ++phase) {
+    const std::size_t first = packed.first_batch[phase];
+    parallel_shares(packed.first_batch[phase + 1] - first,
+                    [&](std::size_t k, int) { work(packed.batches[first + k]); });
   }
 }
 
-/// The motion of j against i by that of a deforming cell. \param drifted whether bodies have drifted in this step
-Vec2 motion_of_cell(const GrainSystem& system, const TiedPair& bond, bool drifted) {
-  const MovingCell& cell = system.cell;
-  if (!cell.deforms) return {};
-  if (!drifted) return cell.gradient * branch_of(system, bond);
-  const std::vector<GrainMotion>& before = system.bodies.next;
-  return cell.gradient * (before[static_cast<std::size_t>(bond.j)].position + cell.before.shift(bond.image) -
-                          before[static_cast<std::size_t>(bond.i)].position);
+/// Call work(body) for the bonded bodies of each block, on all threads.
+template <class Work>
+void each_bonded_body(PackedBonds& packed, const Work& work) {
+  parallel_shares(packed.first_batch[1], [&](std::size_t k, int) {
+    const BondBatch& batch = packed.batches[k];
+    for (std::size_t n = batch.first_body; n < batch.end_body; ++n) work(static_cast<std::size_t>(packed.bodies[n]));
+  });
 }
 
-/// Rates of a bond at the start of the step.
-BondModes rates_now(const GrainSystem& system, const TiedPair& bond, bool drifted) {
-  const GrainMotion& i = system.bodies.motions[static_cast<std::size_t>(bond.i)];
-  const GrainMotion& j = system.bodies.motions[static_cast<std::size_t>(bond.j)];
-  return bond_rates(bond.frame, {i.velocity, i.spin}, {j.velocity + motion_of_cell(system, bond, drifted), j.spin});
+/// Step all batches by a loop. \throws Error (computation_failed) if centres of bonded discs nearly coincide
+void step_batches(GrainSystem& system, PackedBonds::Loop loop) {
+  PackedBonds& packed = system.bonds.packed;
+  each_batch(packed, [&](BondBatch& batch) { loop(system, batch); });
+  for (const BondBatch& batch : packed.batches)
+    if (batch.nearest <= nearest_centres_of_bonds) return refuse_crept_bonds(system);
 }
 
-/// Contribution of the present impulses to the rates; gravity has none.
-BondModes gain_by_impulses(const GrainSystem& system, const TiedPair& bond) {
-  const auto gain = [&](std::int32_t body) {
-    const auto b = static_cast<std::size_t>(body);
-    return DiscMotion{system.bodies.constants[b].inverse_mass * system.bodies.impulses[b].impulse,
-                      system.bodies.constants[b].inverse_moment * system.bodies.impulses[b].torque};
-  };
-  return bond_rates(bond.frame, gain(bond.i), gain(bond.j));
-}
-
-/// One bond after the other, each exact with those before it as they are: what dashpots take, they take from the
-/// motion, in whatever number they hang together.
-void resist_exactly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
-  const double dt = system.dt();
-  const BondModes &c = bond.dashpots, &v = bond.rate, &g = bond.gained;
-  BondModes all = gain_by_impulses(system, bond);
-  const auto impulse = [&](double dashpot, double inverse_mass, double rate, double gained, double in_all) {
-    if (dashpot == 0) return 0.0;
-    return exact_dashpot_change(dashpot * inverse_mass * dt, rate, in_all - gained, gained) / inverse_mass;
-  };
-  bond.impulse = {impulse(c.normal, inverse.normal, v.normal, g.normal, all.normal),
-                  impulse(c.tangential, inverse.tangential, v.tangential, g.tangential, all.tangential), 0};
-  give_impulse(system, bond, bond.impulse);
-  if (c.rolling == 0) return;
-  all = gain_by_impulses(system, bond);  // spin of unequal discs has changed with the tangential impulse
-  bond.impulse.rolling = impulse(c.rolling, inverse.rolling, v.rolling, g.rolling, all.rolling);
-  give_impulse(system, bond, {0, 0, bond.impulse.rolling});
-}
-
-void resist_explicitly(GrainSystem& system, TiedPair& bond, const BondModes& inverse) {
-  const double dt = system.dt();
-  const auto impulse = [&](double dashpot, double inverse_mass, double rate) {
-    return explicit_dashpot_change(dashpot * inverse_mass * dt, rate) / inverse_mass;
-  };
-  const BondModes &c = bond.dashpots, &v = bond.rate;
-  bond.impulse = {impulse(c.normal, inverse.normal, v.normal), impulse(c.tangential, inverse.tangential, v.tangential),
-                  impulse(c.rolling, inverse.rolling, v.rolling)};
-  give_impulse(system, bond, bond.impulse);
-}
-
-/// Energy lost by the motion: impulses times the rates after a share of all impulses has acted.
-double loss_of_bonds(const GrainSystem& system, double share) {
-  double sum = 0;
-  for (const std::size_t b : system.bonds.packed.one_by_one) {
-    const TiedPair& bond = system.bonds.tied[b];
-    const BondModes gained = gain_by_impulses(system, bond);
-    const BondModes &v = bond.rate, &given = bond.impulse;
-    sum -= given.normal * (v.normal + share * gained.normal) +
-           given.tangential * (v.tangential + share * gained.tangential) +
-           given.rolling * (v.rolling + share * gained.rolling);
-  }
-  return sum;
+void count_losses(GrainSystem& system) {
+  for (const BondBatch& batch : system.bonds.packed.batches) system.lost.lost_bond += batch.lost;
 }
 
 /// The part of a bond in M^-1 C and M^-1 K of its discs.
@@ -260,42 +181,47 @@ void refuse_crept_bonds(const GrainSystem& system) {
   }
 }
 
+void push_springs(GrainSystem& system) {
+  PackedBonds& packed = system.bonds.packed;
+  for (BondBatch& batch : packed.batches) {
+    batch.here = batch.before = {};
+    batch.reached.clear();
+  }
+  packed.state_is_new = false;
+  if (packed.stretch) step_batches(system, packed.stretch);
+}
+
 void add_bond_impulses(GrainSystem& system) {
+  PackedBonds& packed = system.bonds.packed;
+  std::vector<BodyImpulse>& impulses = system.bodies.impulses;
   system.free_flight = false;
-  system.cell.bond_sums = {};
-  push_springs(system);
-  push_packed_bonds(system);
-  const bool turns_rims = system.contacts.near.active && system.friction;
-  for (const std::size_t b : system.bonds.packed.one_by_one) {
-    TiedPair& bond = system.bonds.tied[b];
-    const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
-    if (!is_wide(system, bond)) refuse_crept_bonds(system);
-    if (turns_rims) {  // what others do to the spin is asked for
-      turn_rims(system.bodies.impulses[i], system.bodies.constants[i]);
-      turn_rims(system.bodies.impulses[j], system.bodies.constants[j]);
-    }
-    bond.frame = frame_of(branch_of(system, bond), bond.share);
-    bond.rate = rates_now(system, bond, true);
-    bond.gained = gain_by_impulses(system, bond);
+  if (packed.resist) {
+    packed.drifted = true;
+    step_batches(system, packed.resist);
+    each_bonded_body(packed, [&](std::size_t body) {
+      const double* given = packed.bonded[body].given;
+      impulses[body].impulse += {given[0], given[1]};
+      impulses[body].torque += given[2];
+    });
+    count_losses(system);
+  } else {
+    each_bonded_body(packed, [&](std::size_t body) {
+      impulses[body].impulse += packed.by_springs[body].impulse;
+      impulses[body].torque += packed.by_springs[body].torque;
+    });
   }
-  const auto resist = system.options.bond_step == GrainOptions::BondStep::exact ? resist_exactly : resist_explicitly;
-  for (const std::size_t b : system.bonds.packed.one_by_one) {
-    TiedPair& bond = system.bonds.tied[b];
-    resist(system, bond,
-           bond_inverse_masses(bond.frame, inverse_of(system.bodies.constants[static_cast<std::size_t>(bond.i)]),
-                               inverse_of(system.bodies.constants[static_cast<std::size_t>(bond.j)])));
+  for (const BondBatch& batch : packed.batches) {
+    system.cell.bond_sums.here += batch.here;
+    system.cell.bond_sums.before += batch.before;
   }
-  system.lost.lost_bond += system.options.verlet() ? 0.5 * loss_of_bonds(system, 0.25) : loss_of_bonds(system, 0.5);
 }
 
 void count_opening_kick(GrainSystem& system) {
-  count_opening_kick_of_packed_bonds(system);
-  for (const std::size_t b : system.bonds.packed.one_by_one) {
-    TiedPair& bond = system.bonds.tied[b];
-    bond.frame = frame_of(branch_of(system, bond), bond.share);
-    bond.rate = rates_now(system, bond, false);
-  }
-  system.lost.lost_bond += 0.5 * loss_of_bonds(system, 0.25);
+  PackedBonds& packed = system.bonds.packed;
+  if (!packed.count_opening) return;
+  packed.drifted = false;
+  step_batches(system, packed.count_opening);
+  count_losses(system);
 }
 
 double elastic_of_bonds(const GrainSystem& system) {

@@ -30,11 +30,7 @@ struct TiedPair {
   double share = 0;  ///< lever i over the distance: r_i/(r_i + r_j)
   FiniteBond springs;
   double angle_i = 0, angle_j = 0;  ///< of the bodies at rest, rad
-  std::int32_t packed = -1;         ///< index in PackedBonds, which stores the impulse; -1: not packed
-  BondModes impulse;                ///< impulse of the last step
-  // in the present step
-  ContactFrame frame;
-  BondModes rate, gained;
+  std::int32_t packed = -1;         ///< lane in PackedBonds, which stores the impulse
 
   [[nodiscard]] bool has_dashpots() const {
     return dashpots.normal > 0 || dashpots.tangential > 0 || dashpots.rolling > 0;
@@ -89,8 +85,11 @@ inline std::size_t first_bond_from(const std::vector<TiedPair>& bonds, std::int3
   return static_cast<std::size_t>(std::lower_bound(bonds.begin(), bonds.end(), body, before) - bonds.begin());
 }
 
-/// Add the impulses of bonds to those of the step, after all contacts.
+/// Compute the impulses of springs by where the discs are, and the rates of the bonds, before all contacts.
 /// \throws Error (computation_failed) if the centres of bonded discs nearly coincide
+void push_springs(GrainSystem& system);
+
+/// Add the impulses of springs to those of the step, and then those of dashpots, after all contacts.
 void add_bond_impulses(GrainSystem& system);
 
 /// Verlet schemes: count the energy lost in dashpots in the half kick at the start of a step; add_bond_impulses counts
