@@ -55,8 +55,8 @@ class BreakageRun : public EventPath {
   [[nodiscard]] double load_left(double motion) const override;
   [[nodiscard]] double elastic_energy() const override { return response_.energy_at(lambda_); }
   [[nodiscard]] const NetworkResponse& response() const { return response_; }
-  /// Work minus elastic energy minus all that was released, or the energy by works minus that of all springs (Clapeyron)
-  /// as contact 0, 1, 3, 7, ... of the path broke, whichever is worse; over the largest of them.
+  /// Work minus elastic energy minus all that was released, or the energy by works minus that of all springs
+  /// (Clapeyron) as event 0, 1, 3, 7, ... happened, whichever is worse; over the largest of them.
   [[nodiscard]] double energy_error() const override;
   [[nodiscard]] double released() const override;
 
