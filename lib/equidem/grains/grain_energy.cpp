@@ -7,26 +7,23 @@
 
 namespace equidem {
 
-double GrainSimulation::Implementation::potential() const {
+std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic() const {
   const bool behind = collide && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
-  double sum = 0;
-  for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
-    Vec2 position = system.bodies.motions[i].position;
-    if (system.cell.active) position += system.cell.now.shift(system.cell.crossed[i]);
-    if (behind) position -= (0.5 * system.dt()) * system.bodies.motions[i].velocity;
-    sum -= dot(system.scene.gravity, position) / system.bodies.constants[i].inverse_mass;
-  }
-  return sum;
-}
-
-double GrainSimulation::Implementation::kinetic() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < system.bodies.motions.size(); ++i) {
-    const GrainMotion& motion = system.bodies.motions[i];
-    sum += 0.5 * dot(motion.velocity, motion.velocity) / system.bodies.constants[i].inverse_mass;
-    sum += 0.5 * motion.spin * motion.spin / system.bodies.constants[i].inverse_moment;
-  }
-  return sum;
+  return system.bodies.blocks.sum([&](std::size_t block) {
+    double potential = 0, kinetic = 0;
+    for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+      const GrainMotion& motion = system.bodies.motions[i];
+      const GrainBody& body = system.bodies.constants[i];
+      Vec2 position = motion.position;
+      if (system.cell.active) position += system.cell.now.shift(system.cell.crossed[i]);
+      if (behind) position -= (0.5 * system.dt()) * motion.velocity;
+      const double mass = 1 / body.inverse_mass;
+      potential -= mass * dot(system.scene.gravity, position);
+      kinetic += 0.5 * mass * dot(motion.velocity, motion.velocity);
+      kinetic += 0.5 * motion.spin * motion.spin / body.inverse_moment;
+    }
+    return std::pair(potential, kinetic);
+  });
 }
 
 std::pair<double, double> GrainSimulation::Implementation::elastic() const {
@@ -52,10 +49,11 @@ std::pair<double, double> GrainSimulation::Implementation::elastic() const {
 
 EnergyLedger GrainSimulation::Implementation::energy() const {
   EnergyLedger ledger = system.lost;
-  ledger.kinetic = kinetic();
+  double potential = 0;
+  std::tie(potential, ledger.kinetic) = potential_and_kinetic();
   std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
   ledger.elastic_bond = elastic_of_bonds(system);
-  ledger.potential = potential() - potential_at_start;
+  ledger.potential = potential - potential_at_start;
   ledger.initial = energy_at_start;
   return ledger;
 }

@@ -107,9 +107,10 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
   self.effects = effects_of(scene, options);
-  self.potential_at_start = self.potential();
+  const auto [potential, kinetic] = self.potential_and_kinetic();
+  self.potential_at_start = potential;
   const auto [normal, tangential] = self.elastic();
-  self.energy_at_start = self.kinetic() + normal + tangential + elastic_of_bonds(system);
+  self.energy_at_start = kinetic + normal + tangential + elastic_of_bonds(system);
 }
 
 void GrainSimulation::Implementation::make_step() {

@@ -41,9 +41,8 @@ struct GrainSimulation::Implementation {
     return verlet() ||
            (collide && (system.friction || system.contacts.near.active || system.contacts.near_parts.active));
   }
-  /// Potential energy of gravity at the time of the velocities, J.
-  [[nodiscard]] double potential() const;
-  [[nodiscard]] double kinetic() const;
+  /// Potential energy of gravity at the time of the velocities, and kinetic energy, J.
+  [[nodiscard]] std::pair<double, double> potential_and_kinetic() const;
   /// Energies of the normal and the tangential springs at the present positions, J.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] EnergyLedger energy() const;

@@ -164,7 +164,7 @@ std::vector<BondBreak> GrainSimulation::breaks() const {
 void GrainSimulation::stop_all() {
   SavedState state = save();
   GrainSystem& system = implementation_->system;
-  system.lost.lost_dashpot += implementation_->kinetic();
+  system.lost.lost_dashpot += implementation_->potential_and_kinetic().second;
   state["losses"].clear();
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) state["losses"].push_back(system.lost.*term.value);
   std::fill(state["velocities"].begin(), state["velocities"].end(), 0.0);

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "equidem/core/threads.hpp"
@@ -41,6 +42,19 @@ class BodyBlocks {
   template <class Work>
   void each(const Work& work) const {
     parallel_shares(count(), [&](std::size_t block, int) { work(block); });
+  }
+
+  /// Sums of part(block), two numbers each, over all blocks in their order.
+  template <class Part>
+  [[nodiscard]] std::pair<double, double> sum(const Part& part) const {
+    std::vector<std::pair<double, double>> parts(count());
+    each([&](std::size_t block) { parts[block] = part(block); });
+    std::pair<double, double> sums{};
+    for (const auto& [first, second] : parts) {
+      sums.first += first;
+      sums.second += second;
+    }
+    return sums;
   }
 
   /// Call work(begin, end) for pieces of [0, count) as long as blocks, on all threads; count: of some of the bodies.

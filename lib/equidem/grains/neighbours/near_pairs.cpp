@@ -336,28 +336,6 @@ Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::si
   return candidate;
 }
 
-std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
-  const NearPairs& near = system.contacts.near;
-  const auto energy = system.law().energy;
-  double normal = 0, tangential = 0;
-  for (const PairBlock& block : near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-      if (system.friction) {
-        const double spring = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
-        tangential += 0.5 * spring * block.slips[g].stretch[k] * block.slips[g].stretch[k];
-      }
-      const Vec2 branch = system.position_of(block.second(p)) -
-                          system.bodies.motions[static_cast<std::size_t>(block.first(p))].position;
-      const double overlap = block.groups[g].reach[k] - norm(branch);
-      if (!(overlap > 0)) continue;
-      const double stiffness = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      normal += energy(stiffness, overlap);
-    }
-  }
-  return {normal, tangential};
-}
-
 void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
   const BodyBlocks& blocks = system.bodies.blocks;
   auto contact = contacts.begin();
