@@ -56,7 +56,9 @@ GrainScene parting_block(const Assembly& block, const ContactStrengths& strength
   GrainScene scene;
   scene.pairs = {{.stiffness = 1, .restitution = 1}};
   for (std::size_t d = 0; d < block.size(); ++d) {
-    Grain grain{.position = block.centres[d], .radius = 0.5 * block.radii[d]};
+    Grain grain;
+    grain.position = block.centres[d];
+    grain.radius = 0.5 * block.radii[d];
     grain.inertia = brittle_inertia(block, d);
     scene.grains.push_back(grain);
   }
@@ -127,8 +129,11 @@ TEST_CASE("a_block_that_parts_slowly_breaks_the_bonds_of_quasistatic_avalanche_b
   // strengths at which bonds break at strains of about 1e-6
   const ContactStrengths strengths =
       contact_strengths(block, {.tension = 8e-4, .shear = 6e-4, .weibull_modulus = 2.0, .seed = seed});
-  Broken statics(block, ContactSprings(brittle_springs), strengths,
-                 {.supports = parting_ends(), .control = LoadControl::motion, .max_events = 30});
+  LoadPathOptions path;
+  path.supports = parting_ends();
+  path.control = LoadControl::motion;
+  path.max_events = 30;
+  Broken statics(block, ContactSprings(brittle_springs), strengths, path);
   statics.all();
   const Avalanches avalanches = avalanches_by(statics.run(), &BreakEvent::motion);
   std::set<std::int64_t> broken;

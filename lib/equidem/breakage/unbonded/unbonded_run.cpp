@@ -21,7 +21,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
 // Of the largest force: what may be left of a state. Discs that are pushed along with hardly any force balance to no
 // more than the round-off of the motions over the springs that hold what is loose.
-constexpr double in_balance = 1e-9;
+constexpr double balances_to = 1e-9;
 
 }  // namespace
 
@@ -308,12 +308,12 @@ bool UnbondedRun::move(double t) {
   const double by = state_->lambda() - lambda;
   load_rate_ = by != 0 ? (state_->load() - load) / by : 0;
   motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
-  if (state_->relative_residual() > in_balance) {
+  if (state_->relative_residual() > balances_to) {
     end(PathEnd::not_balanced,
         fmt::format(
             "at lambda = {:g} the forces balance to {:.1e} of the largest, not to {:g}: hardly anything resists "
             "the motion of some discs",
-            state_->lambda(), state_->relative_residual(), in_balance));
+            state_->lambda(), state_->relative_residual(), balances_to));
     return false;
   }
   counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());

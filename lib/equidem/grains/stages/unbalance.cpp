@@ -16,7 +16,7 @@ namespace {
 struct RestingBody {
   std::vector<std::size_t> grains;
   std::vector<Vec2> places;  ///< of the grains, beside one another where they are in a periodic cell, m
-  Vec2 centre;               ///< of mass, m
+  Vec2 centre{};             ///< of mass, m
   double radius = 0;         ///< of the circle about the centre that holds all grains, m
 };
 
