@@ -162,7 +162,8 @@ double UpdatedState::correct() {
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const auto& nodes = symbolic_->tree.nodes;
   // The forces of what holds components are solved for in the same sweep, which takes little longer.
-  const std::size_t more = holds_.empty() ? 0 : cases.size();
+  const bool grow = grows_[0] || (cases.size() > 1 && grows_[1]);
+  const std::size_t more = grow && !holds_.empty() ? cases.size() : 0;
   if (more > 0) force_holds();
   factor->forward({left(0).data() - more * components(), components(), cases.size() + more});
   corrected_ = true;
