@@ -190,6 +190,32 @@ TEST_CASE("a_sheared_cell_of_bonds_that_break_heats_by_the_work_of_its_cell") {
   CHECK(errors[1] < 0.6 * errors[0]);
 }
 
+TEST_CASE("a_cell_whose_last_bond_broke_has_the_stress_of_its_motion_alone") {
+  PairProperties pair = one_second(NormalLaw::linear_dashpot, 1, 0.5);
+  GrainScene scene = scene_of({ball({0.3, 4}, 0.5, {}), ball({7.3, 4}, 0.5, {})}, {}, pair);  // across the left side
+  GrainBond bond = sprung();
+  bond.i = 0, bond.j = 1;
+  scene.bonds = {bond};
+  scene.strengths = bond_strengths(scene, {.tension = 0.3, .shear = 50});
+  scene.cell = PeriodicCell{.corner = {0, 0}, .width = 8, .height = 8};
+  scene.cell->rate_xx = {.value = 0.05};
+  GrainSimulation simulation(scene, verlet_options(0.001));
+  double largest = 0;
+  while (simulation.breaks().empty() && simulation.step() < 5000) {
+    simulation.advance(1);
+    largest = std::max(largest, std::abs(simulation.cell()->stress.xx));
+  }
+  simulation.advance(100);
+  const CellState cell = *simulation.cell();
+  double flux = 0;
+  for (const Grain& grain : simulation.grains()) flux += grain.inertia.mass * grain.velocity.x * grain.velocity.x;
+  const double by_motion = -flux / (cell.width * cell.height);
+  CAPTURE(simulation.breaks().size(), largest, cell.stress.xx, by_motion);
+  REQUIRE(simulation.breaks().size() == 1);
+  CHECK(largest > 10 * std::abs(by_motion));
+  CHECK(std::abs(cell.stress.xx - by_motion) < 1e-9 * largest);
+}
+
 TEST_CASE("a_cell_of_bonds_that_break_goes_on_with_its_bits_over_threads_blocks_margins_and_wraps") {
   const Stepping stepping = GENERATE(from_range(steppings_of_bonded_cells));
   const double rate = GENERATE(0.0, 2.0);
