@@ -106,7 +106,7 @@ std::set<std::int64_t> overloaded(const Assembly& block, const ContactStrengths&
   return found;
 }
 
-/// Of the lowest mode between the held ends, 1/s.
+/// The angular frequency of the lowest mode between the held ends, 1/s.
 double lowest_frequency(const Assembly& block) {
   const ContactSprings springs(brittle_springs);
   std::vector<Inertia> inertia;

@@ -111,7 +111,8 @@ class CellTest(RunTest):
                 (CELL + servo.replace("stress_yy = -1.0\n", ""), ("keeps no stress",)),
                 (CELL + servo.replace("max_rate = 1.0\n", ""), ("cell.servo.max_rate",)),
                 (CELL + "[measures]\n", ("measures",)),
-                (CELL + '[[probe]]\nname = "middle"\nbodies = [0]\nbox = [0.0, 0.0, 0.1, 0.1]\nquantities = ["stress"]\n',
+                (CELL + '[[probe]]\nname = "middle"\nbodies = [0]\n'
+                 'box = [0.0, 0.0, 0.1, 0.1]\nquantities = ["stress"]\n',
                  ("probe.quantities", "stress in a periodic cell", "history.csv has the stress of the cell")),
                 (x.replace("[cell]\n", "[cell]\nshift = 0.01\n") + FLOOR, ("shift = 0.01 m",)),
                 (CELL + '[[stage]]\nname = "a"\nduration = 1.0\n' + motion, ("cell.motion", "outside of the stages"))):

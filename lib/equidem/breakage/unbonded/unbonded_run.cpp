@@ -19,8 +19,8 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
-// Of the largest force: what may be left of a state. Discs that are pushed along with hardly any force balance to no
-// more than the round-off of the motions over the springs that hold what is loose.
+// The largest residual that a state may keep, over the largest force. Discs that are pushed along with hardly any force
+// balance to no more than the round-off of the motions over the springs that hold what is loose.
 constexpr double balances_to = 1e-9;
 
 }  // namespace
@@ -322,6 +322,8 @@ bool UnbondedRun::move(double t) {
 
 bool UnbondedRun::advance() {
   const std::size_t before = events_.size();
+  std::int64_t steps = 0;
+  const std::int64_t most_steps = 1000 + 20 * std::ssize(laws_);  // a release may go on by ever smaller parts
   while (end_ == PathEnd::none) {
     if (!releasing() && events_.size() > before) return true;
     if (scene_.path.max_events > 0 && std::ssize(events_) >= scene_.path.max_events && !releasing()) {
@@ -337,6 +339,11 @@ bool UnbondedRun::advance() {
     const double stage = stage_end(), t = std::min(stage, next.t);
     if (t == infinite) {
       end(PathEnd::never_breaks, "no contact changes any more at any lambda");
+      break;
+    }
+    if (++steps > most_steps) {
+      end(PathEnd::no_answer,
+          fmt::format("contacts change {} times before lambda = {:g} is left", steps - 1, state_->lambda()));
       break;
     }
     if (!move(t)) break;

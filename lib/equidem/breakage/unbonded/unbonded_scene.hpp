@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What a path with contacts that rub begins with: their laws, their statuses, and what cannot be one.
+/// A path with contacts that rub begins with their laws and statuses; scenes that cannot have one are refused.
 #pragma once
 
 #include <span>

@@ -177,7 +177,7 @@ class UpdatedState {
   }
   /// Right-hand sides whose products with a motion are works and the sums F_i l_j, solved for with L.
   void solve_followed();
-  /// What holds components, times the base, into of_base(), N/m.
+  /// Writes the forces of what holds components, moved by the base, into of_base(), N/m.
   void force_holds();
   /// Prescribed motions, all free components at rest.
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
