@@ -144,7 +144,7 @@ def tests(lab, command):
     area = math.pi * HEAP_DIAMETER**2 / 4
     factor = law["factor"] * area / HEAP_SOLID_FRACTION / math.sqrt(9.81)
     return (f"{HEADINGS[0]}\n    {command}\n\nEach row is read from the histories of a case of `data/cases` by `tools/bench/laboratory/readings.py`; "
-            "an empty cell\nhas no theory. One sample each: with 445 discs, angles of the sand scatter by 4°, those by Taylor's relation by 6° (several samples: below).\n\n"
+            "an empty cell\nhas no theory. One sample each; with its 445 discs the angles of the sand scatter by some degrees (several samples: below).\n\n"
             + table(["test", "read", "expected", "from"], rows)
             + "\n\nDischarge over the opening W, `grains_hopper.toml`, bodies in a second between the 100th and the 900th that leave, standard errors\n"
             f"from four parts of the time; Beverloo's law in two dimensions, C (W - k d)^(3/2), with k = {number(law['closed'] / HEAP_DIAMETER)} and, the "
