@@ -19,9 +19,8 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
-// The largest residual that a state may keep, over the largest force. Discs that are pushed along with hardly any force
-// balance to no more than the round-off of the motions over the springs that hold what is loose.
-constexpr double balances_to = 1e-9;
+// The largest residual that a state may keep, over the largest force.
+constexpr double balances_to = 1e-12;
 
 }  // namespace
 
