@@ -109,9 +109,10 @@ bool UnbondedRun::find_rates() {
     end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
     return false;
   }
-  const std::size_t first = events_.size();
+  const std::size_t first = begun_;  // breaks at this state begin the increment too
   record_changes(answer.status);
   if (events_.size() > first || !checked_) look_for_branches(problem, answer, first);
+  begun_ = events_.size();
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
   return true;
