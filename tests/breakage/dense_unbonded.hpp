@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Contacts that open, close, slip and stick by dense matrices, without any of the library but the description of the
-/// network: rates are found by Lemke's pivots from the network in which every closed contact sticks, whose stiffness is
-/// inverted by its eigenvectors. Lambda itself is controlled.
+/// network: rates are found by Lemke's pivots, or else by trying all supports, from the network in which every closed
+/// contact sticks, whose stiffness is inverted by its eigenvectors. Lambda itself is controlled.
 #pragma once
 
 #include <algorithm>
@@ -54,6 +54,14 @@ class DenseUnbonded {
     }
   }
 
+  /// A state between two events, or at one: the bonds that broke have let go.
+  struct State1 {
+    double way = 0;          ///< of lambda, all legs behind one another; below 0: dead loads are not whole yet
+    std::size_t events = 0;  ///< so far
+    std::vector<ContactForce> forces;  ///< per contact
+  };
+  std::vector<State1> states;
+
   /// \return false where rates are not found
   bool go(std::size_t most) {
     if (path_.dead && !stage(*path_.dead, 1, most, false)) return false;
@@ -78,12 +86,17 @@ class DenseUnbonded {
   /// Everything grows by `whole` times the pattern. \param leg whether lambda goes with it
   bool stage(const RightHandSide& pattern, double whole, std::size_t most, bool leg) {
     double done = 0;
-    const double from = lambda;
+    const double from = lambda, way = leg ? way_ : -1;
     std::size_t seen = events.size();
     for (int still = 0; events.size() < most; ++still) {
       if (events.size() > seen) still = 0, seen = events.size();
       if (still > 30) return false;  // it changes to and fro at one lambda
-      const bool release = releasing();
+      const bool release = letting_go_;
+      if (release && kept() <= 1e-12 * force_) {  // round-off of what bonds had
+        for (Contact1& one : contacts_) one.kept_n = one.kept_t = 0;
+        letting_go_ = false;
+        continue;
+      }
       if (!find_rates(pattern, release ? 0 : whole > 0 ? 1 : -1, release)) return false;
       const double end = release ? 1 : std::abs(whole) - done;
       std::size_t breaks = contacts_.size();
@@ -98,23 +111,30 @@ class DenseUnbonded {
         if (one.state == slips) one.t = -one.sign * mu_ * one.n;
       }
       if (!release) done += t;
-      if (leg) lambda = from + (whole > 0 ? done : -done);
+      if (leg) lambda = from + (whole > 0 ? done : -done), way_ = way + done;
+      if (!release || kept() <= 1e-12 * force_) keep_state(way + done);
       if (breaks < contacts_.size()) {
         events.push_back({lambda, static_cast<std::int64_t>(breaks), mode});
         let_go(breaks);
-      } else if (release && t == 1) {
-        for (Contact1& one : contacts_) one.kept_n = one.kept_t = 0;
-        letting_go_ = false;
       } else if (!release && done >= std::abs(whole)) {
         return true;
       }
     }
     return true;
   }
-  [[nodiscard]] bool releasing() const { return letting_go_; }
+  void keep_state(double way) {
+    State1 state{way, events.size(), {}};
+    for (const Contact1& one : contacts_) state.forces.push_back({one.n, one.t});
+    states.push_back(std::move(state));
+  }
+  /// The largest force that broken bonds have yet to give up.
+  [[nodiscard]] double kept() const {
+    double most = 0;
+    for (const Contact1& one : contacts_) most = std::max({most, std::abs(one.kept_n), std::abs(one.kept_t)});
+    return most;
+  }
   void let_go(std::size_t c) {
     Contact1& one = contacts_[c];
-    letting_go_ = true;
     one.kept_n = one.n, one.kept_t = one.t;
     if (one.n >= 0) {
       one.state = open;
@@ -131,8 +151,7 @@ class DenseUnbonded {
       one.state = stuck;
     }
     one.kept_n -= one.n, one.kept_t -= one.t;
-    letting_go_ = false;
-    for (const Contact1& other : contacts_) letting_go_ = letting_go_ || other.kept_n != 0 || other.kept_t != 0;
+    letting_go_ = kept() > 0;
   }
 
   double next(std::size_t& breaks, BreakMode& mode) const {
@@ -291,7 +310,7 @@ class DenseUnbonded {
       }
     }
     for (double& x : q) x = unit > 0 && std::abs(x) > 1e-10 * unit ? x / unit : 0;
-    if (!lemke(matrix, q, z)) return false;
+    if (!lemke(matrix, q, z) && !complementary_by_supports(matrix, q, z)) return false;
     for (std::size_t a = 0; a < m; ++a) {
       z[a] *= unit / largest;
       for (std::size_t p = 0; p < n; ++p) u[p] += z[a] * by[a][p];
@@ -333,7 +352,8 @@ class DenseUnbonded {
         now = slips;
       }
       change(c, now, sign);
-      closed[c] = now != open;
+      // A contact that touches without a force holds nothing: its status is but a name.
+      closed[c] = now != open && (limit[c] == 1 || std::abs(dn_[c]) > 1e-8 * rate_);
     }
     const std::vector<double> left = modes_of(closed, vectors);
     int loose = assembly_.periodic() ? -2 : 0;
@@ -372,7 +392,7 @@ class DenseUnbonded {
   double mu_;
   std::vector<Contact1> contacts_;
   std::vector<double> dn_, dt_, dg_;  // rates of N, T and kN times the gap
-  double force_ = 0, rate_ = 0;
+  double force_ = 0, rate_ = 0, way_ = 0;
   bool letting_go_ = false;
 };
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Linear complementarity by Lemke's pivots on a full tableau.
+/// Linear complementarity by Lemke's pivots on a full tableau, and by all supports.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace equidem::test {
@@ -66,6 +67,54 @@ inline bool lemke(std::vector<double> m, std::vector<double> q, std::vector<doub
     if (basis[r] >= n && basis[r] < 2 * n) z[basis[r] - n] = t[r * width + width - 1];
   }
   return true;
+}
+
+/// The first of all supports of z that has an answer, where they are few: with friction pivots may end on a ray
+/// although there is one. Numbers up to 1e-8 are round-off of entries of order 1.
+inline bool complementary_by_supports(const std::vector<double>& m, const std::vector<double>& q,
+                                      std::vector<double>& z) {
+  constexpr double none = 1e-8;
+  constexpr std::size_t most = 12;
+  const std::size_t n = q.size();
+  if (n > most) return false;
+  for (std::size_t support = 0; support < (std::size_t{1} << n); ++support) {
+    std::vector<std::size_t> rows;
+    for (std::size_t r = 0; r < n; ++r)
+      if ((support >> r & 1) != 0) rows.push_back(r);
+    const std::size_t k = rows.size(), width = k + 1;
+    std::vector<double> a(k * width);
+    for (std::size_t r = 0; r < k; ++r) {
+      for (std::size_t c = 0; c < k; ++c) a[r * width + c] = m[rows[r] * n + rows[c]];
+      a[r * width + k] = -q[rows[r]];
+    }
+    bool regular = true;
+    for (std::size_t p = 0; p < k && regular; ++p) {
+      std::size_t row = p;
+      for (std::size_t r = p; r < k; ++r)
+        if (std::abs(a[r * width + p]) > std::abs(a[row * width + p])) row = r;
+      regular = std::abs(a[row * width + p]) > none;
+      for (std::size_t c = 0; c < width; ++c) std::swap(a[p * width + c], a[row * width + c]);
+      for (std::size_t r = 0; r < k && regular; ++r) {
+        const double f = r == p ? 0 : a[r * width + p] / a[p * width + p];
+        for (std::size_t c = p; c < width && f != 0; ++c) a[r * width + c] -= f * a[p * width + c];
+      }
+    }
+    if (!regular) continue;
+    z.assign(n, 0.0);
+    double size = 1;
+    for (std::size_t r = 0; r < k; ++r) {
+      z[rows[r]] = a[r * width + k] / a[r * width + r];
+      size = std::max(size, std::abs(z[rows[r]]));
+    }
+    bool answer = true;
+    for (std::size_t r = 0; r < n && answer; ++r) {
+      double w = q[r];
+      for (std::size_t c = 0; c < n; ++c) w += m[r * n + c] * z[c];
+      answer = z[r] >= -none * size && w >= -none * size;
+    }
+    if (answer) return true;
+  }
+  return false;
 }
 
 }  // namespace equidem::test

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
@@ -55,29 +57,75 @@ TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
   CHECK(several > loads / 20);
 }
 
+namespace {
+
+/// The sum of the ways of all components, m, along straight pieces.
+class Way {
+ public:
+  explicit Way(std::vector<double> from) : at_(std::move(from)) {}
+  void go_to(const std::vector<double>& to) {
+    for (std::size_t k = 0; k < to.size(); ++k) length_ += std::abs(to[k] - at_[k]);
+    at_ = to;
+  }
+  [[nodiscard]] double length() const { return length_; }
+
+ private:
+  std::vector<double> at_;
+  double length_ = 0;
+};
+
+Unbonded pressed_lattice(int rows, double friction, std::vector<double> legs) {
+  const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.5});
+  LoadPathOptions options;
+  options.supports = {{"bottom", 0, 0, {}}, {"top", {}, -1e-3, {}}};
+  options.control = LoadControl::motion;
+  options.legs = std::move(legs);
+  return {block, ContactSprings(SpringConstants{1e3, 3e2}), options, friction};
+}
+
+}  // namespace
+
+// No contact carries a force at first, so that every one is at the apex of its law, and the forces are proportional to
+// the way of the plate. Discs between those that carry it are pushed along without a force. On the way back a lattice
+// may fall from one state to another.
+//
+// Forces that do not balance, r F at most of the largest force F, work on the motion: the energy misses by no more than
+// r F times the sum of the ways of all components. Each step rounds works and energies by some units of round-off of
+// the largest of them.
 TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
-  // No contact carries a force at first, so that every one is at the apex of its law, and the forces are proportional
-  // to the way of the plate. Discs between those that carry it are pushed along without a force; nothing makes them
-  // balance better than to round-off over the springs that hold loose discs (1e-9), and the energy of a state closes no
-  // better than its forces balance. On the way back a lattice may fall from one state to another.
+  constexpr double units = 8 * std::numeric_limits<double>::epsilon();
   int whole = 0;
+  double closest = 0;
   for (const int rows : {4, 7}) {
     for (const double friction : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 3.0, 10.0}) {
-      const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.5});
-      LoadPathOptions options;
-      options.supports = {{"bottom", 0, 0, {}}, {"top", {}, -1e-3, {}}};
-      options.control = LoadControl::motion;
-      options.legs = {1, 2, 0};
-      Unbonded pressed(block, ContactSprings(SpringConstants{1e3, 3e2}), options, friction);
-      pressed.all();
+      Unbonded pressed = pressed_lattice(rows, friction, {1, 2, 0});
+      const UnbondedState& state = pressed.run().state();
+      Way way(state.motion().high);
+      bool back = false;
+      double energy = 0;
+      std::int64_t steps = 0;
+      for (bool more = true; more; ++steps) {
+        more = pressed.run().advance();
+        if (!back && pressed.run().lambda() < 2 && !pressed.events().empty() && pressed.events().back().leg == 2) {
+          way.go_to(pressed_lattice(rows, friction, {1, 2}).all().run().state().motion().high);
+          back = true;
+        }
+        way.go_to(state.motion().high);
+        const ContactLedger& l = state.ledger();
+        energy = std::max({energy, std::abs(l.work), std::abs(l.elastic), std::abs(l.friction)});
+        const double missing = std::abs(l.work - l.elastic - l.friction - l.released);
+        const double residual = pressed.run().counters().largest_residual;
+        const double unbalanced = residual * state.largest_force() * way.length();
+        CAPTURE(rows, friction, steps, pressed.run().lambda(), missing, unbalanced, energy, residual);
+        CHECK(residual < 1e-12);
+        CHECK(missing <= unbalanced + units * static_cast<double>(steps + 1) * energy);
+        closest = std::max(closest, unbalanced > 0 ? missing / unbalanced : 0);
+      }
       CAPTURE(rows, friction, pressed.run().why(), pressed.run().lambda());
       const std::vector<LegPoint> points = pressed.run().leg_points();
       REQUIRE(points.size() >= 3);
       CHECK(points[1].load > 0.1);
       CHECK(points[2].load == Approx(2 * points[1].load).epsilon(1e-9));
-      const double residual = pressed.run().counters().largest_residual;
-      CHECK(residual < 1e-9);
-      CHECK(pressed.run().energy_error() < std::max(1e-10, 100 * residual));
       if (pressed.run().end() == PathEnd::legs_done) {
         ++whole;
         CHECK(std::abs(points[3].load) < 1e-9);
@@ -86,6 +134,7 @@ TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
       }
     }
   }
-  CAPTURE(whole);
+  CAPTURE(whole, closest);
   CHECK(whole >= 18);
+  CHECK(closest > 1e-3);  // a bound that is far off would show nothing
 }

@@ -48,7 +48,7 @@ enum class PathEnd {
   carries_nothing,  ///< no contact carries a force that grows with lambda
   load_moves_part,  ///< a load acts on a part that nothing holds, or drives a mechanism
   no_answer,        ///< no states of contacts that rub agree with their rates, or they change without end
-  not_balanced,     ///< forces of contacts that rub no longer balance to 1e-9: hardly anything holds some discs
+  not_balanced,     ///< forces of contacts that rub no longer balance to 1e-12: hardly anything holds some discs
   most_events,      ///< LoadPath::max_events
 };
 

@@ -115,6 +115,14 @@ ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMot
   return motion_of(network, motion, gradient, number).deformation;
 }
 
+PreciseDeformation precise_deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
+                                          const std::optional<Tensor2>& gradient, std::size_t number) {
+  const Contact& contact = network.assembly.contacts[number];
+  const ContactFrame frame = frame_of(network.assembly, number);
+  return evaluate(contact, frame, network.unknowns, motion, affine_part(network.assembly, contact, frame, gradient))
+      .deformation;
+}
+
 ContactForce force_of(const ContactSprings& springs, std::size_t contact, const ContactMotion& motion) {
   return contact_response(springs, contact, motion.deformation, motion.theta_i, motion.theta_j).force;
 }

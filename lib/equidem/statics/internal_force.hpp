@@ -44,6 +44,11 @@ ContactForce force_of(const ContactSprings& springs, std::size_t contact, const 
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
                                   const std::optional<Tensor2>& gradient, std::size_t contact);
 
+/// Likewise, with the digits of extended precision.
+using PreciseDeformation = DeformationOf<long double>;
+PreciseDeformation precise_deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
+                                          const std::optional<Tensor2>& gradient, std::size_t contact);
+
 /// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision: a disc
 /// that has turned far stretches its contacts by small differences of large products.
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,

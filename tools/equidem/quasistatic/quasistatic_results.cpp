@@ -165,7 +165,6 @@ void add_trust(Results& out, const UnbondedRun& run) {
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);
   out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
-  if (counters.largest_residual > 1e-12) out.note(": some discs are pushed along with hardly any force");
   out.line("solver")
       .add("solver", "", "UMFPACK LU, updated")
       .add("factorizations", "", counters.factorizations, "factorization", {Shown::count})

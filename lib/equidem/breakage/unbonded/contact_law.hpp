@@ -74,14 +74,16 @@ struct UnbondedLaw {
     return {};
   }
 
-  /// \param slip p
-  [[nodiscard]] ContactForce force(ContactStatus status, const ContactDeformation& d, double slip) const {
-    const double n = rest.normal + k.kN * d.normal;
+  /// \param slip p; in the precision of the deformation: where discs move far, the force is a small difference of them
+  template <typename Number>
+  [[nodiscard]] ContactForce force(ContactStatus status, const DeformationOf<Number>& d, Number slip) const {
+    const double n = normal_coordinate(d);
+    const auto t = [&] { return static_cast<double>(rest.tangential + k.kT * (d.tangential - slip)); };
     switch (status) {
       case ContactStatus::bonded:
-        return {n, rest.tangential + k.kT * (d.tangential - slip)};
+        return {n, t()};
       case ContactStatus::stuck:
-        return {n, rough() ? rest.tangential + k.kT * (d.tangential - slip) : 0};
+        return {n, rough() ? t() : 0};
       case ContactStatus::slips_forward:
       case ContactStatus::slips_backward:
         return {n, -direction_of(status) * friction * n};
@@ -91,9 +93,16 @@ struct UnbondedLaw {
     return {};
   }
 
+  /// N_r + kN dn
+  template <typename Number>
+  [[nodiscard]] double normal_coordinate(const DeformationOf<Number>& d) const {
+    return static_cast<double>(rest.normal + k.kN * d.normal);
+  }
+
   /// The plastic slip with which a stuck contact has the tangential force T.
-  [[nodiscard]] double slip_at(const ContactDeformation& d, double tangential) const {
-    return k.kT != 0 ? d.tangential - (tangential - rest.tangential) / k.kT : 0;
+  template <typename Number>
+  [[nodiscard]] Number slip_at(const DeformationOf<Number>& d, double tangential) const {
+    return k.kT != 0 ? d.tangential - (static_cast<Number>(tangential) - rest.tangential) / k.kT : 0;
   }
 };
 

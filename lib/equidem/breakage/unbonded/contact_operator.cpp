@@ -103,16 +103,6 @@ void ContactOperator::add_internal(std::size_t contact, const ContactForce& forc
   }
 }
 
-void ContactOperator::add_size(std::size_t contact, const ContactForce& force, std::span<double> sizes) const {
-  const Rows& rows = rows_[contact];
-  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  const double size = std::abs(force.normal) + std::abs(force.tangential);
-  for (std::size_t k = 0; k < b; ++k) {
-    sizes[rows.i + k] += size;
-    sizes[rows.j + k] += size;
-  }
-}
-
 CompressedColumns ContactOperator::matrix(std::span<const ContactTangent> tangents, double ground) const {
   const auto b = static_cast<std::size_t>(unknowns_.per_disc);
   CompressedColumns k = pattern_;

@@ -32,8 +32,6 @@ class ContactOperator {
   [[nodiscard]] std::vector<ContactDeformation> affine(const std::optional<Tensor2>& gradient) const;
   /// internal += the internal force of a contact force: the negative of what it exerts on the discs.
   void add_internal(std::size_t contact, const ContactForce& force, std::span<double> internal) const;
-  /// sizes += the magnitude of a contact force, at all components of its discs.
-  void add_size(std::size_t contact, const ContactForce& force, std::span<double> sizes) const;
 
   /// sum G^T A G over contacts with the deformations G u and tangents A, and springs of `ground` Pa that hold every
   /// component, over the components that are not held.

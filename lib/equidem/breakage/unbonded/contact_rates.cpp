@@ -28,7 +28,6 @@ class RateResidual {
     const auto& held = contacts_.unknowns().held;
     const std::vector<double>& load = driving_.pattern->force;
     std::vector<double> internal(contacts_.components(), 0.0);
-    sizes_.assign(contacts_.components(), 0.0);
     rates.force_scale = 0;
     double stiffest = 0, fastest = 0;
     for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
@@ -46,7 +45,6 @@ class RateResidual {
       if (f.normal == 0 && f.tangential == 0) continue;
       rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
       contacts_.add_internal(c, f, internal);
-      contacts_.add_size(c, f, sizes_);
     }
     double sum = 0;
     for (std::size_t k = 0; k < held.size(); ++k) {
@@ -55,7 +53,6 @@ class RateResidual {
       const double from_load = load.empty() ? 0 : rates.lambda * load[k];
       const double beside = driving_.beside.empty() ? 0 : driving_.beside[k];
       rates.force_scale = std::max({rates.force_scale, std::abs(from_load), std::abs(beside)});
-      sizes_[k] += std::abs(from_load) + std::abs(beside);
       residual[k] = from_load + beside - internal[k];
       sum = std::max(sum, std::abs(residual[k]));
     }
@@ -65,20 +62,11 @@ class RateResidual {
     if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;
   }
-  /// Motions that nothing resists would follow the round-off of forces far.
-  void leave_loose(const Rates& rates, std::vector<double>& residual) const {
-    constexpr double noise = 1e-15, nothing_acts = 1e-13;
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-      if (sizes_[k] <= nothing_acts * rates.force_scale || std::abs(residual[k]) <= noise * rates.force_scale)
-        residual[k] = 0;
-    }
-  }
 
  private:
   const ContactOperator& contacts_;
   std::span<const ContactTangent> tangents_;
   const Driving& driving_;
-  mutable std::vector<double> sizes_;  // of what acts on the disc of each component, as last evaluated
 };
 
 constexpr double balanced = 1e-11, refined = 1e-14;
@@ -101,7 +89,6 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
     if (k > 0 && left <= refined) break;
-    residual_of.leave_loose(rates, residual);
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
     rates.lambda += lambda;

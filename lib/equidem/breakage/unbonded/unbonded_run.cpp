@@ -19,9 +19,8 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing resists
-// The largest residual that a state may keep, over the largest force. Discs that are pushed along with hardly any force
-// balance to no more than the round-off of the motions over the springs that hold what is loose.
-constexpr double balances_to = 1e-9;
+// The largest residual that a state may keep, over the largest force.
+constexpr double balances_to = 1e-12;
 
 }  // namespace
 
@@ -110,9 +109,10 @@ bool UnbondedRun::find_rates() {
     end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
     return false;
   }
-  const std::size_t first = events_.size();
+  const std::size_t first = begun_;  // breaks at this state begin the increment too
   record_changes(answer.status);
   if (events_.size() > first || !checked_) look_for_branches(problem, answer, first);
+  begun_ = events_.size();
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
   return true;

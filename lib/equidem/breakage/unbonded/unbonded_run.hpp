@@ -99,6 +99,7 @@ class UnbondedRun : public EventPath {
   std::vector<LegPoint> points_;
   std::vector<std::int32_t> idle_;
   std::vector<std::size_t> breaking_;  // events whose energy behind them is not known yet
+  std::size_t begun_ = 0;              // events whose increment has begun
   std::vector<double> beside_;         // per component, of a release
   std::optional<Rates> rates_;
   bool dead_done_ = false, checked_ = false;

@@ -25,10 +25,10 @@ ContactForce scaled(const ContactForce& f, double by) {
 }
 
 /// Mean force times deformation, of a path along which both are linear.
-double work_of(const ContactForce& from, const ContactForce& to, const ContactDeformation& d0,
-               const ContactDeformation& d1) {
-  return 0.5 * ((from.normal + to.normal) * (d1.normal - d0.normal) +
-                (from.tangential + to.tangential) * (d1.tangential - d0.tangential));
+double work_of(const ContactForce& from, const ContactForce& to, const PreciseDeformation& d0,
+               const PreciseDeformation& d1) {
+  return 0.5 * ((from.normal + to.normal) * static_cast<double>(d1.normal - d0.normal) +
+                (from.tangential + to.tangential) * static_cast<double>(d1.tangential - d0.tangential));
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& spr
       graph_(assembly),
       affine_(contacts.affine(path.pattern.gradient)),
       status_(std::move(status)),
-      slip_(laws.size(), 0.0),
+      slip_(laws.size(), 0),
       motion_(contacts.components()),
       rest_load_(contacts.components(), 0.0),
       kept_(laws.size()),
@@ -71,7 +71,7 @@ void UnbondedState::evaluate() {
   if (path_.pattern.gradient) gradient = lambda_ * *path_.pattern.gradient;
   parallel_ranges(laws_.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      deformation_[c] = deformation_of(network, motion_, gradient, c);
+      deformation_[c] = precise_deformation_of(network, motion_, gradient, c);
       forces_[c] = laws_[c].force(status_[c], deformation_[c], slip_[c]) + scaled(kept_[c], share_);
     }
   });
@@ -99,17 +99,6 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
   residual_ = force_scale_ > no_force * round_off_force_ ? largest / force_scale_ : 0;
 }
 
-/// Discs on which nothing acts but round-off would follow it far: no contact resists them.
-void UnbondedState::leave_loose(std::vector<double>& residual) const {
-  constexpr double none = 1e-15, nothing_acts = 1e-13;  // of the largest force
-  std::vector<double> sizes(residual.size());
-  for (std::size_t k = 0; k < sizes.size(); ++k) sizes[k] = std::abs(outside(k));
-  for (std::size_t c = 0; c < forces_.size(); ++c) contacts_.add_size(c, forces_[c], sizes);
-  const double negligible = nothing_acts * force_scale_ + 4 * round_off_force();
-  for (std::size_t k = 0; k < residual.size(); ++k)
-    if (sizes[k] <= negligible || std::abs(residual[k]) <= none * force_scale_) residual[k] = 0;
-}
-
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   constexpr double good = 4e-15;
   constexpr int most = 6;
@@ -122,10 +111,11 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   };
   evaluate();
   measure_residual(residual);
+  // Contacts that slip without a force may have changed sides behind the rates.
+  if (residual_ > good) solver.set(tangents_of(laws_, status_));
   for (int k = 0; k < most && residual_ > good; ++k) {
     const double before = residual_;
     const auto kept = std::pair(motion_, lambda_);
-    leave_loose(residual);
     solver.solve(residual);
     if (by_motion) {
       if (along.empty()) {
@@ -152,9 +142,10 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
 }
 
 void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion, TangentSolver& solver) {
-  const std::vector<ContactDeformation> deformation = deformation_;
+  const std::vector<PreciseDeformation> deformation = deformation_;
   const std::vector<ContactForce> forces = forces_;
-  const std::vector<double> slip = slip_, internal = internal_, motion = motion_.high;
+  const std::vector<long double> slip = slip_;
+  const std::vector<double> internal = internal_, motion = motion_.high;
   const double lambda = lambda_, was_kept = kept_share_;
   std::vector<double> loads(contacts_.components()), step(rates.motion);
   for (std::size_t k = 0; k < loads.size(); ++k) loads[k] = outside(k);
@@ -171,9 +162,11 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
       slip_[c] = laws_[c].slip_at(deformation_[c], forces_[c].tangential - share_ * kept_[c].tangential);
       const double before = forces[c].tangential - was_kept * kept_[c].tangential;
       const double now = forces_[c].tangential - share_ * kept_[c].tangential;
-      ledger_.friction += 0.5 * (before + now) * (slip_[c] - slip[c]);
+      ledger_.friction += 0.5 * (before + now) * static_cast<double>(slip_[c] - slip[c]);
     }
-    if (!affine_.empty()) ledger_.work += work_of(forces[c], forces_[c], {}, affine_[c]) * (lambda_ - lambda);
+    if (!affine_.empty())
+      ledger_.work +=
+          work_of(forces[c], forces_[c], {}, {affine_[c].normal, affine_[c].tangential}) * (lambda_ - lambda);
   }
   for (const std::size_t c : releasing_) {
     const double by = work_of(scaled(kept_[c], was_kept), scaled(kept_[c], share_), deformation[c], deformation_[c]);
@@ -205,7 +198,7 @@ double UnbondedState::farthest() const {
 void UnbondedState::set_status(std::size_t c, ContactStatus status) {
   const ContactStatus before = std::exchange(status_[c], status);
   if (before == status) return;
-  const ContactDeformation& d = deformation_[c];
+  const PreciseDeformation& d = deformation_[c];
   // A contact that closes has no tangential force; where it lets go of a limit it keeps that of the limit.
   if (before == ContactStatus::open) slip_[c] = laws_[c].slip_at(d, 0);
 }
@@ -241,7 +234,7 @@ std::vector<double> UnbondedState::unreleased() const {
 }
 
 double UnbondedState::normal_coordinate(std::size_t c) const {
-  return laws_[c].rest.normal + laws_[c].k.kN * deformation_[c].normal;
+  return laws_[c].normal_coordinate(deformation_[c]);
 }
 
 double UnbondedState::elastic_energy() const {

@@ -70,8 +70,11 @@ class UnbondedState {
   [[nodiscard]] double mean_motion() const;  ///< LoadPath::motion
   [[nodiscard]] Tensor2 stress() const;      ///< Pa; 0 where the area is not known
   [[nodiscard]] const ContactLedger& ledger() const { return ledger_; }
-  /// The largest unbalanced force over the largest contact force or load.
+  /// The largest unbalanced force over the largest contact force or load so far; 0 as long as none of these is above
+  /// 1e-9 of the largest motion times the stiffest spring: what acts is round-off.
   [[nodiscard]] double relative_residual() const { return residual_; }
+  /// N/m, of contacts and loads so far.
+  [[nodiscard]] double largest_force() const { return force_scale_; }
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
   /// N/m: by as much, over kN, open contacts of discs that nothing else holds may overlap at the place where they
@@ -81,7 +84,6 @@ class UnbondedState {
  private:
   void evaluate();
   void measure_residual(std::vector<double>& residual);
-  void leave_loose(std::vector<double>& residual) const;
   void correct(bool by_motion, TangentSolver& solver);
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;
@@ -99,7 +101,8 @@ class UnbondedState {
   ContactGraph graph_;
   std::vector<ContactDeformation> affine_;
   std::vector<ContactStatus> status_;
-  std::vector<double> slip_;  // m, plastic, per contact
+  // Discs that nothing resists move far, and forces are small differences of deformation and slip.
+  std::vector<long double> slip_;  // m, plastic, per contact
   PreciseMotion motion_;
   double lambda_ = 0, dead_ = 0;
   std::vector<double> rest_load_;  // per component: what balances the forces at rest
@@ -107,7 +110,7 @@ class UnbondedState {
   std::vector<ContactForce> kept_;     // of broken bonds, times share_
   double share_ = 0, kept_share_ = 0;  // as it is, and before the last move
   std::vector<double> released_by_;    // N, per contact
-  std::vector<ContactDeformation> deformation_;
+  std::vector<PreciseDeformation> deformation_;
   std::vector<ContactForce> forces_;
   std::vector<double> internal_;
   ContactLedger ledger_;

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closure of energy that a path tells is not 0 where forces are wrong, and says by how much: to the round-off that
+// it has with the right forces, 1e-13.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/random.hpp"
+
+#include "breakage/scenes.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+/// A system whose forces are those of another one, but for an error that is put in.
+class WrongForces final : public BreakableSystem {
+ public:
+  explicit WrongForces(std::unique_ptr<BreakableSystem> right) : right_(std::move(right)) {}
+
+  /// From now on the forces of this contact are told times `by`.
+  void scale(std::size_t contact, double by) {
+    contact_ = contact;
+    by_ = by;
+  }
+  /// The force of the contact that is removed next is told times `by` where energies follow from it.
+  void scale_next_opened(double by) { next_opened_by_ = by; }
+  /// Twice the energy, over lambda², that the last error of scale_next_opened() put in, N.
+  [[nodiscard]] double put_in() const { return put_in_; }
+  [[nodiscard]] const BreakableSystem& right() const { return *right_; }
+
+  std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
+    std::vector<std::int32_t> left = right_->remove(contacts);
+    opened_.reset();
+    if (right_->opened() != nullptr) opened_ = *right_->opened();
+    if (opened_ && next_opened_by_ != 1) {
+      put_in_ = (next_opened_by_ - 1) * work_of(opened_->force[0], opened_->opening[0]);
+      for (ContactForce& f : opened_->force) f = {next_opened_by_ * f.normal, next_opened_by_ * f.tangential};
+      next_opened_by_ = 1;
+    }
+    return left;
+  }
+  std::optional<NextBreak> next_break(const ContactStrengths& strengths, const LoadFactorSearch& search) override {
+    return right_->next_break(strengths, search);
+  }
+  [[nodiscard]] const OpenedContact* opened() const override { return opened_ ? &*opened_ : nullptr; }
+  [[nodiscard]] const EquilibriumSums* sums() const override { return right_->sums(); }
+  [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
+    const auto forces = right_->forces(k);
+    told_.assign(forces.begin(), forces.end());
+    told_[contact_] = {by_ * told_[contact_].normal, by_ * told_[contact_].tangential};
+    return told_;
+  }
+  [[nodiscard]] std::span<const double> motion(std::size_t k) const override { return right_->motion(k); }
+  [[nodiscard]] std::span<const double> reactions(std::size_t k) const override { return right_->reactions(k); }
+  [[nodiscard]] bool carries(std::size_t k) const override { return right_->carries(k); }
+  [[nodiscard]] std::string why_not() const override { return right_->why_not(); }
+  [[nodiscard]] std::span<const std::uint8_t> left() const override { return right_->left(); }
+  [[nodiscard]] double relative_residual() const override { return right_->relative_residual(); }
+  [[nodiscard]] std::int64_t unstable_modes() const override { return right_->unstable_modes(); }
+  [[nodiscard]] BreakableCounters counters() const override { return right_->counters(); }
+  [[nodiscard]] std::string solver_name() const override { return right_->solver_name(); }
+
+ private:
+  std::unique_ptr<BreakableSystem> right_;
+  std::size_t contact_ = 0;
+  double by_ = 1, next_opened_by_ = 1, put_in_ = 0;
+  std::optional<OpenedContact> opened_;
+  mutable std::vector<ContactForce> told_;
+};
+
+/// A plate of random springs and strengths, pulled at its top.
+class PulledPlate : public OwnedScene {
+ public:
+  explicit PulledPlate(MakeSystem make)
+      : PulledPlate(delaunay_assembly({.discs = 60,
+                                       .points = PointProcess::perturbed_hexagonal,
+                                       .disorder = 0.25,
+                                       .seed = 3,
+                                       .radii = {.smallest = 0.5, .largest = 0.5}}),
+                    make) {}
+
+  WrongForces& system() { return *system_; }
+  BreakageRun& run() { return *run_; }
+  [[nodiscard]] std::size_t contacts() const { return assembly().contacts.size(); }
+
+ private:
+  PulledPlate(const Assembly& assembly, MakeSystem make)
+      : OwnedScene(assembly, springs_of(assembly), strengths_of(assembly), options(), Rotation::from_scene) {
+    system_ = std::make_unique<WrongForces>(make(breakable_network(scene(), effects(), supports())));
+    run_ = std::make_unique<BreakageRun>(scene(), *system_);
+  }
+  static ContactSprings springs_of(const Assembly& assembly) {
+    Random random(5);
+    std::vector<SpringConstants> springs;
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c)
+      springs.push_back({random.uniform(0.5, 2), random.uniform(0.2, 0.8)});
+    return ContactSprings(std::move(springs));
+  }
+  static ContactStrengths strengths_of(const Assembly& assembly) {
+    Random random(7);
+    ContactStrengths strengths;
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+      strengths.tension.push_back(random.uniform(0.2, 1.5));
+      strengths.shear.push_back(random.uniform(0.2, 1.5));
+    }
+    return strengths;
+  }
+  static LoadPathOptions options() {
+    LoadPathOptions options;
+    options.supports = {{"bottom", 0, 0, {}}, {"top", 0, 1, {}}};
+    return options;
+  }
+
+  std::unique_ptr<WrongForces> system_;
+  std::unique_ptr<BreakageRun> run_;
+};
+
+/// Work until the contact of this event let go, N: that done meanwhile is part of what the event released.
+double work_before(const BreakEvent& event) {
+  return event.work - (event.energy_released - event.energy_before + event.energy_after);
+}
+
+double larger_of_work_and_energy(const BreakEvent& event) {
+  return std::max(std::abs(work_before(event)), std::abs(event.energy_before));
+}
+
+constexpr std::size_t events = 12;
+
+/// A contact that does not break and carries a force throughout.
+std::size_t lasting_contact() {
+  PulledPlate plate(make_breakable_system);
+  for (std::size_t k = 0; k < events; ++k) REQUIRE(plate.run().advance());
+  const auto forces = plate.system().right().forces(0);
+  std::size_t most = 0;
+  for (std::size_t c = 0; c < plate.contacts(); ++c)
+    if (std::abs(forces[c].normal) > std::abs(forces[most].normal)) most = c;
+  return most;
+}
+
+}  // namespace
+
+// Where the force of a contact is told s times as large as it is, the energy of its spring is s² times as large. The
+// energy by works does not know of it.
+TEST_CASE("a_wrong_force_of_one_contact_shows_in_the_energy_of_springs") {
+  const std::size_t contact = lasting_contact();
+  for (const double wrong : {0.0, 1e-8, 1e-4, 0.1}) {
+    PulledPlate plate(make_breakable_system);
+    plate.system().scale(contact, 1 + wrong);
+    double expected = 0;
+    for (std::size_t k = 0; k < events; ++k) {
+      const ContactForce f = plate.system().right().forces(0)[contact];
+      REQUIRE(plate.run().advance());
+      const bool by_works = plate.system().opened() != nullptr || plate.system().sums() != nullptr;
+      REQUIRE(by_works);
+      if (k != 0 && k != 1 && k != 3 && k != 7) continue;
+      const BreakEvent& event = plate.run().events().back();
+      const double energy = event.lambda * event.lambda * linear_spring_energy_of(plate.springs()[contact], f);
+      expected = std::max(expected, (2 + wrong) * wrong * energy / larger_of_work_and_energy(event));
+    }
+    const double told = plate.run().energy_error();
+    CAPTURE(contact, wrong, expected, told);
+    if (wrong == 0) {
+      CHECK(told < 1e-13);
+    } else {
+      CHECK(told == Approx(expected).epsilon(1e-9).margin(1e-13));
+    }
+  }
+}
+
+// The force that a contact had as it let go changes the energy by works by half its work on the opening. All terms of
+// the closure by works change alike, so that the springs alone tell it.
+TEST_CASE("a_wrong_force_of_a_contact_that_opened_shows_beside_the_energy_of_springs") {
+  for (const double wrong : {0.0, 1e-8, 1e-4, 0.1}) {
+    PulledPlate plate(make_breakable_system);
+    double expected = 0;
+    for (std::size_t k = 0; k < events; ++k) {
+      if (k == 4) plate.system().scale_next_opened(1 + wrong);
+      REQUIRE(plate.run().advance());
+      if (k == 4) REQUIRE(plate.system().opened() != nullptr);
+      if (k != 7) continue;
+      const BreakEvent& event = plate.run().events().back();
+      expected =
+          0.5 * event.lambda * event.lambda * std::abs(plate.system().put_in()) / larger_of_work_and_energy(event);
+    }
+    const BreakageRun& run = plate.run();
+    double crack = 0;
+    for (const BreakEvent& event : run.events()) crack += event.energy_released;
+    const double by_works = std::abs(run.events().back().work - run.elastic_energy() - crack);
+    const double told = run.energy_error();
+    CAPTURE(wrong, expected, told, by_works);
+    CHECK(by_works < 1e-13 * run.events().back().work);
+    if (wrong == 0) {
+      CHECK(told < 1e-13);
+    } else {
+      CHECK(told == Approx(expected).epsilon(1e-9).margin(1e-13));
+    }
+  }
+}
+
+// A network that is factorized anew has its energy by springs, and works by motions: they part on the way from one
+// event to the next.
+TEST_CASE("a_wrong_force_shows_in_the_works_of_a_network_that_is_factorized_anew") {
+  const std::size_t contact = lasting_contact();
+  for (const double wrong : {0.0, 1e-8, 1e-4, 0.1}) {
+    PulledPlate plate(make_refactorized_system);
+    plate.system().scale(contact, 1 + wrong);
+    double apart = 0, from = 0;
+    for (std::size_t k = 0; k < events; ++k) {
+      const ContactForce f = plate.system().right().forces(0)[contact];
+      REQUIRE(plate.run().advance());
+      const double to = plate.run().lambda();
+      if (k > 0)
+        apart += (2 + wrong) * wrong * (to * to - from * from) * linear_spring_energy_of(plate.springs()[contact], f);
+      from = to;
+    }
+    const BreakageRun& run = plate.run();
+    const double told = run.energy_error();
+    const double largest = std::max({run.events().back().work, run.elastic_energy(), run.released()});
+    CAPTURE(contact, wrong, apart, largest, told);
+    if (wrong == 0) {
+      CHECK(told < 1e-13);
+    } else {
+      CHECK(told == Approx(std::abs(apart) / largest).epsilon(1e-9).margin(1e-13));
+    }
+  }
+}
