@@ -343,6 +343,15 @@ TEST_CASE("what_comes_loose_is_held_and_named_and_a_load_on_it_is_not_carried") 
   }
   CHECK(held.size() == 3);
   CHECK(reacts == loaded);
+  bool told = false;
+  for (const HeldMechanism& m : held) {
+    const std::vector<DiscMotion> motion = state.driven_mechanism(m.component);
+    for (std::size_t d = 0; d < motion.size(); ++d) {
+      if (piece_of(d) != 1) CHECK((norm(motion[d].u) < 1e-9 && std::abs(motion[d].theta) < 1e-9));
+    }
+    told |= !motion.empty();
+  }
+  CHECK(told == loaded);
   if (!loaded) CHECK(force_difference(state.forces(0), anew(scene, state.springs())[0]) < 1e-11);
 }
 

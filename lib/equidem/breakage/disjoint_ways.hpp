@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -19,7 +18,13 @@ class DisjointWays {
   /// All must outlive the object. \param broken per contact, `left` per disc, 1: no way goes there
   DisjointWays(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
                const std::vector<std::uint8_t>& broken, const std::vector<std::uint8_t>& left)
-      : assembly_(assembly), graph_(graph), springs_(springs), broken_(broken), left_(left) {}
+      : assembly_(assembly),
+        graph_(graph),
+        springs_(springs),
+        broken_(broken),
+        left_(left),
+        reached_(2 * assembly.size(), none),
+        place_(assembly.size(), none) {}
 
   /// True where without this contact no disc carries nothing any more, and no part hangs by one contact or disc, that
   /// did not before: the other contacts of its discs can carry forces, and two ways that share nothing join them, so
@@ -33,15 +38,24 @@ class DisjointWays {
   /// Whether the contacts that a disc has left admit forces in balance: more than two do, and two do where both resist
   /// slip at a point on the line of centres (statics/load_bearing.cpp).
   [[nodiscard]] bool carries(std::int32_t disc) const;
-  /// A short way between the ends of a contact over contacts and discs that no earlier way takes; in a periodic cell to
-  /// the image of j that it joins to i.
+  static constexpr std::int32_t none = -1;
+  /// A disc as a search reaches it.
+  struct Step {
+    std::int32_t disc, before, contact;  ///< step before; contact by which it was reached
+    std::int32_t shift_x, shift_y;       ///< of its image, periods
+    bool backwards;                      ///< along the first way, towards its begin
+  };
+  /// The first way between the ends of a contact, which is kept, or whether there is a second one; in a periodic cell
+  /// to the image of j that the contact joins to i.
   bool finds_way(const Contact& gone);
+  void keep(const Step& last);
 
   const Assembly& assembly_;
   const ContactGraph& graph_;
   const ContactSprings& springs_;
   const std::vector<std::uint8_t>&broken_, &left_;
-  std::vector<std::pair<std::int32_t, std::int32_t>> way_;  // discs with the contacts by which they were reached
+  std::vector<Step> steps_, way_;              // of a search; the first way from i to j
+  std::vector<std::int32_t> reached_, place_;  // per disc: steps, forwards and backwards; index in way_
 };
 
 }  // namespace equidem

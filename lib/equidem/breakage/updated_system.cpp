@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "equidem/breakage/discs_without_force.hpp"
 #include "equidem/breakage/disjoint_ways.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
@@ -18,6 +19,7 @@
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
@@ -65,6 +67,7 @@ class UpdatedSystem final : public SolvedStates {
 
   /// One after another, as where a computation is resumed.
   std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
+    if (!alone_ && !states_[0].carried) solve_alone();
     if (alone_) {
       const std::vector<std::int32_t> loosened = alone_->remove(contacts);
       copy_alone();
@@ -87,6 +90,7 @@ class UpdatedSystem final : public SolvedStates {
 
   [[nodiscard]] std::optional<NextBreak> next_break(const ContactStrengths& strengths,
                                                     const LoadFactorSearch& search) override {
+    if (!alone_ && !states_[0].carried) solve_alone();
     if (alone_) return alone_->next_break(strengths, search);
     if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
     CriticalContact found = sought(search);
@@ -96,10 +100,13 @@ class UpdatedSystem final : public SolvedStates {
       found = sought(search);
     }
     static_cast<void>(judge_residual());
+    if (!states_[0].carried) return {};
     return alone_ ? alone_->next_break(strengths, search) : next_break_of(found, search);
   }
   [[nodiscard]] const OpenedContact* opened() const override { return opened_; }
-  [[nodiscard]] const EquilibriumSums* sums() const override { return alone_ ? nullptr : equilibrium_.sums(); }
+  [[nodiscard]] const EquilibriumSums* sums() const override {
+    return alone_ || !states_[0].carried ? nullptr : equilibrium_.sums();
+  }
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
     if (alone_) return alone_->forces(k);
@@ -140,7 +147,7 @@ class UpdatedSystem final : public SolvedStates {
       loose = true;
       judge(mechanism);
     }
-    if (driven_) return solve_alone();
+    if (driven_ >= 0) return give_up(loose);
     std::vector<std::int32_t> gone;
     if (loose) gone = leave();
     opened_ = equilibrium_.opened();
@@ -214,10 +221,22 @@ class UpdatedSystem final : public SolvedStates {
   /// Refinement with a new factor may not serve where hardly anything is left, and round-off of many changes may look
   /// like a mechanism that a load drives. \return discs that leave the network
   std::vector<std::int32_t> judge_residual() {
-    if (driven_ || !(equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual))
-      return solve_alone();
+    if (driven_ >= 0 || !(equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual))
+      return give_up(false);
     measured(equilibrium_.estimated_residual());
     return {};
+  }
+  /// Where a mechanism is driven for certain, nothing is left to solve for.
+  /// \param loose discs may have come loose
+  std::vector<std::int32_t> give_up(bool loose) {
+    const std::vector<DiscMotion> motion = equilibrium_.driven_mechanism(driven_);
+    if (motion.empty()) return solve_alone();
+    opened_ = nullptr;
+    taken_ = false;
+    for (State& state : states_) state.carried = false;
+    why_not_ = "a load drives " + describe_motion(network_.assembly, motion);
+    measured(0);
+    return loose ? leave() : std::vector<std::int32_t>{};
   }
   /// From here on every network is solved alone, with the refusals of its solver.
   std::vector<std::int32_t> solve_alone() {
@@ -244,7 +263,8 @@ class UpdatedSystem final : public SolvedStates {
 
   /// A support that a mechanism was given takes no force unless a load works on the mechanism.
   void judge(const HeldMechanism& mechanism) {
-    driven_ = driven_ || std::ranges::any_of(mechanism.driven, [](std::uint8_t driven) { return driven != 0; });
+    if (std::ranges::any_of(mechanism.driven, [](std::uint8_t driven) { return driven != 0; }))
+      driven_ = mechanism.component;
   }
 
   /// The elastic energy under each right-hand side.
@@ -279,26 +299,7 @@ class UpdatedSystem final : public SolvedStates {
 
   /// The network without discs that can carry no force any more.
   std::vector<std::int32_t> leave() {
-    const Assembly& whole = network_.assembly;
-    Assembly rest;
-    rest.centres = whole.centres;
-    rest.radii = whole.radii;
-    rest.period = whole.period;
-    rest.sections = whole.sections;
-    std::vector<SpringConstants> springs;
-    for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
-      if (broken_[c] != 0) continue;
-      rest.contacts.push_back(whole.contacts[c]);
-      if (!whole.contact_arms.empty()) rest.contact_arms.push_back(whole.contact_arms[c]);
-      springs.push_back(network_.springs[c]);
-    }
-    const LoadBearingNetwork found =
-        load_bearing_network(rest, ContactSprings(std::move(springs)), network_.effects, held_);
-    if (!found.part && found.removed() == 0) return {};
-    std::vector<std::uint8_t> left(whole.size(), 1);
-    if (found.part) {
-      for (const std::int32_t disc : found.part->discs) left[static_cast<std::size_t>(disc)] = 0;
-    }
+    std::vector<std::uint8_t> left = discs_without_force(network_, broken_, held_);
     std::vector<std::int32_t> gone;
     for (std::size_t d = 0; d < left.size(); ++d) {
       if (left[d] != 0 && left_[d] == 0) gone.push_back(static_cast<std::int32_t>(d));
@@ -356,8 +357,8 @@ class UpdatedSystem final : public SolvedStates {
   mutable bool taken_ = false;                // whether states_ are those of the network as it is
   std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
   const OpenedContact* opened_ = nullptr;
-  bool found_late_ = false;  // mechanisms by the last search
-  bool driven_ = false;      // a load seems to work on a mechanism
+  bool found_late_ = false;   // mechanisms by the last search
+  std::int64_t driven_ = -1;  // component held in place of a mechanism on which a load seems to work
   struct Energies {
     double now = 0, first = 0;
     double of_driving = 0;  // energy_of_driving

@@ -40,21 +40,34 @@ EQUIDEM_INLINE void store(Real* to, const Vector<Real>& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// totals[j] = sum of the lanes of v[j].
+/// Of N vectors the sums of their lanes.
 template <typename Real, std::size_t N>
-EQUIDEM_INLINE void add_lanes(const Vector<Real> (&v)[N], Real* totals) {
-  if constexpr (std::is_same_v<Real, double> && N == 4) {
-    const auto low = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
-    const auto high = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
-    store<double>(totals,
-                  __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7));
-  } else {
-    for (std::size_t j = 0; j < N; ++j) {
-      totals[j] = 0;
-      for (std::size_t e = 0; e < width<Real>; ++e) totals[j] += v[j][e];
+struct LaneSums {
+  static constexpr bool transposed = std::is_same_v<Real, double>;
+  Vector<Real> all;  // where transposed
+  Real each[N];
+
+  EQUIDEM_INLINE explicit LaneSums(const Vector<Real> (&given)[N]) {
+    if constexpr (transposed) {
+      Vector<Real> v[4] = {};
+      for (std::size_t j = 0; j < N; ++j) v[j] = given[j];
+      const auto low =
+          __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
+      const auto high =
+          __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
+      all = __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
+    } else {
+      for (std::size_t j = 0; j < N; ++j) {
+        each[j] = 0;
+        for (std::size_t e = 0; e < width<Real>; ++e) each[j] += given[j][e];
+      }
     }
   }
-}
+  EQUIDEM_INLINE Real operator[](std::size_t j) const {
+    if constexpr (transposed) return all[j];
+    return each[j];
+  }
+};
 
 /// The last `count` numbers of a vector, < width; 0 before them, whatever stands there.
 template <typename Real>
@@ -106,15 +119,21 @@ EQUIDEM_INLINE void eliminate(const Panel<Real>& panel, std::size_t p, Real* w) 
   }
 }
 
-/// Pivots [p, p + N) of L^T x = y.
+/// Pivots [p, p + N) of L^T x = y. \param before the solutions of the next `width` rows where they have just been
+/// found: the sums over other rows do not wait for them; null: they are read
 template <typename Real, std::size_t N, std::size_t C>
-EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w) {
+EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w, const Vector<Real>* before,
+                               Vector<Real>* found) {
   const std::size_t ld = panel.rows;
   const Real* a = panel.values + p * ld;
-  Real inverse[N];  // of pivots: divisions do not wait for each other
-  for (std::size_t j = 0; j < N; ++j) inverse[j] = 1 / a[j * ld + p + j];
+  Real inverse[N], triangle[N][N];  // 1/l_jj and l_ij/l_jj: neither they nor divisions wait for solutions
+  for (std::size_t j = 0; j < N; ++j) {
+    inverse[j] = 1 / a[j * ld + p + j];
+    for (std::size_t i = j + 1; i < N; ++i) triangle[j][i] = a[j * ld + p + i] * inverse[j];
+  }
   Vector<Real> sums[C][N] = {};
-  std::size_t r = p + N;
+  const std::size_t first = p + N;
+  std::size_t r = before != nullptr ? first + width<Real> : first;
   for (; r + width<Real> <= ld; r += width<Real>) {
     Vector<Real> l[N];
     for (std::size_t j = 0; j < N; ++j) {
@@ -133,15 +152,29 @@ EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w)
     }
     r = ld;
   }
+  if (before != nullptr) {
+    for (std::size_t j = 0; j < N; ++j) {
+      const Vector<Real> l = load(a + j * ld + first);
+      for (std::size_t c = 0; c < C; ++c) sums[c][j] += l * before[c];
+    }
+  }
   for (std::size_t c = 0; c < C; ++c) {
     Real* column = w + c * ld;
-    Real below[N];
-    add_lanes<Real, N>(sums[c], below);
-    for (std::size_t j = N; j-- > 0;) {
-      Real value = column[p + j] - below[j];
-      for (std::size_t s = r; s < ld; ++s) value -= a[j * ld + s] * column[s];
-      for (std::size_t i = j + 1; i < N; ++i) value -= a[j * ld + p + i] * column[p + i];
-      column[p + j] = value * inverse[j];
+    const LaneSums<Real, N> below(sums[c]);
+    Real x[N];
+    for (std::size_t j = 0; j < N; ++j) {
+      x[j] = column[p + j] - below[j];
+      for (std::size_t s = r; s < ld; ++s) x[j] -= a[j * ld + s] * column[s];
+      x[j] *= inverse[j];
+    }
+    for (std::size_t i = N; i-- > 1;) {
+      for (std::size_t j = 0; j < i; ++j) x[j] -= triangle[j][i] * x[i];
+    }
+    if constexpr (N == width<Real>) {
+      for (std::size_t j = 0; j < N; ++j) found[c][j] = x[j];
+      store(column + p, found[c]);
+    } else {
+      for (std::size_t j = 0; j < N; ++j) column[p + j] = x[j];
     }
   }
 }
@@ -157,9 +190,22 @@ EQUIDEM_INLINE void forward(const Panel<Real>& panel, Real* w) {
 
 template <typename Real, std::size_t C>
 EQUIDEM_INLINE void backward(const Panel<Real>& panel, Real* w) {
+  Vector<Real> found[C];
+  const Vector<Real>* before = nullptr;
   std::size_t p = panel.pivots;
-  for (; p % at_once != 0; --p) substitute<Real, 1, C>(panel, p - 1, w);
-  for (; p > 0; p -= at_once) substitute<Real, at_once, C>(panel, p - at_once, w);
+  while (p >= at_once) {
+    p -= at_once;
+    substitute<Real, at_once, C>(panel, p, w, before, found);
+    if (at_once == width<Real>) before = found;
+  }
+  switch (p) {
+    case 3:
+      return substitute<Real, 3, C>(panel, 0, w, before, found);
+    case 2:
+      return substitute<Real, 2, C>(panel, 0, w, before, found);
+    case 1:
+      return substitute<Real, 1, C>(panel, 0, w, before, found);
+  }
 }
 
 template <typename Real>

@@ -12,6 +12,7 @@
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/kernels/panel_solve.hpp"
 #include "equidem/linear/large_buffer.hpp"
+#include "equidem/linear/multifrontal/forward_sweep.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
@@ -58,11 +59,10 @@ class CholeskyFactor final : public Factorization {
   void multiply_by_scale(std::span<double> x, double factor) const;
   /// x := S x over its largest component, which is returned.
   double scale_to_one(std::span<double> x) const;
-  /// L y = b on the front: y_own := L_11^-1 (b_own + children), update := children - L_21 y_own.
-  void forward(std::size_t t, const Columns& y, Real* update, const std::vector<typename Sweep::Child>& children) const;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;
   Sweep solve_sweep_;
+  ForwardSweep<Real> forward_sweep_;
   std::vector<std::size_t> offset_;  // of the panel of each front
   LargeVector<Real> panels_;
   std::vector<double> scale_;  // S in single precision, per component; else empty

@@ -73,9 +73,13 @@ std::vector<Real>& work(std::size_t numbers) {
 
 template <typename Real>
 CholeskyFactor<Real>::CholeskyFactor(std::shared_ptr<const SymbolicFactor> symbolic)
-    : symbolic_(std::move(symbolic)), solve_sweep_(*symbolic_, [this](std::size_t t) {
-        return static_cast<double>(symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t)) + 100);
-      }) {
+    : symbolic_(std::move(symbolic)),
+      solve_sweep_(
+          *symbolic_,
+          [this](std::size_t t) {
+            return static_cast<double>(symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t)) + 100);
+          }),
+      forward_sweep_(*symbolic_) {
   dense::use_one_thread_per_call();
   offset_.resize(symbolic_->fronts());
   std::size_t size = 0;
@@ -160,11 +164,7 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
 
 template <typename Real>
 void CholeskyFactor<Real>::forward(const Columns& y) const {
-  solve_sweep_.up([&](std::size_t t) { return symbolic_->updates(t) * y.count; },
-                  [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
-                    forward(t, y, update, children);
-                  },
-                  [](double) {});
+  forward_sweep_.run([this](std::size_t t) { return panel(t); }, y.data, y.size, y.count);
 }
 
 template <typename Real>
@@ -204,37 +204,6 @@ double CholeskyFactor<Real>::scale_to_one(std::span<double> x) const {
   if (!(largest > 0)) return 1;
   multiply_by_scale(x, 1 / largest);
   return largest;
-}
-
-template <typename Real>
-void CholeskyFactor<Real>::forward(std::size_t t, const Columns& y, Real* update,
-                                   const std::vector<typename Sweep::Child>& children) const {
-  const auto b = static_cast<std::size_t>(symbolic_->block);
-  const Panel<Real> panel = this->panel(t);
-  const std::size_t ld = panel.rows, updates = ld - panel.pivots;
-  Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
-  Real* w = work<Real>(ld * y.count).data();
-  for (std::size_t c = 0; c < y.count; ++c) {
-    std::copy_n(own + c * y.size, panel.pivots, w + c * ld);
-    std::fill_n(w + c * ld + panel.pivots, updates, Real{0});
-  }
-  thread_local std::vector<RowRun> runs;
-  for (const auto& child : children) {
-    match_rows(*symbolic_, child.node, runs);
-    const std::size_t rows = symbolic_->updates(child.node);
-    for (std::size_t c = 0; c < y.count; ++c) {
-      for (const RowRun& run : runs) {
-        const Real* from = child.values + c * rows + run.child * b;
-        Real* to = w + c * ld + run.parent * b;
-        for (std::size_t r = 0; r < run.count * b; ++r) to[r] += from[r];
-      }
-    }
-  }
-  solve_forward(panel, w, y.count);
-  for (std::size_t c = 0; c < y.count; ++c) {
-    std::copy_n(w + c * ld, panel.pivots, own + c * y.size);
-    std::copy_n(w + c * ld + panel.pivots, updates, update + c * updates);
-  }
 }
 
 template <typename Real>

@@ -10,7 +10,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::int32_t small_subtree = 32;  // discs that are brought up to date together
+constexpr std::int32_t small_subtree = 48;  // discs that are brought up to date together
 
 /// Derivatives of stretch and slip by (e_xx, e_yy, e_xy, spin) of a homogeneous motion.
 struct AffineGradient {

@@ -19,12 +19,13 @@ namespace equidem {
 struct UpdatedEquilibrium::Implementation {
   UpdatedState state;
   int unwatched = 0;  // changes since the residual was looked at
+  int altered = 0;    // contacts since the factor was made
   int interval = 4;   // changes after which it is looked at again
   bool carried = true;
   bool lost_digits = true;   // since the last refinement: nothing is claimed before another one
   double measured = 0;       // relative residual after the last refinement
   double reacted = 0;        // the largest reaction since then of what holds a mechanism, over the load
-  double contraction = 1;    // of the residual, by the last correction behind which it was evaluated
+  double contraction = 1;    // of residual and energy, by the last correction behind which they were evaluated
   double seen_softness = 0;  // relative error in energy of that correction over the residual
   int unseen = 0;            // corrections since then
   double caution = 1;        // factor on what rounding is taken to leave, from residuals that were found
@@ -154,6 +155,7 @@ std::vector<HeldMechanism> UpdatedEquilibrium::Implementation::change(std::size_
     }
   }
   ++unwatched;
+  ++altered;
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
   if (path.share < delicate || path.share > 1 / delicate || !path.held.empty()) {
     lost_digits = true;
@@ -180,11 +182,17 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
   // evaluated last. Motions are corrected to round-off of the energy: a soft network answers a residual of 1e-13 by
   // forces that are wrong by far more.
   constexpr double small = 1e-17, wrong = 1e-12, grown = 2;
-  constexpr int most_steps = 5, most_unseen = 16;
+  constexpr int most_steps = 5, most_unseen = 16, many_changes = 16;
   const bool trusted = carried && !lost_digits && found_over_claimed <= 1;
+  bool slow = false;  // corrections end before the energy is right: round-off has spoiled the factor for what is soft
   const auto improved = [&](double residual) {
-    for (int step = 0; step < most_steps && (step < least_steps || residual > small); ++step) {
+    double error_before = 0;
+    int step = 0;
+    for (; step < most_steps && (step < least_steps || residual > small); ++step) {
       const double error = state.correct(), last = residual, softness = error / residual;
+      // What is soft contracts less than the residual, which is mostly of what is stiff.
+      if (step > 0) contraction = std::max(contraction, error / error_before);
+      error_before = error;
       const bool as_seen = (trusted || step > 0) && unseen < most_unseen && softness < grown * seen_softness;
       if (as_seen && contraction * error < wrong) {
         ++unseen;
@@ -197,11 +205,13 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
       seen_softness = softness;
       unseen = 0;
     }
+    slow = step == most_steps && contraction * error_before > wrong;
     return residual;
   };
   double after = improved(before);
-  if (carried && after > options.watched_residual) {
+  if (carried && (after > options.watched_residual || (slow && altered > many_changes))) {
     ++state.counters.mended;
+    altered = 0;
     const std::size_t held = state.holds().size();
     if (!state.factorize()) {
       computation_failed("the stiffness matrix could not be factorized anew",
@@ -321,6 +331,10 @@ PreciseMotion UpdatedEquilibrium::motion(std::size_t of_case) {
 double UpdatedEquilibrium::refine() {
   implementation_->opened.reset();
   return implementation_->refine(1);
+}
+
+std::vector<DiscMotion> UpdatedEquilibrium::driven_mechanism(std::int64_t component) const {
+  return implementation_->state.driven_mechanism(component);
 }
 
 double UpdatedEquilibrium::estimated_residual() const {

@@ -121,6 +121,11 @@ class UpdatedEquilibrium {
   /// does not serve.
   /// \return the largest relative residual before
   double refine();
+  /// A motion that deforms no contact, to round-off, and on which the loads of every right-hand side do work: the
+  /// network carries none of them.
+  /// \param component held in place of a mechanism that is to be told; -1: the softest motion that the loads find
+  /// \return per disc; empty where there is no such motion
+  [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component) const;
   /// An upper estimate of the relative residual, the largest of all right-hand sides: measured when motions were last
   /// refined, and what rounding may have added since. Where a load drives a mechanism there is no state to claim
   /// anything of.

@@ -93,6 +93,8 @@ class UpdatedState {
   [[nodiscard]] double grown() const;
   /// Directly behind evaluate() or correct(): of the motions, with their correction where there is one.
   [[nodiscard]] EquilibriumSums sums() const;
+  /// As UpdatedEquilibrium::driven_mechanism.
+  [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component) const;
   /// Motions of all components, everything brought up to date.
   [[nodiscard]] PreciseMotion motion(std::size_t of_case);
   [[nodiscard]] double bytes() const;

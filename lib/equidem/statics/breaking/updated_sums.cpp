@@ -164,14 +164,16 @@ EquilibriumSums UpdatedState::sums() const {
       std::array<double, count> sum{};
       for (std::size_t slot = begin; slot < end; ++slot) {
         const auto number = static_cast<std::size_t>(blocks_->contacts()[slot]);
-        const ContactFrame frame = frame_of(assembly, number);
+        const Vec2 normal = contacts_[slot].normal, branch = assembly.branch(assembly.contacts[number]);
         for (std::size_t p = 0; p < cases.size(); ++p) {
           const ContactForce& f = forces_[p][slot];
           if (strained) {
             const ContactDeformation d = affine_deformation_of(number, 0);
             sum[imposed + p] += f.normal * d.normal + f.tangential * d.tangential;
           }
-          const Tensor2 t = outer(force_on_i(frame, f), assembly.branch(assembly.contacts[number]));
+          const Vec2 on_i = {f.normal * normal.x - f.tangential * normal.y,
+                             f.normal * normal.y + f.tangential * normal.x};
+          const Tensor2 t = outer(on_i, branch);
           const double entries[] = {t.xx, t.xy, t.yx, t.yy};
           for (std::size_t e = 0; e < 4; ++e) sum[moment + 4 * p + e] += entries[e];
         }
@@ -186,16 +188,19 @@ EquilibriumSums UpdatedState::sums() const {
   EquilibriumSums result{.imposed = {total[imposed], total[imposed + 1]}};
   std::array<bool, most_right_sides> loads{};  // whether there are any
   const auto b = static_cast<std::size_t>(symbolic_->block);
-  for (std::size_t k = 0; k < components(); ++k) {
-    const std::size_t place = symbolic_->position[k / b] * b + k % b;
-    for (std::size_t p = 0; p < cases.size(); ++p) {
-      if (cases[p].force.empty() || cases[p].force[k] == 0) continue;
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    const std::vector<double>& force = cases[p].force;
+    for (std::size_t k = 0; k < force.size(); ++k) {
+      if (force[k] == 0) continue;
       loads[p] = true;
-      for (std::size_t q = 0; q < cases.size(); ++q) result.load_work[p][q] += cases[p].force[k] * base_[q].high[place];
+      const std::size_t place = symbolic_->position[k / b] * b + k % b;
+      for (std::size_t q = 0; q < cases.size(); ++q) result.load_work[p][q] += force[k] * base_[q].high[place];
     }
-    if (cases[0].prescribed.empty() || unknowns.held[k] == DegreesOfFreedom::free || cases[0].prescribed[k] == 0)
-      continue;
-    for (std::size_t q = 0; q < cases.size(); ++q) result.imposed[q] += cases[0].prescribed[k] * reaction(k, q);
+  }
+  const std::vector<double>& prescribed = cases[0].prescribed;
+  for (std::size_t k = 0; k < prescribed.size(); ++k) {
+    if (unknowns.held[k] == DegreesOfFreedom::free || prescribed[k] == 0) continue;
+    for (std::size_t q = 0; q < cases.size(); ++q) result.imposed[q] += prescribed[k] * reaction(k, q);
   }
   if (!corrected_) {
     for (std::size_t p = 0; p < cases.size(); ++p) result.moment[p] = moment_of(p);

@@ -26,8 +26,7 @@ constexpr double suspicious = 1e-9;  // share of a stiffness left when all other
 constexpr double enough_digits = 1e11;  // springs further apart leave too few of the digits of a double
 
 bool costs_no_energy(const System& system, const ContactSprings& springs, const std::vector<double>& motion) {
-  constexpr double no_energy = 1e-21;  // over the energy of the same motions without cooperation
-  return std::abs(softness(system.k.assembly, springs, disc_motions(system.unknowns, motion))) < no_energy;
+  return std::abs(softness(system.k.assembly, springs, disc_motions(system.unknowns, motion))) < softness_of_mechanisms;
 }
 
 bool costs_no_energy(const System& system, const std::vector<double>& motion) {
