@@ -17,9 +17,12 @@ using namespace eight;
 
 struct PartLoopKind {
   bool round = false, friction = false, verlet = false;
+  bool equal = false;  ///< with friction, by NearParts::law
 };
 
+template <class Lanes>
 struct PartLoopNumbers {
+  LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
   bool corrected = false, record = false;
@@ -39,18 +42,39 @@ EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing<Lanes>& s, const Vectors<Lane
   return cross(n, s.velocity) + (s.spin_j * dot(arm_j, n) - s.spin_i * dot(arm_i, n));
 }
 
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartGroup& group, double dt) {
-  const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
-  return law_lanes(column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
-                   column<Lanes>(group, PartGroup::friction), spring,
-                   1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)),
-                   column<Lanes>(group, PartGroup::beyond_cap), dt);
+template <PartLoopKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbers, const PartGroup& group) {
+  if constexpr (kind.equal) {
+    return numbers.law;
+  } else {
+    const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
+    return law_lanes(column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
+                     column<Lanes>(group, PartGroup::friction), spring,
+                     1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)),
+                     column<Lanes>(group, PartGroup::beyond_cap), numbers.dt);
+  }
+}
+
+/// \tparam some the group has bodies behind the block
+/// \param[in,out] outward next place for the impulse on such a body
+template <bool some, class Numbers>
+EQUIDEM_ALWAYS_INLINE void give(const PartGroup& group, const Numbers (&on_i)[lanes_of_pairs],
+                                const Numbers (&on_j)[lanes_of_pairs], const std::int32_t* body_of_part,
+                                std::int32_t end, BodyImpulse* impulses, BodyImpulse*& outward) {
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    subtract(&impulses[body_of_part[group.i[k]]], on_i[k]);
+    const std::int32_t receiver = body_of_part[group.j[k]];
+    if (some && receiver >= end) {
+      store(on_j[k], outward++);
+    } else {
+      add(&impulses[receiver], on_j[k]);
+    }
+  }
 }
 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const PartBody* bodies,
+EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, const PartBody* bodies,
                                          const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
                                          BodyImpulse*& outward, LaneSums<Lanes>& sums) {
   const double dt = numbers.dt;
@@ -85,7 +109,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
   const auto inverse_mass = column<Lanes>(group, PartGroup::inverse_mass);
   const auto turning_i = column<Lanes>(group, PartGroup::inverse_moment_i);
   const auto turning_j = column<Lanes>(group, PartGroup::inverse_moment_j);
-  const LawLanes<Lanes> law = law_of<Lanes>(group, dt);
+  const LawLanes<Lanes> law = law_of<kind>(numbers, group);
   const Lanes dashpot = dt * column<Lanes>(group, PartGroup::dashpot);
   const Lanes deep = only(touch, at.overlap);
   const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
@@ -139,8 +163,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
       velocity =
           dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i) - mobility * tangential_before;
     }
-    const Tangent<Lanes> tangent = slide<kind.verlet, false>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
-                                                             tangential_before, yield, dt);
+    const Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip,
+                                                                  mobility, tangential_before, yield, dt);
     const Lanes tangential = only(touch, -tangent.impulse);
     store(only(touch, tangent.stretch), group.numbers[PartGroup::stretch]);
     store(tangential, group.numbers[PartGroup::tangential_impulse]);
@@ -202,21 +226,17 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers& numbers, const P
     store(at.arm_j.x, group.numbers[PartGroup::arm_j_x]);
     store(at.arm_j.y, group.numbers[PartGroup::arm_j_y]);
   }
-  if constexpr (kind.round) {
+  if (kind.round && (kind.verlet || numbers.record)) {
     store(n.x, group.numbers[PartGroup::normal_x]);
     store(n.y, group.numbers[PartGroup::normal_y]);
   }
   Row<Lanes> on_i[lanes_of_pairs], on_j[lanes_of_pairs];
   rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_i), Lanes{}, on_i);
   rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, on_j);
-  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    subtract(&impulses[body_of_part[group.i[k]]], on_i[k]);
-    const std::int32_t receiver = body_of_part[group.j[k]];
-    if (outward && receiver >= numbers.end) {
-      store(on_j[k], outward++);
-    } else {
-      add(&impulses[receiver], on_j[k]);
-    }
+  if (outward) {
+    give<true>(group, on_i, on_j, body_of_part, numbers.end, impulses, outward);
+  } else {
+    give<false>(group, on_i, on_j, body_of_part, numbers.end, impulses, outward);
   }
 }
 
@@ -229,13 +249,17 @@ struct CollideParts {
 template <class Law, PartLoopKind kind>
 template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
-  const PartLoopNumbers numbers{system.dt(),
-                                system.step + (kind.verlet ? 0 : 1),
-                                system.options.integrator == GrainOptions::Integrator::corrected_verlet,
-                                system.contacts.near.record,
-                                &system,
-                                &system.bodies.sums[block],
-                                static_cast<std::int32_t>(system.bodies.blocks.end(block))};
+  const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
+  const PartLoopNumbers<Lanes> numbers{
+      law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
+                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), Lanes{}, system.dt()),
+      system.dt(),
+      system.step + (kind.verlet ? 0 : 1),
+      system.options.integrator == GrainOptions::Integrator::corrected_verlet,
+      system.contacts.near.record,
+      &system,
+      &system.bodies.sums[block],
+      static_cast<std::int32_t>(system.bodies.blocks.end(block))};
   LaneSums<Lanes> sums;
   BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
@@ -253,6 +277,10 @@ NearParts::Loop choose_part_loop() {
 
 template <class Law, bool round>
 NearParts::Loop choose_part_loop(const GrainSystem& system) {
+  if (system.friction && system.contacts.near_parts.law) {
+    return system.options.verlet() ? choose_part_loop<Law, PartLoopKind{round, true, true, true}>()
+                                   : choose_part_loop<Law, PartLoopKind{round, true, false, true}>();
+  }
   if (system.options.verlet()) {
     return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, true}>()
                            : choose_part_loop<Law, PartLoopKind{round, false, true}>();

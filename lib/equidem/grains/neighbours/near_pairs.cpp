@@ -243,6 +243,20 @@ bool eight_at_a_time(const GrainSystem& system) {
   return gives_force(system.options.law) && !friction_kinds(system.scene).without_springs;
 }
 
+std::optional<PairLaw> common_law(const GrainSystem& system) {
+  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
+  const bool equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
+    const bool plain =
+        pair->stiffness > 0 && (!system.friction || (pair->friction > 0 && pair->cap == FrictionCap::whole_force));
+    return plain && *pair == *pairs[0];
+  });
+  if (!equal) return {};
+  Candidate candidate;
+  candidate.j = 1;
+  set_constants(system, candidate);
+  return law_of(candidate);
+}
+
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
   const double wanted = std::max({least_margin * size, margin_of_mean * std::sqrt(reach * size), 4 * reach});
   return std::min(wanted, system.contacts.margin);
@@ -257,18 +271,10 @@ void prepare_near_pairs(GrainSystem& system) {
   const FrictionKinds kinds_of_friction = friction_kinds(system.scene);
   if (kinds_of_friction.without_springs && (kinds_of_friction.with_springs || !system.shapes.parts.empty())) return;
   near.rigid = kinds_of_friction.without_springs;
-  const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   near.active = true;
-  near.equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
-    const bool plain =
-        pair->stiffness > 0 && (!system.friction || (pair->friction > 0 && pair->cap == FrictionCap::whole_force));
-    return plain && *pair == *pairs[0];
-  });
-  if (near.equal) {
-    Candidate candidate;
-    candidate.j = 1;
-    set_constants(system, candidate);
-    near.law = law_of(candidate);
+  if (const std::optional<PairLaw> law = common_law(system)) {
+    near.equal = true;
+    near.law = *law;
   }
   near.loop = near_pair_loop(system);
   near.bodies.resize(system.bodies.constants.size());

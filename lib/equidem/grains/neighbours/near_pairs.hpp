@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -109,6 +110,10 @@ struct NearPairs {
 
 /// Whether contacts of parts can be vectorized: a force law, no contact that always slides.
 bool eight_at_a_time(const GrainSystem& system);
+
+/// The law of all pairs of grains, where they have the same one, contacts stick by a spring if there is friction, and
+/// dashpots rest while contacts slide.
+std::optional<PairLaw> common_law(const GrainSystem& system);
 
 /// Margin of near lists, for bodies of a size (discs: the radius) that move by about `reach` in a step.
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach);

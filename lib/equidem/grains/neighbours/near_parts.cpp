@@ -279,6 +279,7 @@ void prepare_near_parts(GrainSystem& system) {
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
+  near.law = common_law(system);
   near.loops = {near_part_loop(system, true), near_part_loop(system, false)};
   near.blocks.resize(system.bodies.blocks.count());
   near.bodies.resize(system.shapes.parts.size());

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -32,31 +33,33 @@ struct alignas(64) PartBody {
 /// Eight pairs of parts, i < j.
 struct alignas(64) PartGroup {
   enum Column {
-    // constants
-    reach,  ///< a_i + a_j, m
-    a_i,
-    b_i,
-    a_j,
-    b_j,           ///< half-axes, m
-    share,         ///< share of i in the overlap
-    arrived,       ///< angle at which Newton's iteration has converged (contact_of_ellipses)
-    sharpest,      ///< b_i²/a_i + b_j²/a_j, m: shallower overlaps have a unique normal
-    inverse_mass,  ///< 1/m_i + 1/m_j
-    inverse_moment_i,
-    inverse_moment_j,  ///< 1/I
-    stiffness,         ///< N/m, hertz: N/m^(3/2)
-    dashpot,           ///< normal; N s/m, hertz: N s/m^(5/4)
-    least,             ///< least normal impulse: 0, or minus infinity if contacts may attract
-    friction,
-    tangential_stiffness,
-    tangential_damping,  ///< as PartPair::tangential_damping
-    beyond_cap,          ///< share of the dashpot force that is added to the friction limit: 0 or 1
     // of the last step
-    normal_x,
-    normal_y,  ///< apart: a direction along which they were apart, or {}
     impulse,
     tangential_impulse,  ///< N s
     stretch,             ///< m
+    // constants
+    tangential_damping,  ///< as PartPair::tangential_damping
+    dashpot,             ///< normal; N s/m, hertz: N s/m^(5/4)
+    inverse_mass,        ///< 1/m_i + 1/m_j
+    inverse_moment_i,
+    inverse_moment_j,  ///< 1/I
+    share,             ///< share of i in the overlap
+    reach,             ///< a_i + a_j, m
+    a_i,
+    a_j,
+    b_i,
+    b_j,       ///< half-axes, m
+    arrived,   ///< angle at which Newton's iteration has converged (contact_of_ellipses)
+    sharpest,  ///< b_i²/a_i + b_j²/a_j, m: shallower overlaps have a unique normal
+    // of the last step; of round parts only if NearPairs::record, and in Verlet schemes
+    normal_x,
+    normal_y,  ///< apart: a direction along which they were apart, or {}
+    // constants of the law, not read where NearParts::law is set and there is friction
+    stiffness,  ///< N/m, hertz: N/m^(3/2)
+    least,      ///< least normal impulse: 0, or minus infinity if contacts may attract
+    friction,
+    tangential_stiffness,
+    beyond_cap,  ///< share of the dashpot force that is added to the friction limit: 0 or 1
     // set if NearPairs::record
     overlap,
     closing,
@@ -97,6 +100,7 @@ struct NearParts {
   };
 
   bool active = false;           ///< the scene has such pairs
+  std::optional<PairLaw> law;    ///< of all pairs, as common_law()
   std::array<Loop, 2> loops{};   ///< of the lists of a block
   std::vector<Block> blocks;     ///< of bodies
   LaneVector<PartBody> bodies;   ///< one for each part
