@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What comes loose as contacts break, and how the end is told, against plain walks and networks solved anew.
+/// Discs that come loose as contacts break, and ends of paths, against plain walks and networks solved anew.
 #include <cstdint>
 #include <string>
 #include <utility>

@@ -10,7 +10,7 @@
 
 namespace equidem {
 
-/// Of the network without some contacts (load_bearing.hpp). \param broken per contact, `held` per disc, 1
+/// Discs of the network without some contacts (load_bearing.hpp). \param broken per contact, `held` per disc, 1
 /// \return per disc, 1: it can carry no force
 std::vector<std::uint8_t> discs_without_force(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken,
                                               const std::vector<std::uint8_t>& held);

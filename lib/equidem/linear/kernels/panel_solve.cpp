@@ -40,7 +40,7 @@ EQUIDEM_INLINE void store(Real* to, const Vector<Real>& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
-/// Of N vectors the sums of their lanes.
+/// Sums over the lanes of each of N vectors.
 template <typename Real, std::size_t N>
 struct LaneSums {
   static constexpr bool transposed = std::is_same_v<Real, double>;

@@ -190,7 +190,7 @@ double UpdatedEquilibrium::Implementation::refine(int least_steps, std::vector<H
     int step = 0;
     for (; step < most_steps && (step < least_steps || residual > small); ++step) {
       const double error = state.correct(), last = residual, softness = error / residual;
-      // What is soft contracts less than the residual, which is mostly of what is stiff.
+      // Soft parts contract less than the residual, which is mostly of stiff ones.
       if (step > 0) contraction = std::max(contraction, error / error_before);
       error_before = error;
       const bool as_seen = (trusted || step > 0) && unseen < most_unseen && softness < grown * seen_softness;
