@@ -41,7 +41,7 @@ double reference_energy(const Assembly& assembly, const ContactSprings& springs,
 /// clamped strip, N rows long and two discs wide, has 0.3/N⁴ (1.7e-12 for 660 rows), and a mode that only tangential
 /// springs resist about kT/kN times 1/N².
 double softness(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions);
-/// The softness of every mechanism is less, and of what springs resist more.
+/// Mechanisms have less softness() than this, and motions that springs resist have more.
 constexpr double softness_of_mechanisms = 1e-21;
 
 }  // namespace equidem
