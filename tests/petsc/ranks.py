@@ -20,12 +20,17 @@ def command(ranks, *arguments):
     environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
                        OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                        OMPI_MCA_rmaps_base_oversubscribe="1",  # Open MPI 4; the next one is for 5
-                       PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe")
+                       PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
+                       # Ranks of one machine share memory: looking for networks takes half of the start.
+                       OMPI_MCA_pml="ob1", OMPI_MCA_btl="self,vader")
     return [MPIRUN, "-n", str(ranks), PARALLEL, *map(str, arguments)], environment
 
 
 def parallel(ranks, *arguments):
+    """Runs to its end. All ranks end by themselves: what is left a moment after the first has failed may be killed at once, not
+    a second later as by default."""
     words, environment = command(ranks, *arguments)
+    environment.update(OMPI_MCA_odls_base_sigkill_timeout="0", PRTE_MCA_odls_base_sigkill_timeout="0")
     return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=LIMIT, check=False)
 
 

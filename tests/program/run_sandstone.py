@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a grading and a rock to springs, moduli, a static test and a wave: run_sandstone.py PROGRAM SOURCE_FOLDER."""
+import pathlib
 import shutil
+import tempfile
 import unittest
 
 from program import CASES, ProgramTest, equidem, parse_json
@@ -10,10 +12,23 @@ YOUNG, NU = 20e9, 0.2
 
 
 class Sandstone(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        """The calibrated rock, on which all cases are built."""
+        super().setUpClass()
+        cls.kept = tempfile.TemporaryDirectory()
+        cls.cases = pathlib.Path(cls.kept.name) / "sandstone"
+        shutil.copytree(CASES / "sandstone", cls.cases, ignore=shutil.ignore_patterns("rock", "out"))
+        cls.calibrated = equidem("calibrate", cls.cases / "rock.toml", "--out", cls.cases / "rock", "--json", "-")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.kept.cleanup()
+        super().tearDownClass()
+
     def setUp(self):
         super().setUp()
-        self.cases = self.folder / "sandstone"
-        shutil.copytree(CASES / "sandstone", self.cases, ignore=shutil.ignore_patterns("rock", "out"))
+        self.check_done(self.calibrated)
 
     def result_of(self, verb, case, *options):
         return parse_json(self.check_done(equidem(verb, self.cases / case, "--json", "-", *options)).stdout)
@@ -21,7 +36,7 @@ class Sandstone(ProgramTest):
     def test_the_commands_of_the_readme_lead_from_the_grading_to_the_wave(self):
         bonds = self.result_of("pack", "rock.toml")
         self.assertGreater(bonds["bonds"], 2 * bonds["grains"])
-        found = self.result_of("calibrate", "rock.toml", "--out", self.cases / "rock")
+        found = parse_json(self.calibrated.stdout)
         cell = self.result_of("homogenize", "cell.toml")
         self.assertAlmostEqual(cell["young_modulus"]["plane_strain"] / YOUNG, 1, delta=1e-9)
         self.assertAlmostEqual(cell["poisson_ratio"]["plane_strain"], NU, delta=1e-9)
@@ -33,7 +48,6 @@ class Sandstone(ProgramTest):
         self.assertAlmostEqual(wave["speed"] * wave["period"], wave["wavelength"], delta=1e-12)
 
     def test_loose_bodies_of_a_packing_are_left_out_of_the_static_test_and_named(self):
-        self.check_done(equidem("calibrate", self.cases / "rock.toml", "--out", self.cases / "rock"))
         packed = self.result_of("pack", "tension.toml")["grains"]
         test = self.result_of("solve", "tension.toml")
         self.assertGreater(len(test["left_out"]), 0)
@@ -42,7 +56,6 @@ class Sandstone(ProgramTest):
         self.assertLess(test["relative_residual"], 1e-14)
 
     def test_a_free_packing_stands_its_test_whatever_its_seed(self):
-        self.check_done(equidem("calibrate", self.cases / "rock.toml", "--out", self.cases / "rock"))
         small = ("--set", "packing.box=[0.04, 0.04]", "--set", "packing.solid_fraction=0.82")
         for seed in range(1, 9):
             with self.subTest(seed=seed):

@@ -91,7 +91,7 @@ class Lattices(StabilityTest):
         self.assertIn("DENSITY ASSUMED", assumed["report"])
 
     def test_the_density_of_a_continuum_gives_that_of_the_discs(self):
-        rock = self.stability(CASES / "packed_rock.toml", "--set", "packing.grains=100")
+        rock = self.stability(CASES / "packed_rock.toml", "--set", "packing.grains=50")
         self.assertIs(rock["density_assumed"], False)
         self.check_relative(rock["density"], 2300 / 0.82, 1e-12)
 

@@ -107,7 +107,7 @@ class Study(ProgramTest):
 
     def test_interrupted_it_keeps_what_it_has(self):
         out = self.folder / "out"
-        command = [PROGRAM, "study", "solvers", "--out", str(out), "--budget", "600", "--quiet"]
+        command = [PROGRAM, "study", "solvers", "--discs", "3e4", "--out", str(out), "--budget", "600", "--quiet"]
         running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         begin = time.monotonic()
         while not (out / "samples.csv").exists() and time.monotonic() - begin < 60:

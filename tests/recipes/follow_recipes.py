@@ -121,18 +121,34 @@ def shared_libraries(program):
     return [paths[name] for name in needed if name in paths and not re.match(r"lib(c|m|stdc\+\+|gcc_s)\.so", name)]
 
 
+def units_of(folder, sources):
+    """One file for the sources of each room, which reads their headers once, as most presets do; main.cpp stays alone."""
+    rooms = {}
+    for path in sources:
+        room = re.search(r"(lib/equidem/\w+|tools/equidem)/", path).group(1)
+        rooms.setdefault("main" if path.endswith("/main.cpp") else room, []).append(path)
+    units = []
+    for paths in rooms.values():
+        units.append((os.path.join(folder, f"unit{len(units)}.cpp"), sorted({os.path.dirname(path) for path in paths})))
+        with open(units[-1][0], "w", encoding="utf-8") as file:
+            file.writelines(f'#include "{os.path.abspath(path)}"\n' for path in paths)
+    return units
+
+
 def build_program(source, build, program, objects, folder, sources):
     compiler, flags = flags_of(build)
     first = ["-I" + os.path.join(folder, p) for p in ("lib", "tools/equidem")]
-    made = [os.path.join(folder, f"object{k}.o") for k in range(len(sources))]
+    units = units_of(folder, sources)
+    made = [os.path.join(folder, f"object{k}.o") for k in range(len(units))]
 
     def compile_one(k):
         # The lists are found in the temporary folder first, everything else beside the source.
-        beside = ["-I" + os.path.dirname(sources[k])]
-        subprocess.run([compiler, *first, *flags, *beside, "-O0", "-c", sources[k], "-o", made[k]], check=True)
+        path, folders = units[k]
+        beside = ["-I" + folder for folder in folders]
+        subprocess.run([compiler, *first, *flags, *beside, "-O0", "-c", path, "-o", made[k]], check=True)
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(compile_one, range(len(sources))))
+        list(pool.map(compile_one, range(len(units))))
     old = [o for o in open(objects, encoding="utf-8").read().split() if o.endswith(".o") and not o.endswith("main.cpp.o")]
     archives = [os.path.join(f, n) for top in ("lib", "tools") for f, _, names in os.walk(os.path.join(build, top))
                 for n in names if n.startswith("libequidem") and n.endswith(".a")]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem study: error against time.
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -154,6 +155,10 @@ void refuse_all_failed(const StudyReport& report) {
                      "the first: " + without_full_stop(report.result.rows.front().refusal), "");
 }
 
+[[noreturn]] void refuse_without_errors() {
+  computation_failed("this study has no errors", "it measures time alone", "Leave out --accuracy");
+}
+
 /// The accuracy is asked of each problem.
 void refuse_unreached(const StudyReport& report) {
   for (const Recommendation& one : report.recommendations) {
@@ -162,8 +167,7 @@ void refuse_unreached(const StudyReport& report) {
                                    one.problem.empty() ? "" : fmt::format(" for {}", one.problem)),
                        fmt::format("the best one reaches {:.2g}", one.best), "Ask for less, or study finer settings");
   }
-  if (report.recommendations.empty())
-    computation_failed("this study has no errors", "it measures time alone", "Leave out --accuracy");
+  if (report.recommendations.empty()) refuse_without_errors();
 }
 
 int dry_run_study(const StudyVerb& verb, const Study& study) {
@@ -194,6 +198,7 @@ int run_verb(const StudyVerb& verb) {
   set_progress_shown(!verb.common.quiet);
   const Study study =
       is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick, verb.discs);
+  if (verb.accuracy && std::ranges::all_of(study.quantities, &Quantity::fact)) refuse_without_errors();
   if (verb.common.dry_run) return dry_run_study(verb, study);
   const Machine machine = this_machine();
   const std::string identity =
