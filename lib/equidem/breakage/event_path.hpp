@@ -101,7 +101,7 @@ class EventPath {
   [[nodiscard]] virtual double load_left(double motion) const = 0;
   [[nodiscard]] virtual double elastic_energy() const = 0;  ///< N, at lambda()
   [[nodiscard]] virtual double released() const = 0;        ///< N, by all bonds that broke
-  /// Work less everything that it went into, over the largest of these.
+  /// Work less everything that it went into, over the largest of these; where contacts rub, the largest so far.
   [[nodiscard]] virtual double energy_error() const = 0;
 };
 

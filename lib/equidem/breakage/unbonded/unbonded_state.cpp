@@ -33,8 +33,12 @@ double work_of(const ContactForce& from, const ContactForce& to, const PreciseDe
 
 }  // namespace
 
+void ContactLedger::take(double elastic_now) {
+  elastic = elastic_now;
+  largest = std::max({largest, std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
+}
+
 double ContactLedger::error() const {
-  const double largest = std::max({std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
   return largest > negligible ? std::abs(work - elastic - friction - released) / largest : 0;
 }
 
@@ -96,7 +100,11 @@ void UnbondedState::measure_residual(std::vector<double>& residual) {
   }
   round_off_force_ = std::max(round_off_force_, rounded_motion * springs_.largest() * farthest());
   force_scale_ = std::max({force_scale_, force, round_off_force_});
-  residual_ = force_scale_ > no_force * round_off_force_ ? largest / force_scale_ : 0;
+  residual_ = carries() ? largest / force_scale_ : 0;
+}
+
+bool UnbondedState::carries() const {
+  return force_scale_ > no_force * round_off_force_;
 }
 
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
@@ -153,7 +161,9 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   motion_.add(step);
   (dead ? dead_ : lambda_) += t * rates.lambda;
   correct(by_motion, solver);
-  for (std::size_t k = 0; k < loads.size(); ++k) {
+  // Round-off on long ways is no work, as long as nothing carries a force.
+  const bool works = carries();
+  for (std::size_t k = 0; works && k < loads.size(); ++k) {
     const double by = motion_.high[k] - motion[k];
     ledger_.work += 0.5 * by * (unknowns_.held[k] != 0 ? internal[k] + internal_[k] : loads[k] + outside(k));
   }
@@ -162,9 +172,9 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
       slip_[c] = laws_[c].slip_at(deformation_[c], forces_[c].tangential - share_ * kept_[c].tangential);
       const double before = forces[c].tangential - was_kept * kept_[c].tangential;
       const double now = forces_[c].tangential - share_ * kept_[c].tangential;
-      ledger_.friction += 0.5 * (before + now) * static_cast<double>(slip_[c] - slip[c]);
+      if (works) ledger_.friction += 0.5 * (before + now) * static_cast<double>(slip_[c] - slip[c]);
     }
-    if (!affine_.empty())
+    if (works && !affine_.empty())
       ledger_.work +=
           work_of(forces[c], forces_[c], {}, {affine_[c].normal, affine_[c].tangential}) * (lambda_ - lambda);
   }
@@ -174,7 +184,7 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
     ledger_.released += by;
   }
   kept_share_ = share_;
-  ledger_.elastic = elastic_energy() - rest_energy_;
+  if (works) ledger_.take(elastic_energy() - rest_energy_);
   ledger_.negligible = std::max(ledger_.negligible, no_force * round_off_force() * farthest());
 }
 
@@ -218,7 +228,7 @@ void UnbondedState::break_bond(std::size_t c, ContactStatus status) {
   kept_[c] = {force.normal - after.normal, force.tangential - after.tangential};
   releasing_.push_back(c);
   share_ = kept_share_ = 1;
-  ledger_.elastic = elastic_energy() - rest_energy_;
+  ledger_.take(elastic_energy() - rest_energy_);
 }
 
 void UnbondedState::end_release() {

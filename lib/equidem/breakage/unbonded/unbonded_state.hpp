@@ -26,8 +26,13 @@ struct ContactLedger {
   double friction = 0;    ///< lost by slip
   double released = 0;    ///< by bonds that broke
   double negligible = 0;  ///< energy of forces that are round-off
+  /// Of the terms so far. Forces balance to a share of the largest so far, and limits are met to such a share: where
+  /// all forces have vanished again, that share of an energy which is gone is missing.
+  double largest = 0;
 
-  /// The sum that should vanish, over the largest of its terms.
+  /// All works of a step are in. \param elastic_now behind it
+  void take(double elastic_now);
+  /// The sum that should vanish, over the largest of its terms so far.
   [[nodiscard]] double error() const;
 };
 
@@ -85,6 +90,8 @@ class UnbondedState {
   void evaluate();
   void measure_residual(std::vector<double>& residual);
   void correct(bool by_motion, TangentSolver& solver);
+  /// Whether some force has been more than round-off.
+  [[nodiscard]] bool carries() const;
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;
   /// The largest motion, or deformation by the mean strain, m.
