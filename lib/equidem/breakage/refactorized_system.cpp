@@ -5,25 +5,18 @@
 #include <utility>
 
 #include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/rest_of_network.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
-
-/// The rest of a network, with its numbers in the whole.
-struct Rest {
-  Assembly assembly;
-  ContactSprings springs{SpringConstants{}};
-  std::vector<std::int32_t> discs, contacts;
-};
 
 class RefactorizedSystem final : public SolvedStates {
  public:
@@ -55,14 +48,14 @@ class RefactorizedSystem final : public SolvedStates {
   [[nodiscard]] std::string solver_name() const override { return solver_name_; }
 
  private:
-  Rest unbroken() const;
-  Rest load_bearing();
   void solve();
-  void solve_cases(const Rest& rest, DegreesOfFreedom unknowns);
-  RightHandSide on(const Rest& rest, const RightHandSide& whole) const;
-  bool drives_mechanism(const RightHandSide& given, const Rest& rest, const StiffnessSolver& solver);
-  void take(const Rest& rest, const StiffnessSolver& solver, const HeldMotions& held, const RightHandSide& given,
-            const Solution& solution, State& state);
+  void solve_cases(const RestOfNetwork& rest, DegreesOfFreedom unknowns);
+  RightHandSide on(const RestOfNetwork& rest, const RightHandSide& whole) const;
+  bool drives_mechanism(const RightHandSide& given, const RestOfNetwork& rest, const StiffnessSolver& solver);
+  static std::vector<double> without_forces(const RestOfNetwork& rest, const StiffnessSolver& solver,
+                                            std::vector<double> mechanism);
+  void take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,
+            const RightHandSide& given, const Solution& solution, State& state);
 
   BreakableNetwork network_;
   std::size_t per_disc_;
@@ -73,44 +66,7 @@ class RefactorizedSystem final : public SolvedStates {
   BreakableCounters counters_;
 };
 
-Rest RefactorizedSystem::unbroken() const {
-  const Assembly& whole = network_.assembly;
-  Rest rest;
-  Assembly& a = rest.assembly;
-  a.kind = whole.kind;
-  a.centres = whole.centres;
-  a.radii = whole.radii;
-  a.period = whole.period;
-  a.groups = whole.groups;
-  a.sections = whole.sections;
-  std::vector<SpringConstants> springs;
-  for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
-    if (broken_[c] != 0) continue;
-    rest.contacts.push_back(static_cast<std::int32_t>(c));
-    a.contacts.push_back(whole.contacts[c]);
-    if (!whole.contact_arms.empty()) a.contact_arms.push_back(whole.contact_arms[c]);
-    if (!network_.springs.uniform()) springs.push_back(network_.springs[c]);
-  }
-  rest.springs = springs.empty() ? network_.springs : ContactSprings(std::move(springs));
-  rest.discs.resize(whole.size());
-  for (std::size_t d = 0; d < whole.size(); ++d) rest.discs[d] = static_cast<std::int32_t>(d);
-  return rest;
-}
-
-Rest RefactorizedSystem::load_bearing() {
-  Rest rest = unbroken();
-  LoadBearingNetwork found = load_bearing_network(rest.assembly, rest.springs, network_.effects, held_);
-  std::fill(left_.begin(), left_.end(), 1);
-  if (found.part) {
-    for (std::int32_t& contact : found.part->contacts) contact = rest.contacts[static_cast<std::size_t>(contact)];
-    rest = {std::move(found.part->assembly), std::move(found.part->springs), std::move(found.part->discs),
-            std::move(found.part->contacts)};
-  }
-  for (const std::int32_t disc : rest.discs) left_[static_cast<std::size_t>(disc)] = 0;
-  return rest;
-}
-
-RightHandSide RefactorizedSystem::on(const Rest& rest, const RightHandSide& whole) const {
+RightHandSide RefactorizedSystem::on(const RestOfNetwork& rest, const RightHandSide& whole) const {
   RightHandSide part;
   part.gradient = whole.gradient;
   const auto taken = [&](const std::vector<double>& from) {
@@ -129,7 +85,8 @@ RightHandSide RefactorizedSystem::on(const Rest& rest, const RightHandSide& whol
 
 void RefactorizedSystem::solve() {
   why_not_.clear();
-  const Rest rest = load_bearing();
+  const RestOfNetwork rest = load_bearing_rest(network_, broken_, held_);
+  left_ = discs_outside(rest, left_.size());
   for (State& state : states_) {
     state.forces.assign(network_.assembly.contacts.size(), {});
     state.motion.assign(network_.assembly.size() * per_disc_, 0.0);
@@ -144,7 +101,7 @@ void RefactorizedSystem::solve() {
   solve_cases(rest, std::move(unknowns));
 }
 
-void RefactorizedSystem::solve_cases(const Rest& rest, DegreesOfFreedom unknowns) {
+void RefactorizedSystem::solve_cases(const RestOfNetwork& rest, DegreesOfFreedom unknowns) {
   StageTimes times;
   ContactGraph graph(rest.assembly);
   const HeldMotions held = hold_free_motions(rest.assembly, graph, rest.springs, unknowns);
@@ -174,7 +131,8 @@ void RefactorizedSystem::solve_cases(const Rest& rest, DegreesOfFreedom unknowns
 }
 
 /// Where no spring is negative a mechanism deforms no contact, so that only loads can drive it.
-bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const Rest& rest, const StiffnessSolver& solver) {
+bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const RestOfNetwork& rest,
+                                          const StiffnessSolver& solver) {
   if (given.force.empty()) return false;
   for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
     const std::vector<double> motion = solver.factor().null_motion(m);
@@ -185,13 +143,35 @@ bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const Rest
       load += std::abs(given.force[k]);
     }
     if (std::abs(work) <= negligible * largest_motion * load) continue;
-    why_not_ = "a load drives " + describe_motion(rest.assembly, disc_motions(solver.unknowns(), motion));
+    const std::vector<DiscMotion> of_rest = disc_motions(solver.unknowns(), without_forces(rest, solver, motion));
+    std::vector<DiscMotion> motions(network_.assembly.size());
+    for (std::size_t d = 0; d < of_rest.size(); ++d) motions[static_cast<std::size_t>(rest.discs[d])] = of_rest[d];
+    why_not_ = describe_driven(network_, rest, std::move(motions));
     return true;
   }
   return false;
 }
 
-void RefactorizedSystem::take(const Rest& rest, const StiffnessSolver& solver, const HeldMotions& held,
+/// A mechanism without what its factor is wrong by, from the forces of the contacts that it deforms.
+std::vector<double> RefactorizedSystem::without_forces(const RestOfNetwork& rest, const StiffnessSolver& solver,
+                                                       std::vector<double> mechanism) {
+  constexpr int corrections = 2;
+  const SpringNetwork network{rest.assembly, solver.graph(), rest.springs, solver.unknowns()};
+  std::vector<double> change(mechanism.size());
+  PreciseMotion motion(mechanism.size());
+  for (int step = 0; step < corrections; ++step) {
+    motion.high = mechanism;
+    internal_force(network, motion, {}, change);
+    for (std::size_t k = 0; k < change.size(); ++k) {
+      if (solver.unknowns().held[k] != DegreesOfFreedom::free) change[k] = 0;
+    }
+    solver.factor().solve(change, 1);
+    for (std::size_t k = 0; k < change.size(); ++k) mechanism[k] -= change[k];
+  }
+  return mechanism;
+}
+
+void RefactorizedSystem::take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,
                               const RightHandSide& given, const Solution& solution, State& state) {
   std::vector<ContactForce> forces(rest.contacts.size());
   for (std::size_t c = 0; c < forces.size(); ++c)

@@ -6,10 +6,10 @@
 #include <memory>
 #include <utility>
 
-#include "equidem/breakage/discs_without_force.hpp"
 #include "equidem/breakage/disjoint_ways.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
+#include "equidem/breakage/rest_of_network.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
@@ -19,7 +19,6 @@
 #include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
-#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
@@ -229,12 +228,12 @@ class UpdatedSystem final : public SolvedStates {
   /// Where a mechanism is driven for certain, nothing is left to solve for.
   /// \param loose discs may have come loose
   std::vector<std::int32_t> give_up(bool loose) {
-    const std::vector<DiscMotion> motion = equilibrium_.driven_mechanism(driven_);
+    std::vector<DiscMotion> motion = equilibrium_.driven_mechanism(driven_);
     if (motion.empty()) return solve_alone();
     opened_ = nullptr;
     taken_ = false;
     for (State& state : states_) state.carried = false;
-    why_not_ = "a load drives " + describe_motion(network_.assembly, motion);
+    why_not_ = describe_driven(network_, load_bearing_rest(network_, broken_, held_), std::move(motion));
     measured(0);
     return loose ? leave() : std::vector<std::int32_t>{};
   }
@@ -299,7 +298,7 @@ class UpdatedSystem final : public SolvedStates {
 
   /// The network without discs that can carry no force any more.
   std::vector<std::int32_t> leave() {
-    std::vector<std::uint8_t> left = discs_without_force(network_, broken_, held_);
+    std::vector<std::uint8_t> left = discs_outside(load_bearing_rest(network_, broken_, held_), left_.size());
     std::vector<std::int32_t> gone;
     for (std::size_t d = 0; d < left.size(); ++d) {
       if (left[d] != 0 && left_[d] == 0) gone.push_back(static_cast<std::int32_t>(d));

@@ -16,6 +16,8 @@
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/choice/hold_mechanism.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -98,6 +100,24 @@ void check_null_motions(const System& system, const Factorization& factor) {
   }
 }
 
+std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms);
+
+/// Of K without the component that moves most in a mechanism, for which elimination took a pivot that rounding has
+/// left. K must be positive semidefinite: what costs no energy then moves without a force.
+std::unique_ptr<Factorization> hold_softest(const System& system, std::vector<double> softest) {
+  const auto most = std::ranges::max_element(softest, {}, [](double x) { return std::abs(x); });
+  const auto component = static_cast<std::size_t>(most - softest.begin());
+  DegreesOfFreedom unknowns = system.unknowns;
+  unknowns.held[component] = DegreesOfFreedom::supported;
+  --unknowns.unknowns;
+  const StiffnessMatrix matrix = assemble_stiffness(system.k.assembly, system.k.graph, system.springs, unknowns);
+  const MatrixOnGraph k{matrix, system.k.assembly, system.k.graph};
+  return hold_mechanism(
+      indefinite({k, system.springs, unknowns, system.symbolic, system.max_iterations, system.options},
+                 Mechanisms::hold),
+      component, std::move(softest));
+}
+
 std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms) {
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
   if (mechanisms == Mechanisms::hold && is_mechanism(system, *factor)) {
@@ -108,7 +128,9 @@ std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mecha
     if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
     check_null_motions(system, *factor);
   } else if (is_mechanism(system, *factor)) {
-    report_singular(system, factor->softest_motion());
+    if (mechanisms == Mechanisms::refuse || system.springs.may_be_indefinite())
+      report_singular(system, factor->softest_motion());
+    return hold_softest(system, factor->softest_motion());
   }
   return factor;
 }
