@@ -137,6 +137,14 @@ struct SharedFill {
 
 }  // namespace
 
+void check_kept(const CommonOptions& options, bool quick) {
+  const Store store(options);
+  for (const Run& run : plan(quick)) {
+    static_cast<void>(store.find(run.fill.name(), settings_of(run.fill)));
+    static_cast<void>(store.find(run.name(), settings_of(run)));
+  }
+}
+
 void compute(const CommonOptions& options, Reproduction& result) {
   const std::vector<Run> runs = plan(result.quick);
   const Store store(options);

@@ -28,9 +28,10 @@ Table table_of(const Reproduction& result) {
 
 int reproduce(const CommonOptions& options, bool quick) {
   CommonOptions without_folder = options;
-  without_folder.out.reset();  // its files may be there: compute() checks that they belong to the same runs
+  without_folder.out.reset();  // its files may be there: check_kept() sees that they belong to the same runs
   static_cast<void>(start_paper(without_folder, {}, {}));
   const auto lock = lock_out(options);
+  check_kept(options, quick);
   Reproduction result;
   result.quick = quick;
   result.planned = plan(quick).size();

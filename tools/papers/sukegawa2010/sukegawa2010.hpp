@@ -230,6 +230,9 @@ FilledBox fill_box(const Fill& fill, bool shown, const Folder& folder, const std
 Outcome shake_box(const Run& run, const FilledBox& filled, const Folder& folder,
                   const std::function<void(double)>& tick);
 
+/// \throws Error (bad_input) where the folder holds runs of other settings, or altered ones
+void check_kept(const CommonOptions& options, bool quick);
+
 /// Compute all runs that are not yet in the folder, on all threads.
 /// \throws Error (bad_input) where the folder holds runs of other settings; (interrupted): the runs done are in the
 ///         result
