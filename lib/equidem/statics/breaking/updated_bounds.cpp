@@ -12,7 +12,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t blocks_at_once = 1 << 6;
+constexpr std::size_t blocks_at_once = 1 << 4;
 
 }  // namespace
 
@@ -101,29 +101,24 @@ void UpdatedState::reach_beside(const FactorPath& path) {
   }
 }
 
-void UpdatedState::bound_children(std::size_t number, const LoadFactorSearch& search, double limit) {
+void UpdatedState::bound_children(std::size_t number) {
   thread_local std::vector<double> motion;
   for (const std::int32_t child : (*blocks_)[number].children) {
     BlockState& state = states_[child];
     state.at_worst = options.skip ? state.subtree : ClassedUtilization::unknown();
     const bool moved = whole_boundary_motion(child, motion);
     if (!options.skip || !(moved || state.to_correct)) continue;
-    const auto worsen = [&](const std::array<double, 2>& change) {
-      double rate = largest_rate_;
-      for (std::size_t c = 0; c < rate_classes; ++c, rate *= 0.5) {
-        const double most = std::isfinite(state.rate) ? std::min(rate, state.rate) : state.rate;
-        const auto by = [&](double energy) { return energy > 0 ? most * energy : 0; };
-        state.at_worst.of[c] = state.subtree.of[c].after(by(change[1]), by(change[0]));
-      }
-    };
-    worsen(state.reached);
-    if (state.at_worst.least_key(search) > limit) continue;
     std::array<double, 2> change = state.reached;
     const std::size_t size = motion.size() / cases.size();
     for (std::size_t p = 0; p < cases.size(); ++p)
       change[p] = std::min(change[p],
                            blocks_->force_bound(child, std::span(motion).subspan(p * size, size)) + state.corrected[p]);
-    worsen(change);
+    double rate = largest_rate_;
+    for (std::size_t c = 0; c < rate_classes; ++c, rate *= 0.5) {
+      const double most = std::isfinite(state.rate) ? std::min(rate, state.rate) : state.rate;
+      const auto by = [&](double energy) { return energy > 0 ? most * energy : 0; };
+      state.at_worst.of[c] = state.subtree.of[c].after(by(change[1]), by(change[0]));
+    }
   }
 }
 

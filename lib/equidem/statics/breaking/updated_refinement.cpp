@@ -16,7 +16,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t blocks_of_contacts = 1 << 6, discs_at_once = 1 << 11;
+constexpr std::size_t blocks_of_contacts = 1 << 4, discs_at_once = 1 << 9;
 
 /// u := (1 + more) u, to some units of the last place of `low`.
 void grow(PreciseMotion& u, double more) {

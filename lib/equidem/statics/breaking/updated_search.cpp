@@ -74,7 +74,7 @@ FirstToBreak UpdatedState::critical(const LoadFactorSearch& search) {
     parallel_tasks(round.size(), [&](std::size_t k, int worker) {
       visits[k] = visit(round[k], nullptr, worker);
       if (states_[round[k]].own.least_key(search) <= keys.second) found[k] = keys_of(round[k], search);
-      bound_children(round[k], search, keys.second);
+      bound_children(round[k]);
     });
     for (std::size_t k = 0; k < round.size(); ++k) {
       account(visits[k]);

@@ -208,9 +208,8 @@ class UpdatedState {
   double evaluate_forces(std::size_t of_case);
   /// Residual of the forces of a right-hand side, into left_. \return its length, N/m
   double balance(std::size_t of_case);
-  /// Utilizations at worst of the children of a block that is up to date, sharper where keys up to `limit` may be among
-  /// them.
-  void bound_children(std::size_t block, const LoadFactorSearch& search, double limit);
+  /// Utilizations at worst of the children of a block that is up to date.
+  void bound_children(std::size_t block);
   /// The least key of the contacts of a block, and the least that does not tie with it.
   [[nodiscard]] std::array<double, 2> keys_of(std::size_t block, const LoadFactorSearch& search) const;
   [[nodiscard]] BreakingMoment moment_of(std::int64_t slot, const LoadFactorSearch& search) const {
