@@ -7,17 +7,22 @@ namespace equidem {
 namespace {
 
 /// With fewer bodies threads wait for one another longer than they work.
-constexpr std::size_t fewest_bodies_of_threads = 4096;
+constexpr std::size_t fewest_bodies_of_threads = 2048;
 /// Larger blocks have fewer pairs with bodies of others; of many blocks threads get equal shares.
-constexpr std::size_t fewest_bodies_of_block = 1024, most_blocks = 128;
+constexpr std::size_t usual_bodies_of_block = 1024, fewest_blocks = 4, most_blocks = 128;
+
+std::size_t share(std::size_t bodies, std::size_t blocks) {
+  return (bodies + blocks - 1) / blocks;
+}
 
 }  // namespace
 
 BodyBlocks::BodyBlocks(std::size_t bodies, std::size_t per_block) : bodies_(bodies), per_block_(per_block) {
   if (per_block_ > 0) return;
-  per_block_ = bodies < fewest_bodies_of_threads
-                   ? std::max<std::size_t>(bodies, 1)
-                   : std::max(fewest_bodies_of_block, (bodies + most_blocks - 1) / most_blocks);
+  per_block_ =
+      bodies < fewest_bodies_of_threads
+          ? std::max<std::size_t>(bodies, 1)
+          : std::max(std::min(usual_bodies_of_block, share(bodies, fewest_blocks)), share(bodies, most_blocks));
 }
 
 void BodyBlocks::each_in_turn(const std::vector<std::size_t>& earliest, const std::function<void(std::size_t)>& first,
