@@ -311,8 +311,10 @@ TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
       onward.all();
       if (friction < 1 || side > 0) {
         for (const BreakEvent& event : onward.events()) CHECK(event.other_answers == 0);
+        CHECK(onward.run().counters().no_answer == 0);
         continue;
       }
+      CHECK(onward.run().counters().no_answer == 1);
       CHECK_THAT(onward.run().why(), Catch::Contains("the increment has no answer"));
       options.legs = {onward.run().lambda(), 0};
       Unbonded back(scene, springs, strengths, options, {friction, {}});

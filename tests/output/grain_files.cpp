@@ -12,6 +12,7 @@
 #include "equidem/output/files/growing_csv.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
+#include "output/png.hpp"
 #include "output/poly_data_reader.hpp"
 #include "output/runs.hpp"
 #include "output/states.hpp"
@@ -199,4 +200,55 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   lost[1].position.x = NAN;
   picture = {.grains = lost};
   CHECK(refusal_of([&] { write_grain_picture(folder.path(), "lost", picture, false); }).says("grain 1"));
+}
+
+TEST_CASE("a_picture_of_an_open_scene_leaves_out_what_has_fallen_far_below_it") {
+  const TemporaryFolder folder;
+  const auto started = grains_at(0, 4);
+  auto fallen = started;
+  fallen[3].position.y -= 1000;
+  std::vector<Wall> shelf(1);
+  shelf[0].shape = Wall::Shape::segment;
+  shelf[0].point = {0, -2};
+  shelf[0].end = {4, -2};
+  const std::vector<GrainBond> bonds{{.i = 1, .j = 2}, {.i = 2, .j = 3}};
+  GrainPicture picture{.grains = fallen, .bonds = bonds, .walls = shelf, .started = started};
+  struct Drawn {
+    std::uint32_t height;     // of the PNG, whose width is that of all
+    std::ptrdiff_t elements;  // of the SVG that are filled, but letters
+  };
+  const auto drawn = [&](const char* name) {
+    write_grain_picture(folder.path(), name, picture, false);
+    const std::string svg = read_file(folder.path() / (std::string(name) + ".svg"));
+    std::ptrdiff_t elements = 0;
+    for (std::size_t at = 0; (at = svg.find("fill-rule", at)) != std::string::npos; ++at) ++elements;
+    return Drawn{big_endian(read_file(folder.path() / (std::string(name) + ".png")), 20), elements};
+  };
+  const Drawn near = drawn("near");
+  const std::vector<Grain> rest(fallen.begin(), fallen.end() - 1);
+  picture.grains = rest;
+  picture.bonds = std::span(bonds).first(1);
+  const Drawn without = drawn("without");
+  CAPTURE(near.height, near.elements, without.height, without.elements);
+  CHECK(near.elements > 0);
+  CHECK(near.height == without.height);
+  CHECK(near.elements == without.elements);
+  // Beside lines alone nothing is out of the scene, paths show where a grain went, and something is always shown.
+  picture.grains = fallen;
+  picture.bonds = bonds;
+  const auto check_whole = [&](const char* name) {
+    const Drawn whole = drawn(name);
+    CAPTURE(name, whole.height, whole.elements);
+    CHECK(whole.height > 1.5 * near.height);
+    CHECK(whole.elements > near.elements);
+  };
+  shelf[0].shape = Wall::Shape::line;
+  check_whole("lines");
+  shelf[0].shape = Wall::Shape::segment;
+  const std::vector<std::vector<Vec2>> paths(2, std::vector<Vec2>(4, Vec2{0, 0}));
+  picture.paths = paths;
+  check_whole("paths");
+  picture.paths = {};
+  for (Grain& grain : fallen) grain.position.y = -1000;
+  check_whole("all");
 }

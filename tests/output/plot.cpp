@@ -98,6 +98,21 @@ TEST_CASE("a_plot_is_data_a_script_that_runs_again_and_two_pictures") {
   }
 }
 
+TEST_CASE("labels_of_an_axis_differ_and_round_off_is_drawn_as_a_straight_line") {
+  // Between tics of 1, 2 or 5 times a power of ten: 2e-9 for a spread of 1e-8 beside 0.1, so that nine digits differ.
+  const auto axis_of = [](double spread) {
+    const Series path{.label = "path", .x = {0.1, 0.1 + spread, 0.1}, .y = {0, 1, 2}};
+    const Plot plot{.x = {.label = "x, m"}, .y = {.label = "y, m"}, .series = {path}};
+    const std::string script = plot_script("path", plot, plot_data(plot));
+    const std::size_t range = script.find("set xrange"), format = script.find("set format x");
+    return std::pair(script.substr(range, script.find('\n', range) - range), script.substr(format, 20));
+  };
+  CHECK(axis_of(0.05).second.starts_with("set format x '%g'"));
+  CHECK(axis_of(1e-8).second.starts_with("set format x '%.9g'"));
+  CHECK(axis_of(1e-8).first != axis_of(0).first);
+  CHECK(axis_of(2e-14) == axis_of(0));
+}
+
 TEST_CASE("logarithmic_axes_are_drawn") {
   const double largest = GENERATE(40.0, 1e6);
   const TemporaryFolder folder;

@@ -326,7 +326,9 @@ uy = {motion}
 
     def test_the_friction_or_a_toughness_can_be_asked_for(self):
         friction = parse_json(self.check_done(equidem("calibrate", STRENGTH, *SMALL, "--set", "strength_target.shear_over_tension=1.0",
+                                                      "--set", "strength.friction=none", "--out", self.folder / "out",
                                                       "--json", "-")).stdout)
+        self.check_done(equidem("calibrate", self.folder / "out" / "case.toml", "--dry-run"))
         self.check_close(friction["contact_strength"]["shear_over_tension"], 1, 1e-12)
         self.check_close(friction["achieved"]["compressive"], 25e6, 0.005)
         notched = ("--set", "strength_target.compressive=none", "--set", "strength_target.notches=[0.002]")
@@ -337,10 +339,29 @@ uy = {motion}
                                                    f"strength_target.toughness={(low + high) / 2 * 5e6}", "--json", "-")).stdout)
         self.check_close(tough["achieved"]["toughness"], (low + high) / 2 * 5e6, 0.005)
 
+    def test_what_the_tests_of_strength_do_not_use_is_told(self):
+        self.assertNotIn("not used", self.check_done(equidem("calibrate", STRENGTH, *SMALL, "--dry-run")).stdout)
+        path = self.folder / "acted_on.toml"
+        path.write_text(STRENGTH.read_text() + """
+[[support]]
+group = "left"
+ux    = true
+[[load]]
+group = "right"
+force = [1.0, 0.0]
+[quasistatic]
+legs = [1.0]
+""")
+        told = r"not used\s+\[\[support\]\], \[\[load\]\], \[quasistatic\]: the tests of"
+        for words in (["--dry-run"], []):
+            self.assertRegex(self.check_done(equidem("calibrate", path, *SMALL, *words)).stdout, told)
+
     def test_strengths_that_cannot_be_found_are_refused(self):
         self.check_error(equidem("calibrate", STRENGTH, *SMALL, "--set", "strength_target.compressive=1e9"), 1,
                          "compressive over tensile strength of 200 is not feasible", "Take another friction")
         self.check_error(equidem("calibrate", STRENGTH, "--set", "strength.tension=1e3"), 2, "beside [strength_target]")
+        self.check_error(equidem("calibrate", STRENGTH, "--set", "strength_target.shear_over_tension=1.0"), 2,
+                         "strength.friction: it is given beside strength_target.shear_over_tension", "Remove one")
         self.check_error(equidem("calibrate", STRENGTH, "--set", "assembly.periodic=true"), 2, "no ends to pull at or press")
         self.check_error(equidem("calibrate", STRENGTH, "--set", "strength_target.toughness=1e5"), 2, "strength_target")
         self.check_error(equidem("calibrate", STRENGTH, "--springs", self.folder / "k.toml"), 2, "the case for strengths")

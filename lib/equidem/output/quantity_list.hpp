@@ -238,6 +238,7 @@ inline constexpr ResultQuantity quantities[] = {
     {"unstable_states", "", "number of states with unstable modes"},
     {"increments/unique", "", "increments behind events of which no other answer exists"},
     {"increments/not_unique", "", "those of which another answer was found"},
+    {"increments/no_answer", "", "1 where the path ends at an increment that has no answer"},
     {"increments/not_decided", "",
      "those of which one answer is not proved, and not every combination of contacts on limits was tried"},
     {"increments/not_decided_contacts", "", "the largest number of contacts on limits of an increment not decided"},

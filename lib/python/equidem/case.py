@@ -242,7 +242,7 @@ class Case:
 
         `result.events` lists them: lambda, contact, mode, stress [xx, yx, xy, yy] in Pa, load, motion, energies in N.
         With ``strength.after_breaking = "rubs"`` contacts without a bond open, close, slip and stick too, and
-        `result.increments` tells how many increments have one answer, several, or were not decided.
+        `result.increments` tells how many increments have one answer, several, none, or were not decided.
         """
         return self.run_verb("quasistatic", **options)
 

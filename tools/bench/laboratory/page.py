@@ -40,6 +40,12 @@ it is the paths of the discs that decide where they jam, and these diverge. The 
 samples, by some degrees with 445 discs. The Brazilian disc of YADE bears more as local damping holds what splits: with 0.02 in place
 of 0.2 it breaks at 1.83e6 Pa. With the few discs of the beam the time is that of the calls from Python.
 
+The rows of YADE are those of scripts of ours with its engines (`tools/bench/peers/laboratory_yade.py`), since the examples of its package
+(2023.02a) are three-dimensional: `concrete/brazilian.py` and `concrete/uniax.py` split and press spheres with a law of damage, the
+biaxial test is `triax-tutorial`, `clumps/clump-hopper-test.py` and `DEM2020Benchmark/Case1_SiloFlow.py` empty a bunker and a silo,
+`PeriodicBoundaries/periodicSandPile.py` heaps spheres, and `cylinders/bendingbeams.py` bends beams of cylinders under their weight.
+`PeriodicBoundaries/periodic-simple-shear.py` shears a periodic cell; a shear box of two halves is not among them.
+
 YADE is the better choice for tests that you program: its scripts stop, change and measure anything in Python between steps, its servo
 walls work in three dimensions, and its package brings tests of this kind in 3D. Its bonds break in tension and shear; the moments of
 CohFrictMat yield. Ours have no rolling resistance between bodies that are not bonded.

@@ -58,6 +58,7 @@ int dry_run_strengths(const CommonOptions& options, Problem& problem) {
   const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
   const double solutions = solutions_of_path(estimated_events(std::ssize(problem.assembly.contacts)));
   Results results;
+  add_unused(results, problem.resolved);
   results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});
   results.note(", in each of which a tenth of the contacts breaks");
   deliver(options, "dry_run", dry_run_results(problem, tests * solutions, results, AssemblyKeys::size), problem.times);

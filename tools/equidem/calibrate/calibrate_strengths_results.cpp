@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate_strengths_results.hpp"
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -125,11 +126,19 @@ void add_feasible(Results& out, const StrengthTargetCase& target, const Strength
 
 }  // namespace
 
+void add_unused(Results& out, const Case& resolved) {
+  static constexpr std::array tables{"test", "support", "load", "strain"};
+  std::vector<std::string> unused = resolved.headings(tables);
+  if (resolved.quasistatic != QuasistaticCase{}) unused.emplace_back("[quasistatic]");
+  if (!unused.empty()) out.line("not used", joined(unused) + ": the tests of [strength_target] take their place");
+}
+
 Results strength_results(const Problem& problem, const StrengthSample& first, const StrengthCalibration& found) {
   const Case& resolved = problem.resolved;
   const StrengthTargetCase& target = *resolved.strength_target;
   const StrengthOptions given = resolved.strength.value_or(StrengthOptions{});
   Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation));
+  add_unused(out, resolved);
   add_wanted_strengths(out, target.wanted);
   add_tests(out, target, first, found);
   add_found_strengths(out, found, target, given.bond_length);

@@ -9,6 +9,9 @@
 
 namespace equidem {
 
+/// Tells of supports, loads and paths of the case, in whose place the tests stand.
+void add_unused(Results& out, const Case& resolved);
+
 /// Report and JSON.
 /// \param first sample, whose width the report tells
 Results strength_results(const Problem& problem, const StrengthSample& first, const StrengthCalibration& found);

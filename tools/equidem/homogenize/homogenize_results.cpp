@@ -2,6 +2,7 @@
 #include "homogenize/homogenize_results.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -35,12 +36,8 @@ void add_mean_strain(Results& out, const Problem& problem, bool periodic, Bounda
              "A free sample lacks the contacts across its boundary: it is softer than its bulk by about the share of "
              "the cells there.");
   }
-  std::vector<std::string> unused;
-  for (const char* table : {"test", "support", "load"}) {
-    const TomlValue* given = problem.resolved.document.find(table);
-    if (given != nullptr)
-      unused.push_back(given->is_array() ? fmt::format("[[{}]]", table) : fmt::format("[{}]", table));
-  }
+  static constexpr std::array tables{"test", "support", "load"};
+  const std::vector<std::string> unused = problem.resolved.headings(tables);
   if (!unused.empty()) out.line("not used", joined(unused) + ": the mean strain takes their place");
 }
 

@@ -142,11 +142,14 @@ void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& syst
 
 void add_trust(Results& out, const UnbondedRun& run) {
   const UnbondedCounters counters = run.counters();
-  out.line("uniqueness", fmt::format("{} with events: {} with one answer, {} with several, {} not decided",
-                                     counted(counters.unique + counters.not_unique + counters.unchecked, "increment"),
-                                     counters.unique, counters.not_unique, counters.unchecked));
+  out.line(
+      "uniqueness",
+      fmt::format("{} with events: {} with one answer, {} with several, {} with none, {} not decided",
+                  counted(counters.unique + counters.not_unique + counters.no_answer + counters.unchecked, "increment"),
+                  counters.unique, counters.not_unique, counters.no_answer, counters.unchecked));
   out.set("increments/unique", counters.unique)
       .set("increments/not_unique", counters.not_unique)
+      .set("increments/no_answer", counters.no_answer)
       .set("increments/not_decided", counters.unchecked)
       .set("increments/not_decided_contacts", counters.most_unchecked_contacts);
   if (counters.not_unique > 0) {

@@ -321,6 +321,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
                          .groups = colours,
                          .bonds = holding.bonds,
                          .walls = walls,
+                         .started = resolved.scene.grains,
                          .paths = paths},
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);

@@ -105,7 +105,13 @@ bool UnbondedRun::find_rates() {
   RateSearch search = search_rates(problem, solver_, state_->status());
   RateAnswer& answer = search.answer;
   if (!search.found) {
-    if (answer.agrees) record_changes(answer.status);
+    if (answer.agrees) {
+      record_changes(answer.status);
+    } else if (search.tried > 0) {
+      ++counters_.no_answer;
+    } else {
+      count_unchecked(limits.size());
+    }
     end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
     return false;
   }
@@ -116,6 +122,11 @@ bool UnbondedRun::find_rates() {
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
   return true;
+}
+
+void UnbondedRun::count_unchecked(std::size_t limits) {
+  ++counters_.unchecked;
+  counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, static_cast<std::int64_t>(limits));
 }
 
 /// Looks for other answers of an increment that begins with these events, and tells them.
@@ -135,10 +146,12 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
     }
     branches = find_branches(problem, compliance, answer, fresh);
   }
-  ++(branches.others > 0 ? counters_.not_unique : branches.all_tried ? counters_.unique : counters_.unchecked);
+  if (branches.others == 0 && !branches.all_tried) {
+    count_unchecked(problem.limits.size());
+  } else {
+    ++(branches.others > 0 ? counters_.not_unique : counters_.unique);
+  }
   if (!branches.all_tried) {
-    if (branches.others == 0)
-      counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, std::ssize(problem.limits));
     for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
   }
   if (branches.others == 0) return;

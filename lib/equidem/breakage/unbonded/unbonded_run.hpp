@@ -35,6 +35,7 @@ struct UnbondedCounters {
   std::int64_t factorizations = 0, updates = 0;
   std::int64_t unique = 0;      ///< increments of which no other answer exists
   std::int64_t not_unique = 0;  ///< of which another answer was found
+  std::int64_t no_answer = 0;   ///< of which no combination of states of contacts on limits balances
   std::int64_t unchecked = 0;   ///< neither proved nor with few enough contacts on limits to try all combinations
   std::int64_t most_unchecked_contacts = 0;  ///< on limits, of such an increment
   /// Relative, of the rates of motion and of load of the first other answer.
@@ -85,6 +86,7 @@ class UnbondedRun : public EventPath {
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
+  void count_unchecked(std::size_t limits);
   void end(PathEnd why, std::string sentence);
 
   BreakageScene scene_;

@@ -85,6 +85,8 @@ struct QuasistaticCase {
   std::vector<double> legs;            ///< lambda at the end of each; empty: one without an end
   std::int64_t max_events = 0;         ///< 0: no limit
   std::int64_t frame_every = 0;        ///< events from one frame to the next; 0: no frames
+
+  friend bool operator==(const QuasistaticCase&, const QuasistaticCase&) = default;
 };
 
 /// [output]: files written with --out, in addition to result.json and case.toml.

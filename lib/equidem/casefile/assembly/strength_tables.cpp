@@ -48,24 +48,26 @@ std::vector<Key<StrengthTargetCase>> strength_target_keys() {
   using T = StrengthTargetCase;
   using W = StrengthTargets;
   using O = StrengthTestOptions;
-  return {key("tensile", &T::wanted, &W::tensile, required, unit("Pa"), positive, "strength in tension"),
-          key("compressive", &T::wanted, &W::compressive, unit("Pa"), positive,
-              or_instead({"toughness"}, "one of them goes with the strength in tension"),
-              "unconfined compressive strength"),
-          key("toughness", &T::wanted, &W::toughness, unit("Pa sqrt(m)"), positive,
-              "K_Ic of samples with a notch in the middle, the mean over notches"),
-          key("notches", &T::wanted, &W::notches, unit("m"), only_with({"toughness"}, "it is read off notched samples"),
-              "their lengths 2a, across the axis, each below the width of the sample"),
-          key("samples", &T::samples, from(1, 1e4),
-              "samples from the seeds s, s + 1, ... of the assembly and of the strengths; one where neither is random"),
-          key("shear_over_tension", &T::shear_over_tension, positive,
-              "f_s/f_t of the contacts: the friction is found; left out: f_s is, with the friction of [strength]"),
-          key("axis", &T::test, &O::axis, "direction of both tests: between left and right, or bottom and top"),
-          key("ends", &T::test, &O::ends,
-              "of the samples; frictionless: free to slide along the plates, the usual setting of unconfined tests of "
-              "bonded discs; glued: held"),
-          key("fallen_to", &T::test, &O::fallen_to, between(0, 1),
-              "a test is over where the load has fallen to this share of its peak")};
+  return {
+      key("tensile", &T::wanted, &W::tensile, required, unit("Pa"), positive, "strength in tension"),
+      key("compressive", &T::wanted, &W::compressive, unit("Pa"), positive,
+          or_instead({"toughness"}, "one of them goes with the strength in tension"),
+          "unconfined compressive strength"),
+      key("toughness", &T::wanted, &W::toughness, unit("Pa sqrt(m)"), positive,
+          "K_Ic of samples with a notch in the middle, the mean over notches"),
+      key("notches", &T::wanted, &W::notches, unit("m"), only_with({"toughness"}, "it is read off notched samples"),
+          "their lengths 2a, across the axis, each below the width of the sample"),
+      key("samples", &T::samples, from(1, 1e4),
+          "samples from the seeds s, s + 1, ... of the assembly and of the strengths; one where neither is random"),
+      key("shear_over_tension", &T::shear_over_tension, positive,
+          "f_s/f_t of the contacts: the friction is found, and not given in [strength]; left out: f_s is found, with "
+          "the friction of [strength]"),
+      key("axis", &T::test, &O::axis, "direction of both tests: between left and right, or bottom and top"),
+      key("ends", &T::test, &O::ends,
+          "of the samples; frictionless: free to slide along the plates, the usual setting of unconfined tests of "
+          "bonded discs; glued: held"),
+      key("fallen_to", &T::test, &O::fallen_to, between(0, 1),
+          "a test is over where the load has fallen to this share of its peak")};
 }
 
 void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder) {
@@ -83,6 +85,11 @@ void check_strength_target(const TomlValue& root) {
               "calibrate looks for it; friction, bond_length and weibull_modulus of [strength] are kept",
               "Remove one of them");
   }
+  // The default, 0, is in the case that a calibration writes.
+  const TomlValue* friction = strength->find("friction");
+  if (friction != nullptr && friction->real != 0 && target->find("shear_over_tension") != nullptr)
+    fail_at(*friction, "strength.friction", "it is given beside strength_target.shear_over_tension",
+            "calibrate looks for the friction where f_s/f_t is given", "Remove one of them");
   if (const TomlValue* given = strength->find("after_breaking"); given != nullptr && given->text == "rubs")
     fail_at(*given, "strength.after_breaking", "\"rubs\" is given beside [strength_target]",
             "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");

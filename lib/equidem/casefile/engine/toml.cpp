@@ -208,6 +208,15 @@ std::string CaseDocument::where(std::string_view key) const {
   return fmt::format("{}: {}", value_at(document, key).where(), key);
 }
 
+std::vector<std::string> CaseDocument::headings(std::span<const char* const> tables) const {
+  std::vector<std::string> found;
+  for (const char* name : tables) {
+    if (const TomlValue* table = document.find(name); table != nullptr)
+      found.push_back(table->is_array() ? fmt::format("[[{}]]", name) : fmt::format("[{}]", name));
+  }
+  return found;
+}
+
 TomlValue parse_toml(std::string_view text, const std::string& source) {
   check_depth(text, source);
   const auto name = std::make_shared<const std::string>(source);

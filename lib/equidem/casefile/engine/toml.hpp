@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -75,6 +76,8 @@ struct CaseDocument {
 
   /// "cases/a.toml:7: load.0.group": place in the user's input, for error messages.
   [[nodiscard]] std::string where(std::string_view key) const;
+  /// Headings of those of some tables that the document has: {"[test]", "[[load]]"}.
+  [[nodiscard]] std::vector<std::string> headings(std::span<const char* const> tables) const;
 };
 
 /// \param source name of the file, for messages

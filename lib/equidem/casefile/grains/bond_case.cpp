@@ -28,7 +28,12 @@ std::vector<Key<StrengthOptions>> strength_keys_of_bonds() {
     return key.spec.name == "after_breaking" || key.spec.name == "residual_friction";
   });
   for (Key<StrengthOptions>& key : keys) {
-    if (key.spec.name == "bond_length") key.spec.choices = {"none", "smaller_diameter"};
+    if (key.spec.name == "bond_length") {
+      key.spec.choices = {"none", "smaller_diameter"};
+      key.spec.help =
+          "the length by which strengths in Pa are multiplied: the diameter of the smaller disc; none: strengths are "
+          "forces";
+    }
     if (key.spec.name == "tension")
       key.spec.help = "a bond breaks where its normal force, and what its moment adds at the outer fibre, reach it";
   }

@@ -33,6 +33,45 @@ bool is_there(Vec2 place) {
   return !std::isnan(place.x);
 }
 
+/// What a picture shows of the grains.
+struct ShownGrains {
+  std::vector<Grain> grains;
+  std::vector<int> groups;
+  std::vector<GrainBond> bonds;  ///< between grains that are shown, by their numbers here
+
+  /// Of those for which `is_shown` holds.
+  ShownGrains(const GrainPicture& picture, const std::vector<bool>& is_shown) {
+    std::vector<std::size_t> numbers(picture.grains.size());
+    for (std::size_t g = 0; g < picture.grains.size(); ++g) {
+      if (!is_shown[g]) continue;
+      numbers[g] = grains.size();
+      grains.push_back(picture.grains[g]);
+      if (!picture.groups.empty()) groups.push_back(picture.groups[g]);
+    }
+    for (GrainBond bond : picture.bonds) {
+      if (!is_shown[bond.i] || !is_shown[bond.j]) continue;
+      bond.i = numbers[bond.i], bond.j = numbers[bond.j];
+      bonds.push_back(bond);
+    }
+  }
+};
+
+/// Whether each grain is in the scene or near it; empty: all are shown.
+std::vector<bool> near_the_scene(const GrainPicture& picture) {
+  const auto is_finite = [](const Wall& wall) { return wall.shape != Wall::Shape::line; };
+  if (picture.started.empty() || !picture.paths.empty() || std::ranges::none_of(picture.walls, is_finite)) return {};
+  GrainView scene;
+  for (const Grain& grain : picture.started) scene.include(grain.position, grain.radius);
+  scene.include_walls(picture.walls, picture.time);
+  const double reach = 0.5 * scene.larger_side();
+  std::vector<bool> near;
+  for (const Grain& grain : picture.grains) {
+    const Vec2 above = grain.position - scene.low, below = scene.high - grain.position;
+    near.push_back(!(std::min({above.x, above.y, below.x, below.y}) < -reach));
+  }
+  return std::ranges::count(near, true) == 0 ? std::vector<bool>{} : near;
+}
+
 GrainView view_of(const GrainPicture& picture) {
   if (picture.grains.empty()) bad_input("the picture would be empty", "there are no grains", "Draw some");
   GrainView view;
@@ -224,38 +263,45 @@ void draw_paths(Canvas& canvas, const PageFrame& frame, const GrainPicture& pict
   }
 }
 
-std::string caption_of(const GrainPicture& picture) {
-  std::string caption =
-      fmt::format("{}, t = {:.6g} s", counted(static_cast<long long>(picture.grains.size()), "grain"), picture.time);
+std::string caption_of(const GrainPicture& picture, std::size_t whole) {
+  std::string caption = counted(std::ssize(picture.grains), "grain");
+  if (picture.grains.size() < whole) caption += fmt::format(" of {}: the others are far outside", whole);
+  caption += fmt::format(", t = {:.6g} s", picture.time);
   if (!picture.paths.empty()) caption += ", paths from the pale circles";
   return caption;
 }
 
-std::string draw(const GrainPicture& picture, const PageFrame& frame, PageFormat format_of_page) {
+std::string draw(const GrainPicture& picture, std::size_t whole, const PageFrame& frame, PageFormat format_of_page) {
   Canvas canvas(format_of_page, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(frame.height)), 1);
   draw_walls(canvas, frame, picture);
   draw_starts(canvas, frame, picture);
   draw_grains(canvas, frame, picture);
   draw_bonds(canvas, frame, picture);
   draw_paths(canvas, frame, picture);
-  draw_texts(canvas, frame, picture.title, caption_of(picture));
+  draw_texts(canvas, frame, picture.title, caption_of(picture, whole));
   return canvas.finish();
 }
 
 }  // namespace
 
 std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
-                                                       const GrainPicture& picture, bool overwrite) {
+                                                       const GrainPicture& whole, bool overwrite) {
+  GrainPicture picture = whole;
+  std::optional<ShownGrains> shown;
+  if (const std::vector<bool> near = near_the_scene(whole); !near.empty()) {
+    shown.emplace(whole, near);
+    picture.grains = shown->grains, picture.groups = shown->groups, picture.bonds = shown->bonds;
+  }
   const PageFrame frame = lay_out(picture);
   std::vector<std::filesystem::path> files{folder / (name + ".png")};
-  write_file(files.back(), draw(picture, frame, PageFormat::png), overwrite);
+  write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::png), overwrite);
   DrawnFigure drawn{.name = name,
                     .title = fmt::format("{}{}{} at t = {:.4g} s", picture.title, picture.title.empty() ? "" : ": ",
-                                         counted(std::ssize(picture.grains), "body", "bodies"), picture.time),
+                                         counted(std::ssize(whole.grains), "body", "bodies"), picture.time),
                     .png = files.back()};
   if (picture.grains.size() <= most_drawn_discs) {
     files.push_back(folder / (name + ".svg"));
-    write_file(files.back(), draw(picture, frame, PageFormat::svg), overwrite);
+    write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::svg), overwrite);
     drawn.svg = files.back();
   }
   DrawnFigures::add(std::move(drawn));

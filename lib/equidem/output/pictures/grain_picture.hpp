@@ -24,12 +24,15 @@ struct GrainPicture {
   std::span<const int> groups = {};       ///< of each grain: its colour; empty: all alike
   std::span<const GrainBond> bonds = {};  ///< lines from centre to centre
   std::span<const Wall> walls = {};
+  std::span<const Grain> started = {};  ///< the scene before it moved, by which grains are left out; empty: none is
   /// Places of all grains at moments, NaN where one was not there; empty: no paths.
   std::span<const std::vector<Vec2>> paths = {};
 };
 
 /// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs (picture.hpp) are drawn. The view
-/// holds all grains, their paths, segments and arcs; lines are clipped to it.
+/// holds grains, their paths, segments and arcs; lines are clipped to it. Where there are segments or arcs and no
+/// paths, grains are left out that lie farther from the box round these walls and the grains that started than half its
+/// larger side: they have fallen out of the scene. The caption tells how many are shown.
 /// \throws Error (bad_input) without grains, on places that are not finite, and as write_file does
 std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
                                                        const GrainPicture& picture, bool overwrite);

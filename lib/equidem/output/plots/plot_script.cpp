@@ -40,10 +40,19 @@ std::string vertical_line(const VerticalLine& line, const std::string& plain) {
   return text;
 }
 
+/// The format of labels of a linear axis: six digits, or as many as tell tics apart, of which there are up to ten.
+std::string number_format(const AxisRange& range) {
+  const double largest = std::max(std::abs(range.min), std::abs(range.max));
+  const double wanted = std::floor(std::log10(largest / (range.max - range.min))) + 3;
+  constexpr int usual = 6, most = 15;
+  const int digits = std::isfinite(wanted) ? static_cast<int>(std::clamp<double>(wanted, usual, most)) : usual;
+  return digits == usual ? "%g" : fmt::format("%.{}g", digits);
+}
+
 /// Scale and tic labels. A logarithmic axis shorter than two decades is labelled at 1, 2 and 5, a longer one at
 /// powers of ten.
 std::string axis_scale(char letter, const Axis& axis, const AxisRange& range) {
-  if (!axis.logarithmic) return fmt::format("set format {} '%g'\n", letter);
+  if (!axis.logarithmic) return fmt::format("set format {} '{}'\n", letter, number_format(range));
   std::string text = fmt::format("set logscale {}\n", letter);
   if (std::log10(range.max / range.min) > 2 || range.min < 1e-4 || range.max > 1e5) {
     return text + fmt::format("set format {} '10^{{%T}}'\n", letter);
@@ -102,7 +111,7 @@ std::string one_panel(const std::string& name, const Plot& plot, std::vector<std
 
 /// Panels beside and below each other; the axes are labelled once, at the left and below.
 std::string all_panels(const std::string& name, const Plot& plot, const std::vector<std::vector<std::string>>& clauses,
-                       const std::string& plain) {
+                       const PlotFrame& frame, const std::string& plain) {
   const auto count = clauses.size();
   const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   const std::size_t rows = (count + columns - 1) / columns;
@@ -119,8 +128,9 @@ std::string all_panels(const std::string& name, const Plot& plot, const std::vec
                for (std::size_t k = 0; k < count; ++k) {
                  text += fmt::format("set title {} offset 0,-0.6 font ',{:.3g}'{}\n", gnuplot_string(plot.panels[k]),
                                      0.85 * font_size, plain);
-                 text += fmt::format("set format x '{}'\nset format y '{}'\n", k + columns >= count ? "%g" : "",
-                                     k % columns == 0 ? "%g" : "");
+                 text += fmt::format("set format x '{}'\nset format y '{}'\n",
+                                     k + columns >= count ? number_format(frame.x) : "",
+                                     k % columns == 0 ? number_format(frame.y) : "");
                  text += clauses[k].empty() ? "plot NaN notitle\n" : plot_command(clauses[k]);
                  if (k == 0) text += "unset label 1\nunset label 2\n";
                }
@@ -238,7 +248,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
     outside = outside || has_points_outside(plot, series, frame);
   }
   return text + (plot.panels.empty() ? one_panel(name, plot, clauses.front(), outside, plain)
-                                     : all_panels(name, plot, clauses, plain));
+                                     : all_panels(name, plot, clauses, frame, plain));
 }
 
 }  // namespace equidem

@@ -22,7 +22,8 @@ AxisRange rounded(double low, double high) {
   return {step * std::floor(low / step), step * std::ceil(high / step)};
 }
 
-/// The given bounds, else those of the data with a small margin, rounded outwards.
+/// The given bounds, else those of the data with a small margin, rounded outwards. Data that differ by round-off alone
+/// are drawn as equal ones.
 AxisRange range_of(const Axis& axis, const std::vector<Series>& series,
                    std::initializer_list<std::vector<double> Series::*> members) {
   double low = std::numeric_limits<double>::infinity();
@@ -40,7 +41,9 @@ AxisRange range_of(const Axis& axis, const std::vector<Series>& series,
     const double margin = low < high ? std::pow(high / low, 0.05) : 2;
     low /= margin, high *= margin;
   } else {
-    const double margin = low < high ? 0.05 * (high - low) : std::max(0.1 * std::abs(low), 1e-12);
+    constexpr double round_off = 1e-12;  // relative
+    const bool differ = high - low > round_off * std::max(std::abs(low), std::abs(high));
+    const double margin = differ ? 0.05 * (high - low) : std::max(0.1 * std::abs(low), 1e-12);
     const AxisRange padded = rounded(low - margin, high + margin);
     low = padded.min, high = padded.max;
   }
