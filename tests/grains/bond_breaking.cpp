@@ -61,7 +61,9 @@ TEST_CASE("a_bond_breaks_by_tension_with_bending_or_by_shear_with_friction") {
   CHECK(mode(0, -6.01, 0) == BreakMode::shear);
   CHECK_FALSE(mode(-4, 7.99, 0));
   CHECK(mode(-4, 8.01, 0) == BreakMode::shear);
-  CHECK(break_of(k, 0, {0, 0}, 0, 0, 6, 0.5) == BreakMode::tension);  // no strength, no load
+  CHECK_FALSE(break_of(k, bond_kM, {0, 0}, 0, 0, 0, 0.5));  // what carries nothing does not break
+  CHECK(break_of(k, 0, {1e-300, 0}, 0, 0, 6, 0.5) == BreakMode::tension);
+  CHECK(break_of(k, 0, {0, 1e-300}, 0, 6, 0, 0.5) == BreakMode::shear);
   CHECK_FALSE(break_of(k, 0, {-1, 0}, 0, 0, 6, 0.5));
 }
 
@@ -343,12 +345,18 @@ TEST_CASE("strengths_that_mean_nothing_are_refused") {
   CHECK_THROWS_AS(bond_strengths(scene, {.tension = 1.0}), Error);
 }
 
-TEST_CASE("bonds_without_strength_all_break_at_once") {
+TEST_CASE("bonds_without_strength_all_break_under_their_first_load") {
   GrainScene scene = chain_scene(NormalLaw::linear_dashpot, 9, {.normal_spring = 50, .tangential_spring = 20});
   scene.strengths = ContactStrengths{std::vector<double>(8, 0.0), std::vector<double>(8, 0.0), 0};
-  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3));
+  GrainScene still = scene;
+  for (Grain& grain : still.grains) grain.velocity = {}, grain.spin = 0;
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3)),
+      at_rest(still, options_of(NormalLaw::linear_dashpot, 1e-3));
   simulation.advance(2000);
   CHECK(simulation.breaks().size() == 8);
-  CHECK(simulation.breaks().back().step == 0);
+  CHECK(simulation.breaks().back().step == 1);
   CHECK(simulation.bonds().number == 0);
+  at_rest.advance(2000);
+  CHECK(at_rest.breaks().empty());
+  CHECK(at_rest.bonds().number == 8);
 }

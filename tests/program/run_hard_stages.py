@@ -99,14 +99,17 @@ quantities = ["position", "velocity"]
         automatic = self.run_case(self.write(TOUCHING + BONDS.replace("1.0e6", "1.0e9") + "[run]\nduration = 1e-4\n"))
         self.assertLess(automatic["time_step"], automatic["bonds"]["critical_time_step"])
 
-    def test_a_bond_without_strength_breaks_under_no_load_or_is_refused(self):
+    def test_a_bond_without_strength_holds_while_it_carries_nothing_or_is_refused(self):
         run = "[run]\nduration = 1.0e-3\n"
-        out = self.folder / "out"
-        result = self.run_case(self.write(TOUCHING + BONDS + STRENGTH.format(0.0, 0.0) + run), "--out", out, *NO_PICTURE)
-        self.assertEqual(result["breaks"]["number"], 1)
-        self.assertEqual(result["breaks"]["energy"], 0)
-        self.assertEqual(rows_of(out / "breaks.csv")[0]["step"], "0")
+        text = TOUCHING + BONDS + STRENGTH.format(0.0, 0.0) + run
+        result = self.run_case(self.write(text))
+        self.assertEqual(result["breaks"]["number"], 0)
         self.assertEqual(result["energy"]["kinetic"], 0)
+        out = self.folder / "out"
+        moves = text.replace("[0.04, 0.01]\n", "[0.04, 0.01]\nvelocity = [1.0e-6, 0.0]\n")
+        result = self.run_case(self.write(moves), "--out", out, *NO_PICTURE)
+        self.assertEqual(result["breaks"]["number"], 1)
+        self.assertEqual(rows_of(out / "breaks.csv")[0]["step"], "1")
         for strength in ("-1.0", "nan", "inf"):
             self.refused(TOUCHING + BONDS + STRENGTH.format(strength, 1.0) + run, "case.toml:", "strength")
 
