@@ -328,6 +328,26 @@ TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
   CHECK(found.bond == weakest);
 }
 
+TEST_CASE("discs_that_overlap_under_a_bond_part_with_the_energy_of_the_overlap_when_it_breaks") {
+  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  GrainScene scene = breaking_pair(stepping.law, 1e-9, never);
+  const double overlap = 1e-3;
+  scene.grains[0].position.x += overlap / 2;
+  scene.grains[1].position.x -= overlap / 2;
+  scene.grains[0].velocity.x = -1e-6;
+  scene.grains[1].velocity.x = 1e-6;
+  const double stored = describe(stepping.law).energy(scene.pairs[0].stiffness, overlap);
+  GrainSimulation simulation(scene, options_of(stepping, 1e-3));
+  simulation.advance(20000);
+  const EnergyLedger ledger = simulation.energy();
+  CAPTURE(stepping.name(), stored, ledger.initial, ledger.lost_breaking, ledger.kinetic, ledger.error());
+  CHECK(simulation.breaks().size() == 1);
+  CHECK(simulation.contacts().empty());
+  CHECK(-ledger.lost_breaking == Approx(stored).epsilon(1e-3));
+  CHECK(ledger.kinetic == Approx(stored).epsilon(1e-2));
+  CHECK(ledger.kinetic > 1e3 * ledger.initial);
+}
+
 TEST_CASE("strengths_that_mean_nothing_are_refused") {
   const auto refuses = [](const GrainScene& scene, NormalLaw law = NormalLaw::linear_dashpot) {
     CHECK_THROWS_AS(GrainSimulation(scene, options_of(law, 1e-4)), Error);

@@ -113,6 +113,31 @@ quantities = ["position", "velocity"]
         for strength in ("-1.0", "nan", "inf"):
             self.refused(TOUCHING + BONDS + STRENGTH.format(strength, 1.0) + run, "case.toml:", "strength")
 
+    def test_discs_that_overlap_under_a_bond_part_with_the_energy_of_the_overlap(self):
+        overlap, speed = 1e-5, 1e-6
+        text = TOUCHING.replace("[0.04, 0.01]", f"[{0.04 - overlap!r}, 0.01]\nvelocity = [{speed}, 0.0]") + BONDS + \
+            STRENGTH.format(1e-4, 1.0) + '[run]\nduration = 0.01\nintegrator = "velocity_verlet"\n'
+        energy = self.run_case(self.write(text))["energy"]
+        stored = 0.5e6 * overlap**2
+        self.assertLess(energy["initial"], 1e-4 * stored)
+        self.assertAlmostEqual(-energy["lost_breaking"] / stored, 1, delta=1e-3)
+        self.assertLess(abs(energy["relative_error"]), 1e-2)
+
+    def test_too_much_energy_of_discs_that_overlapped_under_bonds_names_the_overlap(self):
+        # two heavy discs throw a light one: it gets 1.5 k dt²/m times their energy by the first step
+        head = TOUCHING[:TOUCHING.index("[[grain]]")]
+        half = 0.01
+        light = half * math.sqrt(3) - 2e-5
+        text = head + f"[[grain]]\nposition = [0.0, {half}]\nradius = 0.01\ndensity = 1e6\n" + \
+            f"[[grain]]\nposition = [0.0, {-half}]\nradius = 0.01\ndensity = 1e6\n" + \
+            f"[[grain]]\nposition = [{light!r}, 0.0]\nradius = 0.01\nvelocity = [1e-6, 0.0]\n" + \
+            "[collisions]\nlaw = \"linear_dashpot\"\nstiffness = 1.0e6\nrestitution = 1.0\n" + \
+            "[bonds]\nnormal_spring = 1.0e3\ntangential_spring = 1.0e3\n[[bond]]\ngrains = [0, 2]\n[[bond]]\ngrains = [1, 2]\n" + \
+            STRENGTH.format(1e-9, 1e-9)
+        step = 1.9 / math.sqrt(1e6 / (2500 * math.pi * 1e-4))
+        self.refused(text + f'[run]\nduration = {40 * step!r}\ntime_step = {step!r}\nintegrator = "semi_implicit_euler"\n',
+                     "most of it set free by bonds that broke", "overlap by up to 1.73e-05 m under bonds", code=1)
+
     def test_everything_breaks_at_once_and_the_run_goes_on(self):
         # a ring whose discs fly apart alike: all bonds reach their strength in the same step
         count, radius = 12, 0.01
