@@ -57,7 +57,8 @@ struct EnumNames<PeriodicCell::Along> {
 /// \throws Error (bad_input): periods shorter than two of the largest diameters, a wall that does not repeat itself,
 ///         what periodic cells do not carry (maps, exact_flow, ellipses by enlarged ones, shapes that always slide),
 ///         gravity where there is no floor, a rate and a stress of one component, a deforming cell that is not periodic
-///         along y or stepped by another integrator than velocity_verlet
+///         along y or stepped by another integrator than velocity_verlet, a body that moves further than the smallest
+///         radius in a step
 void check_cell(const GrainScene& scene, const GrainOptions& options);
 
 }  // namespace equidem
