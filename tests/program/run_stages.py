@@ -191,6 +191,19 @@ class Stages(StageTest):
                 self.assertEqual((out / name).read_bytes(), (parts / name).read_bytes(), name)
         self.assertIn("motion", (out / "index.html").read_text())
 
+    def test_the_report_of_stages_tells_what_acts_in_any_of_them(self):
+        case = self.write(PRESS + SERVO + STAGES)
+        for options in ((), ("--dry-run",)):
+            done = equidem("run", case, *options, *VERLET)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            report = " ".join(done.stdout.split())
+            for words in ("no friction", "no motion of walls", "no servo walls"):
+                self.assertNotIn(words, report.split("law ")[0])
+            self.assertIn("left (line, moves)", report)
+            self.assertIn("roof (line, servo)", report)
+            changed = report.split("from the stage 'open' on: restitution 0.3")[1]
+            self.assertIn("friction 0.2", changed.split("time step")[0])
+
     def test_stages_that_are_interrupted_go_on_with_the_same_files(self):
         case = self.write(PRESS + SERVO + STAGES)
         long = ("--set", "stage.0.duration=20", "--set", "stage.1.duration=20", "--set", "stage.1.wall.0.velocity=[1e-4, 0.0]",
