@@ -87,6 +87,23 @@ quantities = ["position", "velocity"]
         self.assertFalse(servo["reached"])
         self.assertIsNone(servo["overshoot"])
         self.assertLess(servo["force"], 0.9 * servo["wanted"])
+        done = equidem("run", self.write(slow))
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("WARNING", done.stdout)
+        self.assertIn("never came within 1 % of the wanted one: 'lid'", " ".join(done.stdout.split()))
+
+    def test_a_cell_with_a_servo_and_nothing_to_press_says_so(self):
+        cell = '[cell]\nwidth = 0.1\nheight = 0.1\n[cell.servo]\nstress_yy = {}\nmax_rate = {}\n' \
+            '[run]\nduration = 0.1\nintegrator = "velocity_verlet"\n'
+        self.refused(TWO + cell.format(-1000.0, 0.01), "case.toml:", "cell.servo", "no bodies of the periodic cell have met",
+                     "stress yy", "max_rate", code=1)
+        self.refused(TWO + cell.format(1000.0, 0.01), "cell.servo", "contacts carry no tension", code=1)
+        squares = "".join(f"[[grain]]\nposition = [{0.01 + 0.02 * i}, {0.01 + 0.02 * j}]\nradius = 0.01\n"
+                          for i in range(5) for j in range(5))
+        full = TWO[:TWO.index("[[grain]]")] + squares + TWO[TWO.index("[collisions]"):]
+        done = equidem("run", self.write(full + cell.format(-1000.0, 1e-5)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the stress of the cell never came within 1 % of the wanted one: yy", " ".join(done.stdout.split()))
 
     def test_bonds_stiffer_than_the_step_bears_are_refused_with_the_step_that_they_bear(self):
         run = "[run]\nduration = 0.01\ntime_step = {}\n"

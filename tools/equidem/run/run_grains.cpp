@@ -152,16 +152,35 @@ void refuse_made_energy(const GrainCase& resolved, double step, const StagedSimu
       "Use a shorter time_step, or the law exact_flow");
 }
 
-/// \throws Error (computation_failed) where a servo wall has met no body until the end of a stage
+/// \throws Error (computation_failed) where a servo wall, or a cell with a servo, has met no body until the end of a
+///         stage
 void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simulation) {
-  for (const ServoReport& servo : simulation.present().servos()) {
+  const auto refuse = [&](const std::string& what, const std::string& why, const std::string& remedy,
+                          const std::string& key) {
+    throw Error(
+        ErrorKind::computation_failed, what, why, remedy,
+        resolved.where(resolved.stages.empty() ? key : fmt::format("stage.{}", simulation.reports().size() - 1)));
+  };
+  const GrainSimulation& present = simulation.present();
+  for (const ServoReport& servo : present.servos()) {
     if (servo.touched || servo.wanted == 0) continue;
     const auto at = std::ranges::find(resolved.scene.walls, servo.wall, &Wall::name) - resolved.scene.walls.begin();
-    throw Error(ErrorKind::computation_failed, fmt::format("the servo wall '{}' met no body until the end", servo.wall),
-                "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
-                resolved.stages.empty() ? resolved.where(fmt::format("wall.{}.servo", at))
-                                        : resolved.where(fmt::format("stage.{}", simulation.reports().size() - 1)));
+    refuse(fmt::format("the servo wall '{}' met no body until the end", servo.wall),
+           "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
+           fmt::format("wall.{}.servo", at));
   }
+  const auto cell = present.cell();
+  if (!cell || present.counters().contacts > 0 || !simulation.bonds().empty()) return;
+  for (const CellServoReport& servo : cell->servos)
+    if (servo.wanted != 0)
+      refuse(
+          fmt::format("no bodies of the periodic cell have met until the end, and the stress {} of its servo was not "
+                      "held",
+                      servo.component),
+          "nothing resists that carries a stress",
+          servo.wanted < 0 ? "Let it deform faster (max_rate), or the run last longer"
+                           : "Bond the bodies, or press them: contacts carry no tension",
+          "cell.servo");
 }
 
 /// \param kept of the checkpoint with which the run begins: an automatic step gives way to it
