@@ -74,7 +74,7 @@ quantities = ["position", "velocity"]
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)
         up = lone.replace("max_speed = 0.1 }", "max_speed = 0.1, direction = [0.0, 1.0] }")
-        self.refused(up + "[run]\nduration = 10.0\n", "'lid' has gone", "met no body", code=1)
+        self.refused(up + "[run]\nduration = 10.0\n", "wall.servo: step", "'lid' has gone", "met no body", code=1)
         # discs in flight, which it pushes before it: the force is not kept, and that is told
         servo, = self.run_case(self.write(lone.replace("0.5]", "0.021]") + "[run]\nduration = 0.2\n"))["servos"]
         self.assertGreater(servo["mean_error"], 0.5)
@@ -192,6 +192,14 @@ quantities = ["position", "velocity"]
         self.assertTrue((abs(history["cell_shift_m"]) <= 0.05125 * (1 + 1e-9)).all())
         self.assertGreater(numpy.sum(abs(numpy.diff(history["cell_shift_m"])) > 0.05), 5)  # it jumped by a period so often
         self.assertLess(abs(result["energy"]["relative_error"]), 5e-3)
+
+    def test_a_cell_that_collapses_or_is_driven_too_fast_is_refused_by_what_does_it(self):
+        cell = '[cell]\nwidth = 0.1\nheight = 0.1\n[cell.motion]\n{} = {}\n[run]\nduration = 0.1\nintegrator = "velocity_verlet"\n'
+        self.refused(TWO + cell.format("yy", -20.0), "case.toml:", "cell: step", "has become", code=1)
+        self.refused(TWO + cell.format("xy", 1e7), "run.time_step: step 0: bodies of the periodic cell would pass through",
+                     "Use a step below", code=1)
+        fast = TWO.replace("[0.05, 0.01]", "[0.05, 0.01]\nvelocity = [1e6, 0.0]")
+        self.refused(fast + cell.format("xy", 1.0), "cell: grain 1 of the periodic cell moves", "pass through others")
 
     def test_wrong_changes_of_bodies_are_refused_with_their_line(self):
         def stage(text, first=""):

@@ -133,14 +133,14 @@ class Servos(StageTest):
                             ("stress = 1.0, max_speed = 0.1, from = \"left\"", ("from is given without to",)),
                             ("stress = 1.0, max_speed = 0.1, from = \"left\", to = \"west\"", ("'west'", "no other wall")),
                             ("stress = 1.0, max_speed = 0.1, from = \"left\", to = \"floor\"", ("'floor'", "cross")),
-                            ("force = 1.0, max_speed = 0.1, mirror = \"west\"", ("'west'", "no wall of that name")),
+                            ("force = 1.0, max_speed = 0.1, mirror = \"west\"", ("wall.servo", "'west'", "no wall of that name")),
                             ("force = 1.0, max_speed = 0.1, direction = [0.0, 0.0]", ("wall.servo.direction", "zero")),
                             ("force = 1.0, max_speed = 0.1, schedule = \"up\"", ("wall.servo.schedule", "up"))):
             with self.subTest(keys=keys):
                 self.refused(servo(keys), "case.toml:", *words)
         pushed = 'servo = { force = 1.0, max_speed = 0.1 }\ndisplacement = 0.01\nschedule = "up"\n'
         up = '[[schedule]]\nname = "up"\nkind = "ramp"\nend = 1.0\n'
-        self.refused(PRESS + pushed + up + RUN, "'lid'", "displacement")
+        self.refused(PRESS + pushed + up + RUN, "wall.servo", "'lid'", "displacement")
         self.refused(PRESS.replace('"linear_dashpot"', '"energy_map"') + SERVO + RUN, "'lid'", "map")
         sphere = PRESS.replace("[grains]\n", '[grains]\nbody = "sphere"\n')
         self.refused(sphere + 'servo = { stress = 1.0, length = 1.0, max_speed = 0.1 }\n' + RUN, "grains.body", "spheres")

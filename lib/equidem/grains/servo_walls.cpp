@@ -50,11 +50,11 @@ double wanted_force(const GrainSystem& system, const ServoState& state) {
   if (!servo.is_stress) return wanted;
   const double length = servo.length > 0 ? servo.length : length_between(system, state);
   if (length > 1e-6 * system.walls.longest_free_way) return wanted * length;
-  computation_failed(
-      fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
-      fmt::format("no length is left between them on which the stress of wall '{}' acts",
-                  system.scene.walls[state.wall].name),
-      "Put stops between them, or limit their motion");
+  throw Error(ErrorKind::computation_failed,
+              fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
+              fmt::format("no length is left between them on which the stress of wall '{}' acts",
+                          system.scene.walls[state.wall].name),
+              "Put stops between them, or limit their motion", servo.place);
 }
 
 /// Resistance of the contacts on a wall against a motion along a direction.
@@ -123,16 +123,17 @@ void steer(GrainSystem& system, ServoState& state) {
   }
   count_error(state);
   if (state.free_way <= system.walls.longest_free_way) return;
-  computation_failed(
+  throw Error(
+      ErrorKind::computation_failed,
       fmt::format("step {}: the servo wall '{}' has gone {:.3g} m and met no body", system.step,
                   system.scene.walls[state.wall].name, state.free_way),
       fmt::format("all bodies and walls lay in {:.3g} m, and nothing pushes back", system.walls.longest_free_way),
-      "Let it push towards bodies, and hold them by walls on the other side");
+      "Let it push towards bodies, and hold them by walls on the other side", servo.place);
 }
 
 [[noreturn]] void refuse_servo_wall(const Wall& wall, const std::string& what, const std::string& why,
                                     const std::string& remedy) {
-  bad_input(fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
+  bad_input_at(wall.servo->place, fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
 }
 
 void check_mirror(const GrainScene& scene, const Wall& wall) {

@@ -27,6 +27,7 @@ struct Servo {
   double relaxation = 0.5;                  ///< in (0, 1]
   /// Name of a wall that moves by the same way against it; both then follow the mean of their forces. Empty: none.
   std::string mirror = {};
+  std::string place = {};  ///< in the user's input, for messages; empty: not known
 };
 
 /// How well a servo wall has kept what was wanted.

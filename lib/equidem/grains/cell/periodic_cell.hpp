@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
@@ -38,6 +39,7 @@ struct PeriodicCell {
   double shift = 0;                                   ///< of the period along y, along x, m
   Schedule rate_xx = {}, rate_yy = {}, rate_xy = {};  ///< L, 1/s
   std::optional<CellServo> servo = {};
+  std::string place = {};  ///< in the user's input, for messages; empty: not known
 
   [[nodiscard]] bool has_rates() const {
     const auto acts = [](const Schedule& rate) { return rate.changes() || rate.value != 0; };
