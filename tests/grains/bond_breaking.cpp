@@ -61,7 +61,9 @@ TEST_CASE("a_bond_breaks_by_tension_with_bending_or_by_shear_with_friction") {
   CHECK(mode(0, -6.01, 0) == BreakMode::shear);
   CHECK_FALSE(mode(-4, 7.99, 0));
   CHECK(mode(-4, 8.01, 0) == BreakMode::shear);
-  CHECK(break_of(k, 0, {0, 0}, 0, 0, 6, 0.5) == BreakMode::tension);  // no strength, no load
+  CHECK_FALSE(break_of(k, bond_kM, {0, 0}, 0, 0, 0, 0.5));  // what carries nothing does not break
+  CHECK(break_of(k, 0, {1e-300, 0}, 0, 0, 6, 0.5) == BreakMode::tension);
+  CHECK(break_of(k, 0, {0, 1e-300}, 0, 6, 0, 0.5) == BreakMode::shear);
   CHECK_FALSE(break_of(k, 0, {-1, 0}, 0, 0, 6, 0.5));
 }
 
@@ -326,6 +328,26 @@ TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
   CHECK(found.bond == weakest);
 }
 
+TEST_CASE("discs_that_overlap_under_a_bond_part_with_the_energy_of_the_overlap_when_it_breaks") {
+  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  GrainScene scene = breaking_pair(stepping.law, 1e-9, never);
+  const double overlap = 1e-3;
+  scene.grains[0].position.x += overlap / 2;
+  scene.grains[1].position.x -= overlap / 2;
+  scene.grains[0].velocity.x = -1e-6;
+  scene.grains[1].velocity.x = 1e-6;
+  const double stored = describe(stepping.law).energy(scene.pairs[0].stiffness, overlap);
+  GrainSimulation simulation(scene, options_of(stepping, 1e-3));
+  simulation.advance(20000);
+  const EnergyLedger ledger = simulation.energy();
+  CAPTURE(stepping.name(), stored, ledger.initial, ledger.lost_breaking, ledger.kinetic, ledger.error());
+  CHECK(simulation.breaks().size() == 1);
+  CHECK(simulation.contacts().empty());
+  CHECK(-ledger.lost_breaking == Approx(stored).epsilon(1e-3));
+  CHECK(ledger.kinetic == Approx(stored).epsilon(1e-2));
+  CHECK(ledger.kinetic > 1e3 * ledger.initial);
+}
+
 TEST_CASE("strengths_that_mean_nothing_are_refused") {
   const auto refuses = [](const GrainScene& scene, NormalLaw law = NormalLaw::linear_dashpot) {
     CHECK_THROWS_AS(GrainSimulation(scene, options_of(law, 1e-4)), Error);
@@ -343,12 +365,18 @@ TEST_CASE("strengths_that_mean_nothing_are_refused") {
   CHECK_THROWS_AS(bond_strengths(scene, {.tension = 1.0}), Error);
 }
 
-TEST_CASE("bonds_without_strength_all_break_at_once") {
+TEST_CASE("bonds_without_strength_all_break_under_their_first_load") {
   GrainScene scene = chain_scene(NormalLaw::linear_dashpot, 9, {.normal_spring = 50, .tangential_spring = 20});
   scene.strengths = ContactStrengths{std::vector<double>(8, 0.0), std::vector<double>(8, 0.0), 0};
-  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3));
+  GrainScene still = scene;
+  for (Grain& grain : still.grains) grain.velocity = {}, grain.spin = 0;
+  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3)),
+      at_rest(still, options_of(NormalLaw::linear_dashpot, 1e-3));
   simulation.advance(2000);
   CHECK(simulation.breaks().size() == 8);
-  CHECK(simulation.breaks().back().step == 0);
+  CHECK(simulation.breaks().back().step == 1);
   CHECK(simulation.bonds().number == 0);
+  at_rest.advance(2000);
+  CHECK(at_rest.breaks().empty());
+  CHECK(at_rest.bonds().number == 8);
 }

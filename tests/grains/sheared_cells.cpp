@@ -259,3 +259,33 @@ TEST_CASE("a_cell_that_becomes_too_thin_is_refused") {
     CHECK(std::string(error.what()).find("the periodic cell has become") != std::string::npos);
   }
 }
+
+TEST_CASE("a_cell_or_a_body_in_it_too_fast_for_the_step_is_refused_before_it_moves") {
+  const auto refused = [](const auto& change, const std::vector<std::string>& words) {
+    GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 4, 4, 2);
+    change(scene);
+    try {
+      GrainSimulation simulation(scene, verlet_options());
+      const auto before = simulation.motions();
+      CHECK_THROWS_AS(simulation.advance(1), Error);
+      CHECK(simulation.step() == 0);
+      CHECK(simulation.motions()[3].u == before[3].u);
+      simulation.advance(1);
+      FAIL("nothing was refused");
+    } catch (const Error& error) {
+      for (const std::string& word : words) {
+        CAPTURE(error.what(), word);
+        CHECK(std::string(error.what()).find(word) != std::string::npos);
+      }
+    }
+  };
+  const std::vector<std::string> of_cell{"step 0: bodies of the periodic cell would pass through one another",
+                                         "Use a step below"};
+  refused([](GrainScene& scene) { scene.cell->rate_xy = {.value = 1e7}; }, of_cell);
+  refused([](GrainScene& scene) { scene.cell->rate_yy = {.value = -1e4}; }, of_cell);
+  refused(
+      [](GrainScene& scene) {
+        scene.grains[2].velocity = {1e6, 0};
+      },
+      {"grain 2 of the periodic cell moves 5000 m in a step of 0.005 s", "pass through others", "Use a step below"});
+}

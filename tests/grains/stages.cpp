@@ -51,6 +51,25 @@ GrainStage falling_disc(std::int64_t limit, StageEnd end) {
 
 }  // namespace
 
+TEST_CASE("the_effects_of_a_run_are_those_of_all_its_stages_together") {
+  GrainStage calm = falling_disc(10, {}), busy = calm;
+  busy.name = "busy";
+  busy.scene.pairs[0].friction = 0.3;
+  busy.scene.pairs[0].tangential_ratio = 0.5;
+  busy.scene.walls.push_back(line("lid", {0, 2}, {0, -1}));
+  busy.scene.walls[0].move_x = {Schedule::Kind::sine, 0.1, 0, 0, 0.5};
+  busy.scene.walls[1].servo = Servo{.direction = {0, -1}, .wanted = {.value = 3}, .max_speed = 0.5};
+  const StagedSimulation staged({calm, busy, calm}, options_of(NormalLaw::linear_dashpot, 1e-3));
+  const std::vector<std::string> active = active_effects(staged.effects()), first = staged.reports()[0].effects;
+  CAPTURE(active, first);
+  for (const char* name : {"friction", "tangential springs", "rotation", "motion of walls", "servo walls"}) {
+    CHECK(std::ranges::find(active, name) != active.end());
+    CHECK(std::ranges::find(first, name) == first.end());
+  }
+  CHECK(std::ranges::find(active, "bonds") == active.end());
+  CHECK(staged.effects().tangential_springs);
+}
+
 TEST_CASE("a_stage_that_changes_nothing_leaves_the_motion_as_it_is_to_the_last_bit") {
   const Stepping stepping = GENERATE(from_range(steppings_in_stages));
   CAPTURE(stepping.name());

@@ -133,14 +133,14 @@ class Servos(StageTest):
                             ("stress = 1.0, max_speed = 0.1, from = \"left\"", ("from is given without to",)),
                             ("stress = 1.0, max_speed = 0.1, from = \"left\", to = \"west\"", ("'west'", "no other wall")),
                             ("stress = 1.0, max_speed = 0.1, from = \"left\", to = \"floor\"", ("'floor'", "cross")),
-                            ("force = 1.0, max_speed = 0.1, mirror = \"west\"", ("'west'", "no wall of that name")),
+                            ("force = 1.0, max_speed = 0.1, mirror = \"west\"", ("wall.servo", "'west'", "no wall of that name")),
                             ("force = 1.0, max_speed = 0.1, direction = [0.0, 0.0]", ("wall.servo.direction", "zero")),
                             ("force = 1.0, max_speed = 0.1, schedule = \"up\"", ("wall.servo.schedule", "up"))):
             with self.subTest(keys=keys):
                 self.refused(servo(keys), "case.toml:", *words)
         pushed = 'servo = { force = 1.0, max_speed = 0.1 }\ndisplacement = 0.01\nschedule = "up"\n'
         up = '[[schedule]]\nname = "up"\nkind = "ramp"\nend = 1.0\n'
-        self.refused(PRESS + pushed + up + RUN, "'lid'", "displacement")
+        self.refused(PRESS + pushed + up + RUN, "wall.servo", "'lid'", "displacement")
         self.refused(PRESS.replace('"linear_dashpot"', '"energy_map"') + SERVO + RUN, "'lid'", "map")
         sphere = PRESS.replace("[grains]\n", '[grains]\nbody = "sphere"\n')
         self.refused(sphere + 'servo = { stress = 1.0, length = 1.0, max_speed = 0.1 }\n' + RUN, "grains.body", "spheres")
@@ -190,6 +190,19 @@ class Stages(StageTest):
             for name in ("history.csv", "grains.csv", "contacts.csv", "energy.csv"):
                 self.assertEqual((out / name).read_bytes(), (parts / name).read_bytes(), name)
         self.assertIn("motion", (out / "index.html").read_text())
+
+    def test_the_report_of_stages_tells_what_acts_in_any_of_them(self):
+        case = self.write(PRESS + SERVO + STAGES)
+        for options in ((), ("--dry-run",)):
+            done = equidem("run", case, *options, *VERLET)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            report = " ".join(done.stdout.split())
+            for words in ("no friction", "no motion of walls", "no servo walls"):
+                self.assertNotIn(words, report.split("law ")[0])
+            self.assertIn("left (line, moves)", report)
+            self.assertIn("roof (line, servo)", report)
+            changed = report.split("from the stage 'open' on: restitution 0.3")[1]
+            self.assertIn("friction 0.2", changed.split("time step")[0])
 
     def test_stages_that_are_interrupted_go_on_with_the_same_files(self):
         case = self.write(PRESS + SERVO + STAGES)

@@ -57,7 +57,8 @@ void read_servo(const TomlValue& table, const std::string& path, std::span<const
               "Give length, or the walls from and to which it is measured");
     servo.length = norm(wall.end - wall.point);
   }
-  with_place(fmt::format("{}: {}", given->where(), key), [&] { check(servo, wall.name); });
+  servo.place = fmt::format("{}: {}", given->where(), key);
+  with_place(servo.place, [&] { check(servo, wall.name); });
   wall.servo = servo;
 }
 

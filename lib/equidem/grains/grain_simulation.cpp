@@ -169,6 +169,7 @@ void GrainSimulation::Implementation::find_impulses(BlockMove move) {
 void GrainSimulation::Implementation::update_candidates() {
   const double reach = reach_of(system);
   refuse_runaway(system, reach);
+  refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
   refuse_ellipses_in_bowls(system);
   if (system.options.refuse_crossing) refuse_crossings(system, reach);

@@ -10,8 +10,11 @@
 namespace equidem {
 namespace {
 
-/// Share of the last step in the mean speed of a servo wall: slow beside the relaxation, fast beside the motion.
-constexpr double share_of_pace = 0.02;
+/// Share of the last step in the mean speed u of a servo wall, over the relaxation r: slow beside it, fast beside the
+/// motion. Where bodies give way in a row, the wall meets the share c of the stiffness k of its contacts. The missing
+/// force e and u then change in a step by -c (r e + k dt u) and s r e/(k dt), s being the share: damped by the ratio
+/// sqrt(c r/s)/2, which must not fall with r.
+constexpr double share_of_pace = 0.04;
 
 std::size_t place_of_name(const GrainScene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.walls, name, &Wall::name);
@@ -47,11 +50,11 @@ double wanted_force(const GrainSystem& system, const ServoState& state) {
   if (!servo.is_stress) return wanted;
   const double length = servo.length > 0 ? servo.length : length_between(system, state);
   if (length > 1e-6 * system.walls.longest_free_way) return wanted * length;
-  computation_failed(
-      fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
-      fmt::format("no length is left between them on which the stress of wall '{}' acts",
-                  system.scene.walls[state.wall].name),
-      "Put stops between them, or limit their motion");
+  throw Error(ErrorKind::computation_failed,
+              fmt::format("step {}: walls '{}' and '{}' have met", system.step, servo.between[0], servo.between[1]),
+              fmt::format("no length is left between them on which the stress of wall '{}' acts",
+                          system.scene.walls[state.wall].name),
+              "Put stops between them, or limit their motion", servo.place);
 }
 
 /// Resistance of the contacts on a wall against a motion along a direction.
@@ -110,24 +113,27 @@ void steer(GrainSystem& system, ServoState& state) {
     state.free_way = 0;
     const double missing = servo.relaxation * (state.wanted - state.force);
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
-    state.speed = std::clamp((missing + going_on) / resistance.sum(), -servo.max_speed, servo.max_speed);
-    state.pace += share_of_pace * (state.speed - state.pace);
+    const double asked = (missing + going_on) / resistance.sum();
+    state.speed = std::clamp(asked, -servo.max_speed, servo.max_speed);
+    // The speed at which a wall approaches its force is not that of the bodies: it would run past by that.
+    if (state.speed == asked) state.pace += share_of_pace * servo.relaxation * (state.speed - state.pace);
   } else {
     state.speed = state.wanted > 0 ? servo.max_speed : 0;
     state.pace = 0;
   }
   count_error(state);
   if (state.free_way <= system.walls.longest_free_way) return;
-  computation_failed(
+  throw Error(
+      ErrorKind::computation_failed,
       fmt::format("step {}: the servo wall '{}' has gone {:.3g} m and met no body", system.step,
                   system.scene.walls[state.wall].name, state.free_way),
       fmt::format("all bodies and walls lay in {:.3g} m, and nothing pushes back", system.walls.longest_free_way),
-      "Let it push towards bodies, and hold them by walls on the other side");
+      "Let it push towards bodies, and hold them by walls on the other side", servo.place);
 }
 
 [[noreturn]] void refuse_servo_wall(const Wall& wall, const std::string& what, const std::string& why,
                                     const std::string& remedy) {
-  bad_input(fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
+  bad_input_at(wall.servo->place, fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
 }
 
 void check_mirror(const GrainScene& scene, const Wall& wall) {

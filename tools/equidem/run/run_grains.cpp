@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
@@ -110,20 +111,40 @@ double rounding_of_energy(const GrainCase& resolved, double step, const std::vec
   return sum;
 }
 
+/// The deepest overlap of discs under the bonds of a run when these were unstretched, m.
+double deepest_under_bonds(const GrainCase& resolved, std::span<const GrainBond> bonds) {
+  const std::vector<Grain> grains = resolved.bodies();
+  double deepest = 0;
+  for (const GrainBond& bond : bonds)
+    if (bond.rest) deepest = std::max(deepest, grains[bond.i].radius + grains[bond.j].radius - norm(bond.rest->branch));
+  return deepest;
+}
+
 /// Stops a run whose kinetic energy exceeds several times all energy supplied; smaller errors of the balance are
 /// reported at the end.
 /// \throws Error (computation_failed)
-void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimulation& simulation,
+void refuse_made_energy(const GrainCase& resolved, double step, const StagedSimulation& simulation,
                         const EnergyLedger& ledger) {
   if (!std::isfinite(ledger.error())) {
     computation_failed(fmt::format("step {}: an energy is not a number any more", simulation.step()),
                        "squares of speeds, or stiffnesses, are beyond all numbers", "Use smaller ones");
   }
   constexpr double most = 4;
+  const double by_breaks = std::max(0.0, -ledger.lost_breaking);
   const double given = ledger.initial + std::abs(ledger.work_of_walls) + std::abs(ledger.potential) +
-                       std::max(0.0, ledger.work_of_stages) + std::max(0.0, ledger.work_of_cell);
+                       std::max(0.0, ledger.work_of_stages) + std::max(0.0, ledger.work_of_cell) + by_breaks;
   if (ledger.kinetic <= most * given) return;
-  if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.grains()))) return;
+  if (ledger.kinetic <= most * (given + rounding_of_energy(resolved, step, simulation.present().grains()))) return;
+  if (by_breaks > 0.5 * given) {
+    throw Error(ErrorKind::computation_failed,
+                fmt::format("step {}: the bodies move with {:.3g} times the energy that there was, most of it set free "
+                            "by bonds that broke",
+                            simulation.step(), ledger.kinetic / given),
+                fmt::format("discs overlap by up to {:.3g} m under bonds, and push one another apart where these break",
+                            deepest_under_bonds(resolved, simulation.bonds())),
+                "Let bonded discs just touch, make collisions softer, or use a shorter time_step",
+                resolved.where("strength"));
+  }
   computation_failed(
       fmt::format("step {}: the bodies move with {:.3g} times the energy that there was", simulation.step(),
                   ledger.kinetic / given),
@@ -131,16 +152,35 @@ void refuse_made_energy(const GrainCase& resolved, double step, const GrainSimul
       "Use a shorter time_step, or the law exact_flow");
 }
 
-/// \throws Error (computation_failed) where a servo wall has met no body until the end of a stage
+/// \throws Error (computation_failed) where a servo wall, or a cell with a servo, has met no body until the end of a
+///         stage
 void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simulation) {
-  for (const ServoReport& servo : simulation.present().servos()) {
+  const auto refuse = [&](const std::string& what, const std::string& why, const std::string& remedy,
+                          const std::string& key) {
+    throw Error(
+        ErrorKind::computation_failed, what, why, remedy,
+        resolved.where(resolved.stages.empty() ? key : fmt::format("stage.{}", simulation.reports().size() - 1)));
+  };
+  const GrainSimulation& present = simulation.present();
+  for (const ServoReport& servo : present.servos()) {
     if (servo.touched || servo.wanted == 0) continue;
     const auto at = std::ranges::find(resolved.scene.walls, servo.wall, &Wall::name) - resolved.scene.walls.begin();
-    throw Error(ErrorKind::computation_failed, fmt::format("the servo wall '{}' met no body until the end", servo.wall),
-                "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
-                resolved.stages.empty() ? resolved.where(fmt::format("wall.{}.servo", at))
-                                        : resolved.where(fmt::format("stage.{}", simulation.reports().size() - 1)));
+    refuse(fmt::format("the servo wall '{}' met no body until the end", servo.wall),
+           "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
+           fmt::format("wall.{}.servo", at));
   }
+  const auto cell = present.cell();
+  if (!cell || present.counters().contacts > 0 || !simulation.bonds().empty()) return;
+  for (const CellServoReport& servo : cell->servos)
+    if (servo.wanted != 0)
+      refuse(
+          fmt::format("no bodies of the periodic cell have met until the end, and the stress {} of its servo was not "
+                      "held",
+                      servo.component),
+          "nothing resists that carries a stress",
+          servo.wanted < 0 ? "Let it deform faster (max_rate), or the run last longer"
+                           : "Bond the bodies, or press them: contacts carry no tension",
+          "cell.servo");
 }
 
 /// \param kept of the checkpoint with which the run begins: an automatic step gives way to it
@@ -252,7 +292,7 @@ RunPlan GrainRun::plan() {
           .recorder = measures_ ? &*measures_ : nullptr,
           .watch =
               [this](const EnergyLedger& energy) {
-                refuse_made_energy(case_, step_.step, simulation_.present(), energy);
+                refuse_made_energy(case_, step_.step, simulation_, energy);
                 if (simulation_.milestone() >= 0) refuse_idle_servos(case_, simulation_);
               },
           .step_place = case_.where("run.time_step")};

@@ -40,7 +40,8 @@ const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
                "is that of the body with the lower number";
 }
 
-void add_bodies(Results& out, const GrainCase& resolved) {
+/// \param walls of all stages, one of each name
+void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>& walls) {
   double mass = 0, smallest = INFINITY, largest = 0;
   std::map<std::string, std::int64_t> groups;
   for (const Grain& grain : resolved.scene.grains) {
@@ -74,13 +75,18 @@ void add_bodies(Results& out, const GrainCase& resolved) {
     out.line("groups",
              joined(groups, [](const auto& group) { return fmt::format("{} {}", group.first, group.second); }));
   out.set("walls", resolved.scene.walls.size());
-  if (resolved.scene.walls.empty()) return;
-  out.line("walls", joined(resolved.scene.walls, [](const Wall& wall) {
+  if (walls.empty()) return;
+  const auto any_stage = [&](const Wall& wall, auto has) {
+    return has(wall) || std::ranges::any_of(resolved.stages, [&](const StageCase& stage) {
+             return std::ranges::any_of(stage.scene.walls,
+                                        [&](const Wall& w) { return w.name == wall.name && has(w); });
+           });
+  };
+  out.line("walls", joined(walls, [&](const Wall& wall) {
              constexpr const char* shapes[] = {"line", "segment", "arc"};
-             return fmt::format("{} ({}{})", wall.name, shapes[static_cast<int>(wall.shape)],
-                                wall.servo     ? ", servo"
-                                : wall.moves() ? ", moves"
-                                               : "");
+             return fmt::format("{} ({}{}{})", wall.name, shapes[static_cast<int>(wall.shape)],
+                                any_stage(wall, [](const Wall& w) { return w.servo.has_value(); }) ? ", servo" : "",
+                                any_stage(wall, [](const Wall& w) { return w.moves(); }) ? ", moves" : "");
            }));
 }
 
@@ -104,28 +110,38 @@ std::string describe_pair(const GrainCase& resolved, const PairContact& pair) {
 }
 
 /// Every two kinds that can meet; pairs with equal contacts on one line.
-void add_pairs(Results& out, const GrainCase& resolved) {
-  const ContactTable& contacts = resolved.contacts;
+std::vector<std::string> lines_of_pairs(const GrainCase& resolved, const ContactTable& contacts,
+                                        const GrainScene& scene) {
   constexpr int most_kinds = 8;
-  if (contacts.kind_count() > most_kinds) {
-    out.line("contacts", fmt::format("{} kinds of bodies, each pair with its own stiffness", contacts.kind_count()));
-    return;
-  }
-  const auto masses = masses_of_kinds(resolved.scene.grains, resolved.scene.kinds);
-  std::vector<std::pair<std::string, std::vector<std::string>>> lines;  // contact, pairs
+  if (contacts.kind_count() > most_kinds)
+    return {fmt::format("{} kinds of bodies, each pair with its own stiffness", contacts.kind_count())};
+  const auto masses = masses_of_kinds(scene.grains, scene.kinds);
+  std::vector<std::pair<std::string, std::vector<std::string>>> found;  // contact, pairs
   for (int a = 0; a < contacts.kind_count(); ++a) {
     for (int b = a; b < contacts.kind_count(); ++b) {
       if (!reduced_masses(masses, a, b)) continue;
       const std::string contact = describe_pair(resolved, contacts.between(a, b));
-      auto at = std::ranges::find(lines, contact, [](const auto& line) { return line.first; });
-      if (at == lines.end()) at = lines.insert(at, {contact, {}});
+      auto at = std::ranges::find(found, contact, [](const auto& line) { return line.first; });
+      if (at == found.end()) at = found.insert(at, {contact, {}});
       at->second.push_back(fmt::format("{} and {}", contacts.kinds[static_cast<std::size_t>(a)],
                                        contacts.kinds[static_cast<std::size_t>(b)]));
     }
   }
-  for (const auto& line : lines) {
-    out.line(&line == lines.data() ? "contacts" : "",
-             lines.size() == 1 ? line.first : fmt::format("{}: {}", joined(line.second), line.first));
+  std::vector<std::string> lines;
+  for (const auto& [contact, pairs] : found)
+    lines.push_back(found.size() == 1 ? contact : fmt::format("{}: {}", joined(pairs), contact));
+  return lines;
+}
+
+/// The contacts of the first stage, and of later ones where they change.
+void add_pairs(Results& out, const GrainCase& resolved) {
+  std::vector<std::string> last = lines_of_pairs(resolved, resolved.contacts, resolved.scene);
+  for (const std::string& line : last) out.line(&line == last.data() ? "contacts" : "", line);
+  for (const StageCase& stage : resolved.stages) {
+    std::vector<std::string> now = lines_of_pairs(resolved, stage.contacts, stage.scene);
+    if (now == last) continue;
+    for (const std::string& line : now) out.line("", fmt::format("from the stage '{}' on: {}", stage.name, line));
+    last = std::move(now);
   }
 }
 
@@ -215,7 +231,7 @@ Results GrainRun::scene() const {
   Results out;
   if (!case_.title.empty()) out.block(case_.title + "\n\n");
   out.set("title", case_.title);
-  add_bodies(out, case_);
+  add_bodies(out, case_, walls_);
   add_effects(out, simulation_.effects());
   add_law(out, case_);
   add_pairs(out, case_);

@@ -93,7 +93,11 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
                       const std::vector<ServoReport>& present) {
   const char* force = resolved.body == Body::disc ? "N/m" : "N";
   std::vector<Results> rows;
+  std::vector<std::string> missed;
   const auto add = [&](const std::string& stage, const ServoReport& servo) {
+    if (!servo.reached && servo.wanted > 0)
+      missed.push_back(resolved.stages.empty() ? fmt::format("'{}'", servo.wall)
+                                               : fmt::format("'{}' in the stage '{}'", servo.wall, stage));
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
@@ -110,7 +114,13 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   Results out;
   if (rows.empty()) return out;
   out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in its stage:");
-  return out.table("servos", std::move(rows));
+  out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING",
+             fmt::format("the force of servo walls never came within 1 % of the wanted one: {}; let them move "
+                         "faster (max_speed), or for longer",
+                         joined(missed)));
+  return out;
 }
 
 }  // namespace equidem

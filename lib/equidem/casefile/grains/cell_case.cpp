@@ -132,6 +132,7 @@ std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<cons
   if (!cell)
     fail_at(*given, "stage.cell", "the case has no [cell]", "there is nothing to deform", "Add [cell], or remove it");
   refuse_deformation_along_x(*given, "stage.cell", *cell);
+  cell->place = given->where() + ": stage.cell";
   if (const TomlValue* motion = given->find("motion")) take_motion(*motion, "stage.cell.motion", schedules, *cell);
   if (const TomlValue* servo = given->find("servo")) take_servo(*servo, "stage.cell.servo", schedules, *cell);
   return cell;
@@ -153,6 +154,7 @@ void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedul
             "its stress is by area, and a plane of spheres has no thickness",
             "Let body = \"disc\", or periodic = \"x\"");
   refuse_deformation_along_x(*given, "cell", cell);
+  cell.place = given->where() + ": cell";
   if (const TomlValue* motion = given->find("motion")) {
     take_motion(*motion, "cell.motion", schedules, cell);
     if (!cell.has_rates())

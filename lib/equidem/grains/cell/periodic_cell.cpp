@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -106,6 +108,34 @@ void check_deformation(const GrainScene& scene, const GrainOptions& options) {
               "a step mends that share of the difference, and more than 1 overshoots", "Take 0.1");
 }
 
+double inscribed_radius(const Grain& grain, const std::vector<Clump>& clumps) {
+  switch (grain.shape()) {
+    case GrainShape::clump:
+      return std::ranges::min(clumps[static_cast<std::size_t>(grain.clump)].discs, {}, &Clump::Disc::radius).radius;
+    case GrainShape::ellipse:
+      return grain.short_half_axis;
+    case GrainShape::disc:
+      break;
+  }
+  return grain.radius;
+}
+
+/// As refuse_long_ways_in_cell, before candidates are looked for as far as bodies may come.
+void check_speeds(const GrainScene& scene, const GrainOptions& options) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Grain& grain : scene.grains) smallest = std::min(smallest, inscribed_radius(grain, scene.clumps));
+  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+    const Grain& grain = scene.grains[g];
+    const double turning = grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius;
+    const double speed = norm(grain.velocity) + turning;
+    if (speed * options.time_step <= smallest) continue;
+    bad_input(fmt::format("grain {} of the periodic cell moves {:.4g} m in a step of {:.4g} s", g,
+                          speed * options.time_step, options.time_step),
+              fmt::format("it would pass through others: the smallest radius is {:.4g} m", smallest),
+              fmt::format("Use a step below {:.3g} s, or give it a lower speed", 0.5 * smallest / speed));
+  }
+}
+
 }  // namespace
 
 void check_cell(const GrainScene& scene, const GrainOptions& options) {
@@ -114,6 +144,7 @@ void check_cell(const GrainScene& scene, const GrainOptions& options) {
   check_contents(scene, options);
   check_weight(scene);
   check_deformation(scene, options);
+  check_speeds(scene, options);
 }
 
 }  // namespace equidem

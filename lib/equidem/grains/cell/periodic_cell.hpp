@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
@@ -38,6 +39,7 @@ struct PeriodicCell {
   double shift = 0;                                   ///< of the period along y, along x, m
   Schedule rate_xx = {}, rate_yy = {}, rate_xy = {};  ///< L, 1/s
   std::optional<CellServo> servo = {};
+  std::string place = {};  ///< in the user's input, for messages; empty: not known
 
   [[nodiscard]] bool has_rates() const {
     const auto acts = [](const Schedule& rate) { return rate.changes() || rate.value != 0; };
@@ -57,7 +59,8 @@ struct EnumNames<PeriodicCell::Along> {
 /// \throws Error (bad_input): periods shorter than two of the largest diameters, a wall that does not repeat itself,
 ///         what periodic cells do not carry (maps, exact_flow, ellipses by enlarged ones, shapes that always slide),
 ///         gravity where there is no floor, a rate and a stress of one component, a deforming cell that is not periodic
-///         along y or stepped by another integrator than velocity_verlet
+///         along y or stepped by another integrator than velocity_verlet, a body that moves further than the smallest
+///         radius in a step
 void check_cell(const GrainScene& scene, const GrainOptions& options);
 
 }  // namespace equidem

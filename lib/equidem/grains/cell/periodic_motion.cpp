@@ -239,10 +239,11 @@ void steer_cell(GrainSystem& system) {
   const PeriodicCell& given = *system.scene.cell;
   const double dt = system.dt(), middle = system.time() + 0.5 * dt;
   if (const double least = std::min(cell.now.a.x, cell.now.b.y); !(least > 4 * cell.largest_radius)) {
-    computation_failed(fmt::format("step {}: the periodic cell has become {:.4g} m by {:.4g} m", system.step,
-                                   cell.now.a.x, cell.now.b.y),
-                       "a body would meet several images of another one",
-                       "Deform it less, or take more bodies: two of the largest diameters is the least");
+    throw Error(ErrorKind::computation_failed,
+                fmt::format("step {}: the periodic cell has become {:.4g} m by {:.4g} m", system.step, cell.now.a.x,
+                            cell.now.b.y),
+                "a body would meet several images of another one",
+                "Deform it less, or take more bodies: two of the largest diameters is the least", given.place);
   }
   double xx = given.rate_xx.at(middle), yy = given.rate_yy.at(middle);
   if (given.servo) {

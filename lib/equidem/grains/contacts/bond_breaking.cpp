@@ -16,7 +16,7 @@
 namespace equidem {
 namespace {
 
-/// Load over strength; a bond without strength breaks under no load.
+/// Load over strength; a bond without strength breaks under any load.
 double share_of_strength(double load, double strength) {
   if (strength > 0) return load / strength;
   return load >= strength ? std::numeric_limits<double>::infinity() : 0;
@@ -117,6 +117,7 @@ double moment_to_force(const SpringConstants& k, double kM) {
 std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
                                   double tension, double shear, double friction) {
   const double by_moment = moment_to_force(k, kM) * std::abs(moment);
+  if (force.normal == 0 && force.tangential == 0 && by_moment == 0) return {};
   const double pulled = share_of_strength(force.normal + by_moment, tension);
   const double sheared = share_of_strength(std::abs(force.tangential), shear - friction * force.normal);
   if (std::max(pulled, sheared) < 1) return {};

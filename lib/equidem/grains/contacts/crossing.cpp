@@ -86,6 +86,17 @@ void refuse_runaway(const GrainSystem& system, double reach) {
                      "forces or speeds have grown beyond all bounds", "Use a smaller step or softer contacts");
 }
 
+void refuse_long_ways_in_cell(const GrainSystem& system, double reach) {
+  if (!system.cell.active || !(reach > system.smallest_radius)) return;
+  computation_failed(
+      fmt::format("step {}: bodies of the periodic cell would pass through one another", system.step),
+      fmt::format("they may move {:.4g} m in a step of {:.4g} s, by themselves and with the cell, {:.4g} times the "
+                  "smallest radius",
+                  reach, system.dt(), reach / system.smallest_radius),
+      fmt::format("Use a step below {:.3g} s, or deform the cell and move its bodies more slowly",
+                  0.5 * system.dt() * system.smallest_radius / reach));
+}
+
 void refuse_crossings(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
   if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;

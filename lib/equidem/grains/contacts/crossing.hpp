@@ -11,6 +11,11 @@ namespace equidem {
 /// \throws Error (computation_failed) if it is not finite
 void refuse_runaway(const GrainSystem& system, double reach);
 
+/// In a periodic cell the pairs to look at grow with the square of the way that bodies may move in a step.
+/// \param reach longest displacement in the step, m
+/// \throws Error (computation_failed) if it is longer than the smallest radius in a periodic cell
+void refuse_long_ways_in_cell(const GrainSystem& system, double reach);
+
 /// Compare system.bodies.motions with system.bodies.next.
 /// \throws Error (computation_failed) if the centre of a grain enters another grain or passes a wall, or an overlap
 ///         deeper than half the smaller radius would occur undetected between the two instants

@@ -359,6 +359,7 @@ void flow(GrainSystem& system) {
     }
     reach = reach_of(system);
     refuse_runaway(system, reach);
+    refuse_long_ways_in_cell(system, reach);
     if (!refresh_candidates(system, reach)) break;
   }
   if (system.options.refuse_crossing) refuse_crossings(system, reach);

@@ -59,6 +59,24 @@ double component_of(const Voigt& strain, StageEnd::CellStrain which) {
 
 }  // namespace
 
+Effects effects_of(const std::vector<GrainStage>& stages, const GrainOptions& options) {
+  GrainScene all = stages.front().scene;
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (const GrainStage& stage : stages) {
+    if (&stage != &stages.front()) {
+      append(all.pairs, stage.scene.pairs);
+      append(all.walls, stage.scene.walls);
+      append(all.grains, stage.bodies.added);
+      if (!all.weighs()) all.gravity = stage.scene.gravity;
+      if (stage.scene.cell && stage.scene.cell->deforms()) all.cell = stage.scene.cell;
+    }
+    if (!stage.bonds) continue;
+    all.bonds.push_back(stage.bonds->like);
+    if (stage.bonds->strengths) all.strengths.emplace();
+  }
+  return effects_of(all, options);
+}
+
 std::vector<std::string> active_effects(const Effects& effects) {
   std::vector<std::string> names;
   for (const Effects::Entry& entry : effects.entries)
@@ -101,6 +119,7 @@ StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOp
   start_ = start_of_first();
   bonds_ = bonds_at_start();
   present_ = std::make_unique<GrainSimulation>(scene_of(0, 0, start_, bonds_), options_);
+  effects_ = effects_of(stages_, options_);
   initial_ = present_->energy().initial;
   reports_.push_back(
       {.name = first.name, .effects = active_effects(present_->effects()), .bonds_made = bonds_.stages.size()});

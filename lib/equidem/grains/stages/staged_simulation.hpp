@@ -75,6 +75,9 @@ struct StageReport {
   std::vector<ServoReport> servos = {};                              ///< at its end; empty before
 };
 
+/// The effects of all stages together: active is what is so in any of them.
+Effects effects_of(const std::vector<GrainStage>& stages, const GrainOptions& options);
+
 /// The names of the effects that are active.
 std::vector<std::string> active_effects(const Effects& effects);
 
@@ -112,7 +115,8 @@ class StagedSimulation final : public AnySimulation {
   };
   [[nodiscard]] HoldingBonds holding_bonds() const;
 
-  [[nodiscard]] const Effects& effects() const override { return present_->effects(); }
+  /// Of all stages together; StageReport has those of each.
+  [[nodiscard]] const Effects& effects() const override { return effects_; }
   /// Stops at the end of a stage; the next call goes on with the next one.
   /// \throws Error as GrainSimulation and, where a stage begins, as make_bonds: the state is then that before it;
   ///         (computation_failed) if a stage does not meet its end
@@ -182,6 +186,7 @@ class StagedSimulation final : public AnySimulation {
 
   std::vector<GrainStage> stages_;
   GrainOptions options_;
+  Effects effects_;
   std::unique_ptr<GrainSimulation> present_;
   std::vector<StageReport> reports_;
   Start start_;  ///< of the present stage

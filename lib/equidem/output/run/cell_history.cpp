@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/run/cell_history.hpp"
 
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -63,7 +67,9 @@ Results cell_results(const CellState& cell) {
       .add("coordination_number", "coordination number", cell.coordination_number, "", {.digits = 4});
   if (cell.servos.empty()) return out.under("cell");
   std::vector<Results> rows;
+  std::vector<std::string> missed;
   for (const CellServoReport& servo : cell.servos) {
+    if (!servo.reached && servo.wanted != 0) missed.push_back(servo.component);
     const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
     Results& row = rows.emplace_back();
     row.add("component", "stress", servo.component)
@@ -75,6 +81,10 @@ Results cell_results(const CellState& cell) {
   }
   out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
   out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
+                                    "faster (max_rate), or for longer",
+                                    joined(missed)));
   return out.under("cell");
 }
 
