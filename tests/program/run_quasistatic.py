@@ -95,6 +95,31 @@ class Quasistatic(ProgramTest):
         self.assertNotEqual(text, "")
         self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
 
+    def test_events_to_go_on_from_are_whole_or_refused(self):
+        options = (*NO_PICTURE, "--set", "quasistatic.max_events=12")
+        whole, part = self.folder / "whole", self.folder / "part"
+        self.run_notch("--out", whole, *options)
+        self.run_notch("--out", part, *options)
+        rows = (whole / "events.csv").read_text().splitlines(keepends=True)
+        resumed = lambda text: ((part / "events.csv").write_text(text),
+                                equidem("quasistatic", NOTCH, "--out", part, *options, "--resume"))[1]
+        for gap in (1, 5, len(rows) - 2):
+            with self.subTest(gap=gap):
+                self.check_error(resumed("".join(rows[:gap] + rows[gap + 1:])), 2, "events.csv", "the events to continue",
+                                 f"line {gap + 1} has the event {gap} where {gap - 1} should be")
+        self.check_error(resumed("".join([*rows[:4], rows[5], rows[4], *rows[6:]])), 2, "in another order")
+        for left in (1, 20, len(rows[-1]) - 2):
+            with self.subTest(left=left):
+                done = resumed("".join(rows[:-1]) + rows[-1][:left])
+                self.check_done(done)
+                self.assertIn("events.csv: the last line is cut short; going on behind 11 events", done.stderr)
+                self.check_same_events(self.events_of(whole), self.events_of(part))
+        done = resumed("".join(rows)[:-1])
+        self.check_done(done)
+        self.assertNotIn("cut short", done.stderr)
+        # A line that is cut in the middle of the table is another matter.
+        self.check_error(resumed("".join(rows[:3]) + rows[3][:20] + "\n" + "".join(rows[4:])), 2, "line 4")
+
     def test_interrupted_it_ends_with_130_and_goes_on_with_the_same_events(self):
         larger = (*NO_PICTURE, "--set", "assembly.columns=61", "--set", "assembly.rows=61", "--set",
                   "strength.weibull_modulus=2.0", "--set", "quasistatic.max_events=400", "--threads", 1)

@@ -173,8 +173,13 @@ void resume(const CommonOptions& options, Sequence& sequence) {
     bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  if (sequence.brittle && sequence.problem.resolved.quasistatic.frame_every == 0)
-    sequence.brittle->resume(read_events(table, *sequence.brittle, sequence.scene()));
+  if (!sequence.brittle || sequence.problem.resolved.quasistatic.frame_every != 0) return;
+  StoredEvents stored = read_events(table, *sequence.brittle, sequence.scene());
+  if (stored.cut) {
+    say(options, fmt::format("{}: the last line is cut short; going on behind {}", table.string(),
+                             counted(std::ssize(stored.events), "event")));
+  }
+  sequence.brittle->resume(std::move(stored.events));
 }
 
 /// \return whether the path has come to its end; false: the user asked to stop
