@@ -229,6 +229,31 @@ class Quasistatic(ProgramTest):
         self.assertEqual(parse_json(dry.stdout)["method"], "umfpack")
         self.check_error(equidem("quasistatic", case, "--set", "strength.residual_friction=-1"), 2, "residual_friction")
 
+    def test_forces_at_rest_that_a_limit_of_friction_needs_are_told(self):
+        pressed, friction = 100.0, 0.5
+        (self.folder / "pair.json").write_text(json.dumps({
+            "schema": "equidem-assembly/1", "discs": [[0, 0, 0.5], [1, 0, 0.5]], "contacts": [[0, 1, 0, 0]],
+            "springs": [[1e6, 4e5]], "strengths": [[0, 0]], "forces": [[-pressed, 0]], "groups": {"f": [0], "b": [1]}}))
+        case = self.folder / "case.toml"
+        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "pair.json"\n[strength]\n'
+                        f'after_breaking = "rubs"\nresidual_friction = {friction}\n'
+                        '[[support]]\ngroup = "f"\nux = true\nuy = true\nrotation = true\n'
+                        '[[support]]\ngroup = "b"\nrotation = true\n[[load]]\ngroup = "b"\nforce = [0.0, 1.0]\n'
+                        '[quasistatic]\nlegs = [60.0]\n')
+        done = equidem("quasistatic", case, "--json", self.folder / "result.json")
+        self.check_done(done)
+        result = parse_json((self.folder / "result.json").read_text())
+        self.assertAlmostEqual(result["events"][0]["lambda"], friction * pressed, delta=1e-9)
+        self.assertRegex(done.stdout, "forces at rest +contacts begin with them")
+        self.assertNotIn("not used", done.stdout)
+        self.assertIn("rub with friction 0.5", " ".join(done.stdout.split()))
+        self.assertEqual(result["strength"]["residual_friction"], friction)
+        self.assertFalse(result["prestress"]["counts"])
+        case.write_text(case.read_text().replace('after_breaking = "rubs"\n', "").replace("residual_friction", "friction"))
+        gone = equidem("quasistatic", case)
+        self.check_done(gone)
+        self.assertRegex(gone.stdout, "not used +forces at rest: .*quasistatic where")
+
     def test_other_verbs_tell_that_they_take_no_notch(self):
         done = equidem("solve", NOTCH)
         self.check_done(done)

@@ -67,6 +67,7 @@ struct Sequence {
     strengths = with_place(resolved.where("strength"),
                            [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
     cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
+    if (rubs()) tell_forces_at_rest();
     const QuasistaticCase& wanted = resolved.quasistatic;
     const bool loaded = !problem.load_cases.front().loads.empty();
     if (rubs()) {
@@ -98,6 +99,17 @@ struct Sequence {
     }
     return resolved.document.where();
   }
+  void tell_forces_at_rest() {
+    if (!carries_forces(problem.assembly)) return;
+    const ContactSprings& springs = problem.springs.springs;
+    problem.prestress =
+        PrestressedSprings{.springs = springs,
+                           .largest = largest_prestress(problem.assembly, springs),
+                           .balance = balance_at_rest(problem.assembly),
+                           .sentence =
+                               "contacts begin with them, and open, close, stick and slip from there; the "
+                               "stiffness does not turn with them"};
+  }
   void check_rubbing_solver() const {
     const SolverMethod method = problem.resolved.solver.method;
     if (method == SolverMethod::automatic || method == SolverMethod::umfpack) return;
@@ -117,6 +129,12 @@ struct Sequence {
     const auto& strength = problem.resolved.strength;
     return strength && strength->after_breaking == AfterBreaking::rubs;
   }
+  /// mu of contacts without a bond; none: they do not rub.
+  [[nodiscard]] std::optional<double> residual_friction() const {
+    if (!rubs()) return {};
+    const StrengthOptions& strength = *problem.resolved.strength;
+    return strength.residual_friction.value_or(strength.friction);
+  }
   [[nodiscard]] EventPath& run() const {
     return unbonded ? static_cast<EventPath&>(*unbonded) : static_cast<EventPath&>(*brittle);
   }
@@ -127,8 +145,7 @@ struct Sequence {
       wanted.solver = solver();
       check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, wanted),
                    wanted.solver.memory_limit);
-      const StrengthOptions& strength = *problem.resolved.strength;
-      UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
+      UnbondedOptions options{.friction = *residual_friction()};
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
         options.rest.push_back(force_at_rest(problem.assembly, c));
       casefile::with_place(problem.resolved.where("strength"), [&] {
@@ -150,7 +167,7 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   problem.resolved.solver = sequence.solver();
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
   const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
-  Results further = path_results(sequence.scene(), sequence.cut.size());
+  Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
   further.line("events").add("estimated_events", "", events, "event", {Shown::count});
   further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
                         : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
@@ -238,7 +255,8 @@ int quasistatic(const QuasistaticOptions& given) {
   if (given.resume) resume(options, sequence);
   write_case(options, sequence.problem.resolved);
   const bool done = go(options, sequence);
-  const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size()};
+  const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
+                                   sequence.residual_friction()};
   Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
                                       : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
   results.set("complete", done);

@@ -199,7 +199,7 @@ Results curve_results(const LoadCurve& curve) {
 /// Sizes, path, events and loads.
 Results first_results(const QuasistaticOutcome& outcome, const EventPath& run) {
   Results out = problem_results(outcome.problem, outcome.effects);
-  out.append(path_results(outcome.scene, outcome.cut));
+  out.append(path_results(outcome.scene, outcome.cut, outcome.residual_friction));
   add_events(out, outcome.scene, run);
   add_loads(out, outcome.scene, run);
   return out;
@@ -217,7 +217,7 @@ Results events_and_curves(const QuasistaticOutcome& outcome, const EventPath& ru
 
 }  // namespace
 
-Results path_results(const BreakageScene& scene, std::size_t cut) {
+Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<double> residual_friction) {
   Results out;
   const auto [low, high] = std::ranges::minmax(scene.strengths.tension);
   const auto [low_shear, high_shear] = std::ranges::minmax(scene.strengths.shear);
@@ -226,6 +226,10 @@ Results path_results(const BreakageScene& scene, std::size_t cut) {
   out.set("strength/tension", std::vector<double>{low, high})
       .set("strength/shear", std::vector<double>{low_shear, high_shear});
   out.set("strength/friction", scene.strengths.friction);
+  if (residual_friction) {
+    out.note(fmt::format("; contacts without a bond rub with friction {:g}", *residual_friction));
+    out.set("strength/residual_friction", *residual_friction);
+  }
   const LoadPath& path = scene.path;
   std::string legs = path.legs.empty() ? ", until nothing breaks" : ", lambda from 0";
   for (const double to : path.legs) legs += fmt::format(" to {:g}", to);
