@@ -57,6 +57,23 @@ class Quasistatic(ProgramTest):
         self.assertEqual(max(loads), result["peak"]["load"])
         self.assertEqual(sorted(result["load_envelope"]["load"]), result["load_envelope"]["load"])
 
+    def test_the_largest_load_may_be_that_at_the_end_of_a_leg(self):
+        first = self.run_notch("--set", "quasistatic.max_events=1")["events"][0]
+        for share in (0.5, -3.0):
+            result = self.run_notch("--set", f"quasistatic.legs=[{share * first['lambda']}]")
+            self.assertEqual((result["event_count"], result["end"]), (0, "legs_done"))
+            peak = result["peak"]
+            self.assertIsNone(peak["event"])
+            self.assertAlmostEqual(peak["load"] / (share * first["load"]), 1, delta=1e-9)
+            (xx, xy), (yx, yy) = peak["stress"]
+            for ours, of_event in zip((xx, yx, xy, yy), first["stress"]):
+                self.assertAlmostEqual(ours, share * of_event, delta=1e-9 * abs(share * first["stress"][3]))
+            for name in ("curve", "load_envelope", "motion_envelope"):
+                self.assertEqual(result[name]["load"], [0, peak["load"]])
+                self.assertEqual(result[name]["motion"], [0, peak["motion"]])
+        done = equidem("quasistatic", NOTCH, "--set", f"quasistatic.legs=[{0.5 * first['lambda']}]")
+        self.assertRegex(done.stdout, "largest load .*at the end of leg 0")
+
     def check_same_events(self, expected, found):
         """Which contacts break, how and when, to round-off of the states between."""
         self.assertEqual(len(found), len(expected))

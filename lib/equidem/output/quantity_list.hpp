@@ -223,7 +223,7 @@ inline constexpr ResultQuantity quantities[] = {
     {"broken_in_shear", "", "number of contacts that broke in shear"},
     {"tied_events", "", "number of events at the same lambda as others"},
     {"cut_contacts", "", "number of contacts that notches cut"},
-    {"peak/event", "", "number of the event at the largest load"},
+    {"peak/event", "", "number of the event at the largest load; null: it is at the start or the end of a leg"},
     {"avalanches_of_load/count", "", "number of avalanches where the load does not fall"},
     {"avalanches_of_load/largest", "", "events of the largest avalanche where the load does not fall"},
     {"avalanches_of_motion/count", "", "number of avalanches where the motion does not fall"},
