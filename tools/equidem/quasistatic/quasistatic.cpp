@@ -180,9 +180,14 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   return 0;
 }
 
+/// The reason for which the table of events does not hold all that is needed to go on from it; empty: it does.
+std::string computed_again(const Sequence& sequence) {
+  if (sequence.rubs()) return "forces of contacts that rub depend on the path";
+  if (sequence.problem.resolved.quasistatic.frame_every != 0) return "frames are written of states on the path";
+  return {};
+}
+
 /// The events of an earlier computation of the same case.
-/// Frames, and the history of contacts that rub, are not kept in the table of events: with them every event is computed
-/// again.
 void resume(const CommonOptions& options, Sequence& sequence) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
   if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return;
@@ -190,8 +195,11 @@ void resume(const CommonOptions& options, Sequence& sequence) {
     bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  if (!sequence.brittle || sequence.problem.resolved.quasistatic.frame_every != 0) return;
-  StoredEvents stored = read_events(table, *sequence.brittle, sequence.scene());
+  StoredEvents stored = read_events(table, sequence.run(), sequence.scene());
+  if (const std::string why = computed_again(sequence); !why.empty()) {
+    return say(options, fmt::format("{}: {} that lie there are computed again: {}", table.string(),
+                                    counted(std::ssize(stored.events), "event"), why));
+  }
   if (stored.cut) {
     say(options, fmt::format("{}: the last line is cut short; going on behind {}", table.string(),
                              counted(std::ssize(stored.events), "event")));
@@ -201,7 +209,6 @@ void resume(const CommonOptions& options, Sequence& sequence) {
 
 /// \return whether the path has come to its end; false: the user asked to stop
 bool go(const CommonOptions& options, Sequence& sequence) {
-  constexpr double save_after = 10;  // s
   EventPath& run = sequence.run();
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   const auto save = [&] {
@@ -220,7 +227,7 @@ bool go(const CommonOptions& options, Sequence& sequence) {
     while (run.advance()) {
       if (frames && sequence.unbonded) frames->add(*sequence.unbonded);
       if (frames && sequence.brittle) frames->add(*sequence.brittle, *sequence.system);
-      if (watch.seconds() - saved > save_after) {
+      if (watch.seconds() - saved > sequence.problem.resolved.output.checkpoint_interval) {
         save();
         saved = watch.seconds();
       }
@@ -266,8 +273,10 @@ int quasistatic(const QuasistaticOptions& given) {
                     sequence.problem.resolved.title);
   });
   if (!done) {
+    const std::string again = computed_again(sequence);
     throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),
-                  "Run the same command with --resume to go on");
+                  again.empty() ? "Run the same command with --resume to go on"
+                                : fmt::format("With --resume they are computed again: {}", again));
   }
   return 0;
 }
