@@ -301,6 +301,23 @@ class Quasistatic(ProgramTest):
         self.assertEqual(few["estimated_events"], 5)
         self.assertLess(few["estimated_seconds"], result["estimated_seconds"])
 
+    def test_a_dry_run_counts_what_contacts_that_rub_do_beside_breaks(self):
+        rubbing = CASES / "rubbing_notch.toml"
+        brittle = self.folder / "brittle.toml"
+        brittle.write_text("".join(line for line in rubbing.read_text().splitlines(keepends=True)
+                                   if not line.startswith(("after_breaking", "residual_friction"))))
+
+        def estimate(case, *options):
+            done = equidem("quasistatic", case, "--dry-run", "--json", "-", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return parse_json(done.stdout)
+        rubs, gone = estimate(rubbing), estimate(brittle)
+        self.assertGreater(rubs["estimated_events"], 2 * gone["estimated_events"])
+        self.assertIn("not known before", " ".join(rubs["report"].split()))
+        # A contact breaks once, and opens, closes, sticks and slips as often as the path goes to and fro.
+        many = 3 * rubs["contacts"]
+        self.assertEqual(estimate(rubbing, "--set", f"quasistatic.max_events={many}")["estimated_events"], many)
+
     def test_what_is_missing_or_contradictory_is_refused(self):
         self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=true"), 2, "nothing grows with lambda")

@@ -166,17 +166,23 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
-  const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
+  const bool rubs = sequence.rubs();
+  const std::int64_t events = most > 0 ? rubs ? most : std::min(most, contacts)
+                              : rubs ? estimated_rubbing_events(contacts)
+                                       : estimated_events(contacts);
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
   further.line("events").add("estimated_events", "", events, "event", {Shown::count});
-  further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
-                        : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
-                          "them; tension breaks fewer contacts, compression up to half of them");
-  if (sequence.rubs()) {
+  const std::string all = "the time below is that of the first state and all of them";
+  further.note(most > 0 ? ", max_events: " + all
+               : rubs
+                   ? ", if a tenth of the contacts breaks and each break lets others open, close, slip or stick: " + all
+                   : ", if a tenth of the contacts breaks: " + all +
+                         "; tension breaks fewer contacts, compression up to half of them");
+  if (rubs) {
     further.line("",
-                 "contacts that open, close, slip and stick are further events, of which no number is known before");
+                 "the number is not known before, and may be several times smaller or larger: the time grows with it");
   }
-  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events), further), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events, rubs), further), problem.times);
   return 0;
 }
 
