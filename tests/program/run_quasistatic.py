@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import re
 import unittest
 
 from program import CASES, SOURCE, ProgramTest, equidem, parse_json
@@ -288,6 +289,34 @@ class Quasistatic(ProgramTest):
                              names)
         self.assertEqual(len(self.events_of(out)), 50)
         self.assertEqual((out / "frames.pvd").read_text().count("discs_"), 5)
+
+    def test_the_state_at_the_end_of_a_path_balances_its_load(self):
+        first = self.run_notch("--set", "quasistatic.max_events=1")["events"][0]["lambda"]
+        for name, lambda_end, frame_every in (("before", 0.5 * first, 1), ("after", 1.01 * first, 1), ("none", 0.5 * first, 0)):
+            with self.subTest(name=name):
+                out = self.folder / name
+                result = self.run_notch("--out", out, *NO_PICTURE, "--set", f"quasistatic.legs=[{lambda_end}]", "--set",
+                                        "quasistatic.control=motion", "--set",
+                                        f"quasistatic.frame_every={frame_every}")
+                self.assertEqual(result["end"], "legs_done")
+                events = self.events_of(out)
+                with open(out / "discs.csv", newline="") as file:
+                    discs = list(csv.DictReader(file))
+                with open(out / "contacts.csv", newline="") as file:
+                    contacts = list(csv.DictReader(file))
+                self.assertTrue((out / "state.vtm").exists())
+                highest = max(float(disc["y_m"]) for disc in discs)
+                top = {k for k, disc in enumerate(discs) if float(disc["y_m"]) > highest - 1e-6}
+                self.assertAlmostEqual(max(float(discs[k]["uy_m"]) for k in top) / (1e-6 * lambda_end), 1, delta=1e-9)
+                pull = sum(float(c["force_y_N_per_m"]) * ((int(c["i"]) in top) - (int(c["j"]) in top)) for c in contacts)
+                self.assertAlmostEqual(-pull / result["curve"]["load"][-1], 1, delta=1e-9)
+                for event in events:
+                    self.assertEqual(float(contacts[int(event["contact"])]["normal_force_N_per_m"]), 0)
+                if frame_every == 0:
+                    self.assertFalse((out / "frames.pvd").exists())
+                    continue
+                times = re.findall('timestep="([0-9.e+]+)"[^>]*name="discs"', (out / "frames.pvd").read_text())
+                self.assertEqual([float(time) for time in times], [*range(1, len(events) + 1), len(events) + 1])
 
     def test_a_dry_run_tells_sizes_and_breaks_nothing(self):
         result = self.run_notch("--dry-run")

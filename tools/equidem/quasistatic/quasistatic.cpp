@@ -138,6 +138,10 @@ struct Sequence {
   [[nodiscard]] EventPath& run() const {
     return unbonded ? static_cast<EventPath&>(*unbonded) : static_cast<EventPath&>(*brittle);
   }
+  /// The state behind the last event; none where what is left does not carry its loads.
+  [[nodiscard]] std::optional<PathState> state() const {
+    return unbonded ? state_of(scene(), effects, *unbonded) : state_of(scene(), effects, cut, *brittle, *system);
+  }
   void begin() {
     const Stopwatch watch;
     if (rubs()) {
@@ -221,8 +225,7 @@ bool go(const CommonOptions& options, Sequence& sequence) {
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
   };
   std::optional<EventFrames> frames;
-  if (options.out && wanted.frame_every > 0)
-    frames.emplace(options, sequence.scene(), sequence.effects, sequence.cut, wanted.frame_every);
+  if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every);
   const Stopwatch watch;
   double saved = 0;
   const auto contacts = static_cast<double>(sequence.problem.assembly.contacts.size());
@@ -231,8 +234,9 @@ bool go(const CommonOptions& options, Sequence& sequence) {
   try {
     Progress progress("breaking");
     while (run.advance()) {
-      if (frames && sequence.unbonded) frames->add(*sequence.unbonded);
-      if (frames && sequence.brittle) frames->add(*sequence.brittle, *sequence.system);
+      if (frames && frames->due(run)) {
+        if (const auto state = sequence.state()) frames->add(run, *state);
+      }
       if (watch.seconds() - saved > sequence.problem.resolved.output.checkpoint_interval) {
         save();
         saved = watch.seconds();
@@ -247,6 +251,9 @@ bool go(const CommonOptions& options, Sequence& sequence) {
     done = false;
   }
   save();
+  if (frames && done) {
+    if (const auto state = sequence.state()) frames->add_end(run, *state);
+  }
   if (frames) frames->finish();
   sequence.problem.times.add("events", watch.seconds());
   return done;
@@ -273,10 +280,14 @@ int quasistatic(const QuasistaticOptions& given) {
   Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
                                       : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
   results.set("complete", done);
+  const std::optional<PathState> end = done && options.out ? sequence.state() : std::nullopt;
+  if (done && options.out && !end)
+    results.line("state", "none is written: what is left does not carry its loads at the end");
   deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
-    if (options.out)
-      write_figures(options, sequence.problem.resolved.output, sequence.scene(), sequence.run(), sequence.cut,
-                    sequence.problem.resolved.title);
+    if (!options.out) return;
+    const OutputCase& wanted = sequence.problem.resolved.output;
+    write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
+    if (end) write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), *end);
   });
   if (!done) {
     const std::string again = computed_again(sequence);
