@@ -139,10 +139,23 @@ TEST_CASE("legs_load_unload_and_reload") {
   REQUIRE(points.size() == 3);
   CHECK(points[1].load == Approx(1).epsilon(1e-12));
   CHECK(points[2].load == Approx(0).margin(1e-12));
+  // The second leg goes back to zero, where the third begins. The load does not grow from 0.5 to 1, the motion does.
+  const LoadCurve by_load = load_envelope(b.run()), by_motion = motion_envelope(b.run());
+  const std::vector<double> loads{0, 1, 0, 1.5}, left{0, 1, 0.5, 1, 0, 1.5, 0}, motions{0, 0.5, 0.5, 1, 0, 1.5, 1.5};
+  REQUIRE(by_load.load.size() == loads.size());
+  REQUIRE(by_motion.load.size() == left.size());
+  for (std::size_t k = 0; k < loads.size(); ++k) CHECK(by_load.load[k] == Approx(loads[k]).margin(1e-12));
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    CAPTURE(k);
+    CHECK(by_motion.load[k] == Approx(left[k]).margin(1e-12));
+    CHECK(by_motion.motion[k] == Approx(motions[k] * b.event(0).motion / 0.5).margin(1e-12));
+  }
   Broken reversed = bundle({1.5, 0.5}, LoadControl::path, {-5});
   CHECK(reversed.all().events().empty());  // compression
   CHECK(reversed.run().end() == PathEnd::legs_done);
   CHECK(reversed.run().leg_points().back().load == Approx(-10).epsilon(1e-12));
+  CHECK(load_envelope(reversed.run()).load.back() == Approx(-10).epsilon(1e-12));
+  CHECK(motion_envelope(reversed.run()).load.back() == Approx(-10).epsilon(1e-12));
 }
 
 TEST_CASE("parts_that_come_loose_leave_the_network") {

@@ -107,6 +107,28 @@ TEST_CASE("a_table_of_samples_reads_back_or_is_refused") {
   }
 }
 
+TEST_CASE("events_whose_last_row_was_cut_short_are_those_before_it") {
+  const TemporaryFolder folder;
+  const auto path = folder / "events.csv";
+  const auto table = [](std::vector<double> values) { return Table().add("value", std::move(values)); };
+  write_samples(path, table({0.1, 0.2, 0.3}));
+  const std::string good = read_file(path);
+  const std::size_t last = good.rfind("0.3"), before = good.rfind("0.2");
+  const auto read = [&](const std::string& text) {
+    write_file(path, text, true);
+    return StoredTable(path, table({}), "path", "Start afresh", "events", CutRow::left_out);
+  };
+  for (std::size_t size = last; size <= good.size(); ++size) {
+    const StoredTable stored = read(good.substr(0, size));
+    CAPTURE(size, good.size());
+    CHECK(stored.rows() == (size + 1 < good.size() ? 2 : 3));
+    CHECK(stored.cut() == (size > last && size + 1 < good.size()));
+  }
+  // A row that is cut in the middle of a table was not cut by an end.
+  const auto refusal = refusal_of([&] { read(good.substr(0, before + 5) + "\n" + good.substr(last)); });
+  CHECK(refusal.says("the events to continue cannot be read"));
+}
+
 TEST_CASE("a_table_refuses_columns_it_cannot_hold") {
   Table table;
   table.add("ratio", std::vector<double>{0, 1});

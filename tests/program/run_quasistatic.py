@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import re
 import unittest
 
 from program import CASES, SOURCE, ProgramTest, equidem, parse_json
@@ -57,6 +58,23 @@ class Quasistatic(ProgramTest):
         self.assertEqual(max(loads), result["peak"]["load"])
         self.assertEqual(sorted(result["load_envelope"]["load"]), result["load_envelope"]["load"])
 
+    def test_the_largest_load_may_be_that_at_the_end_of_a_leg(self):
+        first = self.run_notch("--set", "quasistatic.max_events=1")["events"][0]
+        for share in (0.5, -3.0):
+            result = self.run_notch("--set", f"quasistatic.legs=[{share * first['lambda']}]")
+            self.assertEqual((result["event_count"], result["end"]), (0, "legs_done"))
+            peak = result["peak"]
+            self.assertIsNone(peak["event"])
+            self.assertAlmostEqual(peak["load"] / (share * first["load"]), 1, delta=1e-9)
+            (xx, xy), (yx, yy) = peak["stress"]
+            for ours, of_event in zip((xx, yx, xy, yy), first["stress"]):
+                self.assertAlmostEqual(ours, share * of_event, delta=1e-9 * abs(share * first["stress"][3]))
+            for name in ("curve", "load_envelope", "motion_envelope"):
+                self.assertEqual(result[name]["load"], [0, peak["load"]])
+                self.assertEqual(result[name]["motion"], [0, peak["motion"]])
+        done = equidem("quasistatic", NOTCH, "--set", f"quasistatic.legs=[{0.5 * first['lambda']}]")
+        self.assertRegex(done.stdout, "largest load .*at the end of leg 0")
+
     def check_same_events(self, expected, found):
         """Which contacts break, how and when, to round-off of the states between."""
         self.assertEqual(len(found), len(expected))
@@ -94,6 +112,31 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--resume"), 2, "events.csv")
         self.assertNotEqual(text, "")
         self.check_error(equidem("quasistatic", NOTCH, "--resume"), 2, "--resume has nothing to go on from")
+
+    def test_events_to_go_on_from_are_whole_or_refused(self):
+        options = (*NO_PICTURE, "--set", "quasistatic.max_events=12")
+        whole, part = self.folder / "whole", self.folder / "part"
+        self.run_notch("--out", whole, *options)
+        self.run_notch("--out", part, *options)
+        rows = (whole / "events.csv").read_text().splitlines(keepends=True)
+        resumed = lambda text: ((part / "events.csv").write_text(text),
+                                equidem("quasistatic", NOTCH, "--out", part, *options, "--resume"))[1]
+        for gap in (1, 5, len(rows) - 2):
+            with self.subTest(gap=gap):
+                self.check_error(resumed("".join(rows[:gap] + rows[gap + 1:])), 2, "events.csv", "the events to continue",
+                                 f"line {gap + 1} has the event {gap} where {gap - 1} should be")
+        self.check_error(resumed("".join([*rows[:4], rows[5], rows[4], *rows[6:]])), 2, "in another order")
+        for left in (1, 20, len(rows[-1]) - 2):
+            with self.subTest(left=left):
+                done = resumed("".join(rows[:-1]) + rows[-1][:left])
+                self.check_done(done)
+                self.assertIn("events.csv: the last line is cut short; going on behind 11 events", done.stderr)
+                self.check_same_events(self.events_of(whole), self.events_of(part))
+        done = resumed("".join(rows)[:-1])
+        self.check_done(done)
+        self.assertNotIn("cut short", done.stderr)
+        # A line that is cut in the middle of the table is another matter.
+        self.check_error(resumed("".join(rows[:3]) + rows[3][:20] + "\n" + "".join(rows[4:])), 2, "line 4")
 
     def test_interrupted_it_ends_with_130_and_goes_on_with_the_same_events(self):
         larger = (*NO_PICTURE, "--set", "assembly.columns=61", "--set", "assembly.rows=61", "--set",
@@ -195,6 +238,9 @@ class Quasistatic(ProgramTest):
         again = equidem("quasistatic", case, "--out", out, "--resume", *options)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual((out / "events.csv").read_text(), table)
+        self.assertIn(f"{len(rows)} events that lie there are computed again: forces of contacts that rub", again.stderr)
+        (out / "events.csv").write_text("".join(table.splitlines(keepends=True)[:4] + table.splitlines(keepends=True)[5:]))
+        self.check_error(equidem("quasistatic", case, "--out", out, "--resume", *options), 2, "rows are missing")
         self.check_error(equidem("quasistatic", case, "--set", "quasistatic.control=path"), 2, "depends on the path")
         self.check_error(equidem("quasistatic", case, "--set", "springs.kT=-1e9"), 2, "kT < 0")
         self.check_error(equidem("quasistatic", case, "--set", "solver.method=cholmod"), 2, "umfpack alone", "solver.method")
@@ -203,6 +249,31 @@ class Quasistatic(ProgramTest):
         self.assertEqual(dry.returncode, 0, dry.stderr)
         self.assertEqual(parse_json(dry.stdout)["method"], "umfpack")
         self.check_error(equidem("quasistatic", case, "--set", "strength.residual_friction=-1"), 2, "residual_friction")
+
+    def test_forces_at_rest_that_a_limit_of_friction_needs_are_told(self):
+        pressed, friction = 100.0, 0.5
+        (self.folder / "pair.json").write_text(json.dumps({
+            "schema": "equidem-assembly/1", "discs": [[0, 0, 0.5], [1, 0, 0.5]], "contacts": [[0, 1, 0, 0]],
+            "springs": [[1e6, 4e5]], "strengths": [[0, 0]], "forces": [[-pressed, 0]], "groups": {"f": [0], "b": [1]}}))
+        case = self.folder / "case.toml"
+        case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "pair.json"\n[strength]\n'
+                        f'after_breaking = "rubs"\nresidual_friction = {friction}\n'
+                        '[[support]]\ngroup = "f"\nux = true\nuy = true\nrotation = true\n'
+                        '[[support]]\ngroup = "b"\nrotation = true\n[[load]]\ngroup = "b"\nforce = [0.0, 1.0]\n'
+                        '[quasistatic]\nlegs = [60.0]\n')
+        done = equidem("quasistatic", case, "--json", self.folder / "result.json")
+        self.check_done(done)
+        result = parse_json((self.folder / "result.json").read_text())
+        self.assertAlmostEqual(result["events"][0]["lambda"], friction * pressed, delta=1e-9)
+        self.assertRegex(done.stdout, "forces at rest +contacts begin with them")
+        self.assertNotIn("not used", done.stdout)
+        self.assertIn("rub with friction 0.5", " ".join(done.stdout.split()))
+        self.assertEqual(result["strength"]["residual_friction"], friction)
+        self.assertFalse(result["prestress"]["counts"])
+        case.write_text(case.read_text().replace('after_breaking = "rubs"\n', "").replace("residual_friction", "friction"))
+        gone = equidem("quasistatic", case)
+        self.check_done(gone)
+        self.assertRegex(gone.stdout, "not used +forces at rest: .*quasistatic where")
 
     def test_other_verbs_tell_that_they_take_no_notch(self):
         done = equidem("solve", NOTCH)
@@ -219,6 +290,34 @@ class Quasistatic(ProgramTest):
         self.assertEqual(len(self.events_of(out)), 50)
         self.assertEqual((out / "frames.pvd").read_text().count("discs_"), 5)
 
+    def test_the_state_at_the_end_of_a_path_balances_its_load(self):
+        first = self.run_notch("--set", "quasistatic.max_events=1")["events"][0]["lambda"]
+        for name, lambda_end, frame_every in (("before", 0.5 * first, 1), ("after", 1.01 * first, 1), ("none", 0.5 * first, 0)):
+            with self.subTest(name=name):
+                out = self.folder / name
+                result = self.run_notch("--out", out, *NO_PICTURE, "--set", f"quasistatic.legs=[{lambda_end}]", "--set",
+                                        "quasistatic.control=motion", "--set",
+                                        f"quasistatic.frame_every={frame_every}")
+                self.assertEqual(result["end"], "legs_done")
+                events = self.events_of(out)
+                with open(out / "discs.csv", newline="") as file:
+                    discs = list(csv.DictReader(file))
+                with open(out / "contacts.csv", newline="") as file:
+                    contacts = list(csv.DictReader(file))
+                self.assertTrue((out / "state.vtm").exists())
+                highest = max(float(disc["y_m"]) for disc in discs)
+                top = {k for k, disc in enumerate(discs) if float(disc["y_m"]) > highest - 1e-6}
+                self.assertAlmostEqual(max(float(discs[k]["uy_m"]) for k in top) / (1e-6 * lambda_end), 1, delta=1e-9)
+                pull = sum(float(c["force_y_N_per_m"]) * ((int(c["i"]) in top) - (int(c["j"]) in top)) for c in contacts)
+                self.assertAlmostEqual(-pull / result["curve"]["load"][-1], 1, delta=1e-9)
+                for event in events:
+                    self.assertEqual(float(contacts[int(event["contact"])]["normal_force_N_per_m"]), 0)
+                if frame_every == 0:
+                    self.assertFalse((out / "frames.pvd").exists())
+                    continue
+                times = re.findall('timestep="([0-9.e+]+)"[^>]*name="discs"', (out / "frames.pvd").read_text())
+                self.assertEqual([float(time) for time in times], [*range(1, len(events) + 1), len(events) + 1])
+
     def test_a_dry_run_tells_sizes_and_breaks_nothing(self):
         result = self.run_notch("--dry-run")
         self.assertEqual(result["status"], "dry_run")
@@ -230,6 +329,23 @@ class Quasistatic(ProgramTest):
         few = self.run_notch("--dry-run", "--set", "quasistatic.max_events=5")
         self.assertEqual(few["estimated_events"], 5)
         self.assertLess(few["estimated_seconds"], result["estimated_seconds"])
+
+    def test_a_dry_run_counts_what_contacts_that_rub_do_beside_breaks(self):
+        rubbing = CASES / "rubbing_notch.toml"
+        brittle = self.folder / "brittle.toml"
+        brittle.write_text("".join(line for line in rubbing.read_text().splitlines(keepends=True)
+                                   if not line.startswith(("after_breaking", "residual_friction"))))
+
+        def estimate(case, *options):
+            done = equidem("quasistatic", case, "--dry-run", "--json", "-", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return parse_json(done.stdout)
+        rubs, gone = estimate(rubbing), estimate(brittle)
+        self.assertGreater(rubs["estimated_events"], 2 * gone["estimated_events"])
+        self.assertIn("not known before", " ".join(rubs["report"].split()))
+        # A contact breaks once, and opens, closes, sticks and slips as often as the path goes to and fro.
+        many = 3 * rubs["contacts"]
+        self.assertEqual(estimate(rubbing, "--set", f"quasistatic.max_events={many}")["estimated_events"], many)
 
     def test_what_is_missing_or_contradictory_is_refused(self):
         self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")

@@ -43,7 +43,8 @@ Problem prestressed(Problem problem) {
 void add_forces_at_rest(Results& results, const Problem& problem) {
   if (!problem.prestress) {
     if (carries_forces(problem.assembly))
-      results.line("not used", "forces at rest: solve, homogenize and stability take them");
+      results.line("not used",
+                   "forces at rest: solve, homogenize, stability, and quasistatic where contacts rub, take them");
     return;
   }
   results.line("forces at rest", problem.prestress->sentence);

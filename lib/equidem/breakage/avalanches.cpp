@@ -6,9 +6,17 @@
 #include <limits>
 
 namespace equidem {
+namespace {
+
+constexpr double same = 1e-10;  // relative, of values that are equal but for round-off
+
+bool beyond(double value, double most) {
+  return value > most + same * std::abs(most) || std::isinf(most);
+}
+
+}  // namespace
 
 Avalanches avalanches_by(const EventPath& run, double BreakEvent::*quantity) {
-  constexpr double same = 1e-10;  // relative, of values that are equal but for round-off
   Avalanches result;
   double most = -std::numeric_limits<double>::infinity();
   std::int64_t leg = -1, size = 0;
@@ -16,7 +24,7 @@ Avalanches avalanches_by(const EventPath& run, double BreakEvent::*quantity) {
     if (event.leg != leg) most = -std::numeric_limits<double>::infinity();
     leg = event.leg;
     const double value = run.direction(leg) * event.*quantity;
-    if (value > most + same * std::abs(most) || std::isinf(most)) {
+    if (beyond(value, most)) {
       most = value;
       result.first.push_back(std::ssize(result.number));
       size = 0;
@@ -43,35 +51,59 @@ LoadCurve curve_of(const EventPath& run) {
   return curve;
 }
 
-LoadCurve load_envelope(const EventPath& run) {
-  const LegPoint start = run.leg_points().front();
-  LoadCurve curve{{start.motion}, {start.load}};
-  for (const std::int64_t k : avalanches_by(run, &BreakEvent::load).first) {
-    curve.motion.push_back(run.events()[static_cast<std::size_t>(k)].motion);
-    curve.load.push_back(run.events()[static_cast<std::size_t>(k)].load);
+namespace {
+
+using Quantity = double BreakEvent::*;
+
+/// The load of the network in which this point was reached, at another motion.
+template <typename Point>
+double load_back_from(const Point& point, double motion) {
+  const double slope = point.motion_rate > 0 ? point.load_rate / point.motion_rate : 0;
+  return point.load + slope * (motion - point.motion);
+}
+
+/// The first events of avalanches and the ends of legs that lie beyond them, with the start.
+/// \param behind whether the load falls, at each event, to what is left when its avalanche is over
+LoadCurve envelope(const EventPath& run, Quantity quantity, double LegPoint::*at_end, bool behind) {
+  LoadCurve curve;
+  const std::vector<LegPoint> points = run.leg_points();
+  const std::vector<BreakEvent>& events = run.events();
+  const std::vector<std::int64_t> first = avalanches_by(run, quantity).first;
+  const auto event = [&](std::size_t a) -> const BreakEvent& { return events[static_cast<std::size_t>(first[a])]; };
+  const auto add = [&](double motion, double load) {
+    curve.motion.push_back(motion);
+    curve.load.push_back(load);
+  };
+  if (!points.empty()) add(points.front().motion, points.front().load);
+  std::size_t a = 0;
+  for (std::int64_t leg = 0;; ++leg) {
+    const bool ended = leg + 1 < std::ssize(points);
+    const LegPoint end = ended ? points[static_cast<std::size_t>(leg) + 1] : LegPoint{};
+    double most = -std::numeric_limits<double>::infinity();
+    for (; a < first.size() && event(a).leg == leg; ++a) {
+      const double motion = event(a).motion;
+      most = run.direction(leg) * (event(a).*quantity);
+      add(motion, event(a).load);
+      // The network behind the avalanche is that in which the next one begins, or the leg ends.
+      const bool another = a + 1 < first.size() && event(a + 1).leg == leg;
+      if (!behind) continue;
+      add(motion, another ? load_back_from(event(a + 1), motion)
+                  : ended ? load_back_from(end, motion)
+                          : run.load_left(motion));
+    }
+    if (!ended) return curve;
+    if (beyond(run.direction(leg) * (end.*at_end), most)) add(end.motion, end.load);
   }
-  return curve;
+}
+
+}  // namespace
+
+LoadCurve load_envelope(const EventPath& run) {
+  return envelope(run, &BreakEvent::load, &LegPoint::load, false);
 }
 
 LoadCurve motion_envelope(const EventPath& run) {
-  const LegPoint start = run.leg_points().front();
-  LoadCurve curve{{start.motion}, {start.load}};
-  const std::vector<BreakEvent>& events = run.events();
-  const Avalanches avalanches = avalanches_by(run, &BreakEvent::motion);
-  for (std::size_t a = 0; a < avalanches.first.size(); ++a) {
-    const BreakEvent& event = events[static_cast<std::size_t>(avalanches.first[a])];
-    curve.motion.insert(curve.motion.end(), 2, event.motion);
-    curve.load.push_back(event.load);
-    // The network behind the avalanche is that in which the next one begins; at its end, what the last event leaves.
-    if (a + 1 < avalanches.first.size()) {
-      const BreakEvent& next = events[static_cast<std::size_t>(avalanches.first[a + 1])];
-      const double slope = next.motion_rate > 0 ? next.load_rate / next.motion_rate : 0;
-      curve.load.push_back(next.load + slope * (event.motion - next.motion));
-    } else {
-      curve.load.push_back(run.load_left(event.motion));
-    }
-  }
-  return curve;
+  return envelope(run, &BreakEvent::motion, &LegPoint::motion, true);
 }
 
 }  // namespace equidem

@@ -29,7 +29,7 @@ struct LoadCurve {
 };
 /// All events, the start and the ends of legs, in the order of the path.
 LoadCurve curve_of(const EventPath& run);
-/// The first events of avalanches, with the start.
+/// The start, the first events of avalanches, and the ends of legs that lie beyond all events of their leg.
 LoadCurve load_envelope(const EventPath& run);
 /// Likewise; the load falls at each to what is left when its avalanche is over.
 LoadCurve motion_envelope(const EventPath& run);

@@ -69,10 +69,24 @@ double BreakageRun::held_quantity(double lambda) const {
 LegPoint BreakageRun::point_at(double lambda, std::int64_t leg) const {
   const auto next = std::ranges::find_if(events_, [&](const BreakEvent& event) { return event.leg > leg; });
   const std::int64_t before = next - events_.begin();
-  if (next == events_.end())
-    return {before, lambda, NetworkResponse::at(response_.load, lambda), NetworkResponse::at(response_.motion, lambda)};
+  if (next == events_.end()) {
+    const NetworkResponse& r = response_;
+    return {before,
+            lambda,
+            NetworkResponse::at(r.load, lambda),
+            NetworkResponse::at(r.motion, lambda),
+            r.load[1],
+            r.motion[1],
+            r.stress_at(lambda)};
+  }
   const double on = lambda - next->lambda;
-  return {before, lambda, next->load + on * next->load_rate, next->motion + on * next->motion_rate};
+  LegPoint point{
+      before,          lambda,           next->load + on * next->load_rate, next->motion + on * next->motion_rate,
+      next->load_rate, next->motion_rate};
+  // Without dead loads all is proportional to lambda; with them the event tells no more than its own stress.
+  if (on == 0) point.stress = next->stress;
+  if (!scene_.path.dead && next->lambda != 0) point.stress = (lambda / next->lambda) * next->stress;
+  return point;
 }
 
 std::vector<LegPoint> BreakageRun::leg_points() const {

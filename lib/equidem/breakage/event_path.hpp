@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,8 @@ struct EnumNames<PathEnd> {
 struct LegPoint {
   std::int64_t events_before = 0;
   double lambda = 0, load = 0, motion = 0;
+  double load_rate = 0, motion_rate = 0;  ///< of lambda, as it was reached
+  std::optional<Tensor2> stress{};        ///< Pa; none: not known
 };
 
 class EventPath {

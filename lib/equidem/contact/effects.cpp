@@ -65,7 +65,7 @@ Effects derive_effects(const Assembly& assembly, const ContactSprings& springs, 
   if (carries_forces(assembly)) {
     effects.entries.push_back({"prestress", effects.prestress,
                                effects.prestress ? "contacts carry forces at rest, which turn with them"
-                                                 : "the forces at rest do not count"});
+                                                 : "the stiffness leaves the forces at rest out"});
   }
   return effects;
 }

@@ -2,6 +2,7 @@
 #include "quasistatic/event_table.hpp"
 
 #include <map>
+#include <utility>
 
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/error.hpp"
@@ -100,14 +101,17 @@ Table event_table(const EventPath& run, const BreakageScene& scene) {
   return table;
 }
 
-std::vector<BreakEvent> read_events(const std::filesystem::path& path, const EventPath& run,
-                                    const BreakageScene& scene) {
+StoredEvents read_events(const std::filesystem::path& path, const EventPath& run, const BreakageScene& scene) {
   const StoredTable table(path, event_table(run, scene), "quasistatic",
-                          "Begin anew, without --resume and with --overwrite");
+                          "Begin anew, without --resume and with --overwrite", "events", CutRow::left_out);
   std::map<std::string, std::size_t> column;
   for (std::size_t k = 0; k < table.columns().size(); ++k) column[table.columns()[k]] = k;
   std::vector<BreakEvent> events(table.rows());
   for (std::size_t row = 0; row < events.size(); ++row) {
+    if (const std::int64_t number = table.integer(row, column.at("event")); number != static_cast<std::int64_t>(row)) {
+      table.refuse(fmt::format("line {} has the event {} where {} should be: rows are missing, or are in another order",
+                               row + 2, number, row));
+    }
     BreakEvent& event = events[row];
     for (const Count& count : count_columns) event.*count.member = table.integer(row, column.at(count.name));
     for (const Number& n : numbers(scene.path.driven_by)) event.*n.member = table.number(row, column.at(n.name));
@@ -115,7 +119,7 @@ std::vector<BreakEvent> read_events(const std::filesystem::path& path, const Eve
     event.mode = enum_from<BreakMode>(table.text(row, column.at("mode")));
     event.loosened = discs_of(table.text(row, column.at("loosened")));
   }
-  return events;
+  return {std::move(events), table.cut()};
 }
 
 }  // namespace equidem

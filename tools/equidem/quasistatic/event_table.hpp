@@ -18,8 +18,11 @@ std::string unit_of_motion(DrivenBy driven_by);
 
 /// One row for each event, numbers that read back to the same bits.
 Table event_table(const EventPath& run, const BreakageScene& scene);
-/// \throws Error (bad_input) where the table is another one, or a row was altered
-std::vector<BreakEvent> read_events(const std::filesystem::path& path, const EventPath& run,
-                                    const BreakageScene& scene);
+struct StoredEvents {
+  std::vector<BreakEvent> events;
+  bool cut = false;  ///< whether a last row, cut short, is not among them
+};
+/// \throws Error (bad_input) where the table is another one, a row was altered, or rows are not numbered on from 0
+StoredEvents read_events(const std::filesystem::path& path, const EventPath& run, const BreakageScene& scene);
 
 }  // namespace equidem

@@ -67,6 +67,7 @@ struct Sequence {
     strengths = with_place(resolved.where("strength"),
                            [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
     cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
+    if (rubs()) tell_forces_at_rest();
     const QuasistaticCase& wanted = resolved.quasistatic;
     const bool loaded = !problem.load_cases.front().loads.empty();
     if (rubs()) {
@@ -98,6 +99,17 @@ struct Sequence {
     }
     return resolved.document.where();
   }
+  void tell_forces_at_rest() {
+    if (!carries_forces(problem.assembly)) return;
+    const ContactSprings& springs = problem.springs.springs;
+    problem.prestress =
+        PrestressedSprings{.springs = springs,
+                           .largest = largest_prestress(problem.assembly, springs),
+                           .balance = balance_at_rest(problem.assembly),
+                           .sentence =
+                               "contacts begin with them, and open, close, stick and slip from there; the "
+                               "stiffness does not turn with them"};
+  }
   void check_rubbing_solver() const {
     const SolverMethod method = problem.resolved.solver.method;
     if (method == SolverMethod::automatic || method == SolverMethod::umfpack) return;
@@ -117,8 +129,18 @@ struct Sequence {
     const auto& strength = problem.resolved.strength;
     return strength && strength->after_breaking == AfterBreaking::rubs;
   }
+  /// mu of contacts without a bond; none: they do not rub.
+  [[nodiscard]] std::optional<double> residual_friction() const {
+    if (!rubs()) return {};
+    const StrengthOptions& strength = *problem.resolved.strength;
+    return strength.residual_friction.value_or(strength.friction);
+  }
   [[nodiscard]] EventPath& run() const {
     return unbonded ? static_cast<EventPath&>(*unbonded) : static_cast<EventPath&>(*brittle);
+  }
+  /// The state behind the last event; none where what is left does not carry its loads.
+  [[nodiscard]] std::optional<PathState> state() const {
+    return unbonded ? state_of(scene(), effects, *unbonded) : state_of(scene(), effects, cut, *brittle, *system);
   }
   void begin() {
     const Stopwatch watch;
@@ -127,8 +149,7 @@ struct Sequence {
       wanted.solver = solver();
       check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, wanted),
                    wanted.solver.memory_limit);
-      const StrengthOptions& strength = *problem.resolved.strength;
-      UnbondedOptions options{.friction = strength.residual_friction.value_or(strength.friction)};
+      UnbondedOptions options{.friction = *residual_friction()};
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
         options.rest.push_back(force_at_rest(problem.assembly, c));
       casefile::with_place(problem.resolved.where("strength"), [&] {
@@ -149,23 +170,34 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
-  const std::int64_t events = most > 0 ? std::min(most, contacts) : estimated_events(contacts);
-  Results further = path_results(sequence.scene(), sequence.cut.size());
+  const bool rubs = sequence.rubs();
+  const std::int64_t events = most > 0 ? rubs ? most : std::min(most, contacts)
+                              : rubs ? estimated_rubbing_events(contacts)
+                                       : estimated_events(contacts);
+  Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
   further.line("events").add("estimated_events", "", events, "event", {Shown::count});
-  further.note(most > 0 ? ", max_events: the time below is that of the first state and all of them"
-                        : ", if a tenth of the contacts breaks: the time below is that of the first state and all of "
-                          "them; tension breaks fewer contacts, compression up to half of them");
-  if (sequence.rubs()) {
+  const std::string all = "the time below is that of the first state and all of them";
+  further.note(most > 0 ? ", max_events: " + all
+               : rubs
+                   ? ", if a tenth of the contacts breaks and each break lets others open, close, slip or stick: " + all
+                   : ", if a tenth of the contacts breaks: " + all +
+                         "; tension breaks fewer contacts, compression up to half of them");
+  if (rubs) {
     further.line("",
-                 "contacts that open, close, slip and stick are further events, of which no number is known before");
+                 "the number is not known before, and may be several times smaller or larger: the time grows with it");
   }
-  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events), further), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, solutions_of_path(events, rubs), further), problem.times);
   return 0;
 }
 
+/// The reason for which the table of events does not hold all that is needed to go on from it; empty: it does.
+std::string computed_again(const Sequence& sequence) {
+  if (sequence.rubs()) return "forces of contacts that rub depend on the path";
+  if (sequence.problem.resolved.quasistatic.frame_every != 0) return "frames are written of states on the path";
+  return {};
+}
+
 /// The events of an earlier computation of the same case.
-/// Frames, and the history of contacts that rub, are not kept in the table of events: with them every event is computed
-/// again.
 void resume(const CommonOptions& options, Sequence& sequence) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
   if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return;
@@ -173,21 +205,27 @@ void resume(const CommonOptions& options, Sequence& sequence) {
     bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
                  "Choose another --out, or leave out --resume and pass --overwrite");
   }
-  if (sequence.brittle && sequence.problem.resolved.quasistatic.frame_every == 0)
-    sequence.brittle->resume(read_events(table, *sequence.brittle, sequence.scene()));
+  StoredEvents stored = read_events(table, sequence.run(), sequence.scene());
+  if (const std::string why = computed_again(sequence); !why.empty()) {
+    return say(options, fmt::format("{}: {} that lie there are computed again: {}", table.string(),
+                                    counted(std::ssize(stored.events), "event"), why));
+  }
+  if (stored.cut) {
+    say(options, fmt::format("{}: the last line is cut short; going on behind {}", table.string(),
+                             counted(std::ssize(stored.events), "event")));
+  }
+  sequence.brittle->resume(std::move(stored.events));
 }
 
 /// \return whether the path has come to its end; false: the user asked to stop
 bool go(const CommonOptions& options, Sequence& sequence) {
-  constexpr double save_after = 10;  // s
   EventPath& run = sequence.run();
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   const auto save = [&] {
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
   };
   std::optional<EventFrames> frames;
-  if (options.out && wanted.frame_every > 0)
-    frames.emplace(options, sequence.scene(), sequence.effects, sequence.cut, wanted.frame_every);
+  if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every);
   const Stopwatch watch;
   double saved = 0;
   const auto contacts = static_cast<double>(sequence.problem.assembly.contacts.size());
@@ -196,9 +234,10 @@ bool go(const CommonOptions& options, Sequence& sequence) {
   try {
     Progress progress("breaking");
     while (run.advance()) {
-      if (frames && sequence.unbonded) frames->add(*sequence.unbonded);
-      if (frames && sequence.brittle) frames->add(*sequence.brittle, *sequence.system);
-      if (watch.seconds() - saved > save_after) {
+      if (frames && frames->due(run)) {
+        if (const auto state = sequence.state()) frames->add(run, *state);
+      }
+      if (watch.seconds() - saved > sequence.problem.resolved.output.checkpoint_interval) {
         save();
         saved = watch.seconds();
       }
@@ -212,6 +251,9 @@ bool go(const CommonOptions& options, Sequence& sequence) {
     done = false;
   }
   save();
+  if (frames && done) {
+    if (const auto state = sequence.state()) frames->add_end(run, *state);
+  }
   if (frames) frames->finish();
   sequence.problem.times.add("events", watch.seconds());
   return done;
@@ -233,18 +275,25 @@ int quasistatic(const QuasistaticOptions& given) {
   if (given.resume) resume(options, sequence);
   write_case(options, sequence.problem.resolved);
   const bool done = go(options, sequence);
-  const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size()};
+  const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
+                                   sequence.residual_friction()};
   Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
                                       : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
   results.set("complete", done);
+  const std::optional<PathState> end = done && options.out ? sequence.state() : std::nullopt;
+  if (done && options.out && !end)
+    results.line("state", "none is written: what is left does not carry its loads at the end");
   deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
-    if (options.out)
-      write_figures(options, sequence.problem.resolved.output, sequence.scene(), sequence.run(), sequence.cut,
-                    sequence.problem.resolved.title);
+    if (!options.out) return;
+    const OutputCase& wanted = sequence.problem.resolved.output;
+    write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
+    if (end) write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), *end);
   });
   if (!done) {
+    const std::string again = computed_again(sequence);
     throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),
-                  "Run the same command with --resume to go on");
+                  again.empty() ? "Run the same command with --resume to go on"
+                                : fmt::format("With --resume they are computed again: {}", again));
   }
   return 0;
 }

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "quasistatic/quasistatic_files.hpp"
 
+#include <algorithm>
+
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 #include "quasistatic/event_table.hpp"
+#include "state_files.hpp"
 
 namespace equidem {
 namespace {
@@ -32,6 +36,9 @@ void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted) {
   plan.expect_plot("curve");
   if (wanted.picture)
     for (const char* end : {".svg", ".png"}) plan.expect(std::string("cracks") + end);
+  OutputCase of_end = wanted;
+  of_end.picture = false;  // the cracks are the picture
+  expect_state(plan, of_end, "");
 }
 
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
@@ -59,55 +66,91 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
   write_picture(*options.out, "cracks", AssemblyState{.assembly = scene.assembly}, picture, options.overwrite);
 }
 
-EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, const Effects& effects,
-                         std::span<const std::size_t> cut, std::int64_t every)
-    : scene_(scene),
-      broken_(scene.assembly.contacts.size(), 0),
-      every_(every),
-      per_disc_(static_cast<std::size_t>(effects.unknowns_per_disc())),
-      writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite}) {
-  for (const std::size_t contact : cut) broken_[contact] = 1;
+namespace {
+
+PathState empty_state(const Assembly& assembly) {
+  return {std::vector<DiscMotion>(assembly.size()), std::vector<ContactForce>(assembly.contacts.size()),
+          std::vector<std::uint8_t>(assembly.contacts.size(), 1)};
 }
 
-void EventFrames::add(const BreakageRun& run, const BreakableSystem& system) {
-  const std::int64_t event = std::ssize(run.events());
-  broken_[static_cast<std::size_t>(run.events().back().contact)] = 1;
-  if (event % every_ != 0) return;
-  const Assembly& assembly = scene_.assembly;
-  const bool dead = scene_.path.dead.has_value();
-  std::vector<double> motion(assembly.size() * per_disc_);
-  for (std::size_t k = 0; k < motion.size(); ++k)
-    motion[k] = run.lambda() * system.motion(0)[k] + (dead ? system.motion(1)[k] : 0.0);
-  std::vector<BodyContact> contacts;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
-    if (broken_[c] != 0) continue;
+/// \param component the motion of a component, m
+template <class Component>
+void set_motions(const Assembly& assembly, const Effects& effects, const Component& component, PathState& state) {
+  const auto per_disc = static_cast<std::size_t>(effects.unknowns_per_disc());
+  for (std::size_t d = 0; d < state.motions.size(); ++d) {
+    const std::size_t k = d * per_disc;
+    state.motions[d] = {{component(k), component(k + 1)},
+                        per_disc == 3 ? component(k + 2) / assembly.mean_radius() : 0};
+  }
+}
+
+}  // namespace
+
+std::optional<PathState> state_of(const BreakageScene& scene, const Effects& effects, std::span<const std::size_t> cut,
+                                  const BreakageRun& run, const BreakableSystem& system) {
+  const bool dead = scene.path.dead.has_value();
+  if (!system.carries(0) || (dead && !system.carries(1))) return {};
+  PathState state = empty_state(scene.assembly);
+  for (const std::size_t contact : cut) state.joined[contact] = 0;
+  for (const BreakEvent& event : run.events()) state.joined[static_cast<std::size_t>(event.contact)] = 0;
+  const double lambda = run.lambda();
+  for (std::size_t c = 0; c < state.forces.size(); ++c) {
     const ContactForce a = dead ? system.forces(1)[c] : ContactForce{}, b = system.forces(0)[c];
-    contacts.push_back(
-        bonded_contact(assembly, c, {a.normal + run.lambda() * b.normal, a.tangential + run.lambda() * b.tangential}));
+    if (state.joined[c] != 0) state.forces[c] = {a.normal + lambda * b.normal, a.tangential + lambda * b.tangential};
   }
-  append(event, motion, contacts);
+  const auto component = [&](std::size_t k) {
+    return lambda * system.motion(0)[k] + (dead ? system.motion(1)[k] : 0.0);
+  };
+  set_motions(scene.assembly, effects, component, state);
+  return state;
 }
 
-void EventFrames::add(const UnbondedRun& run) {
-  const std::int64_t event = std::ssize(run.events());
-  if (event / every_ == written_) return;
-  written_ = event / every_;
+PathState state_of(const BreakageScene& scene, const Effects& effects, const UnbondedRun& run) {
+  PathState state = empty_state(scene.assembly);
+  for (std::size_t c = 0; c < state.forces.size(); ++c) {
+    state.joined[c] = run.state().status()[c] == ContactStatus::open ? 0 : 1;
+    state.forces[c] = run.state().forces()[c];
+  }
+  const std::vector<double>& motion = run.state().motion().high;
+  set_motions(
+      scene.assembly, effects, [&](std::size_t k) { return motion[k]; }, state);
+  return state;
+}
+
+void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
+                     const PathState& state) {
+  const Assembly& assembly = scene.assembly;
+  std::vector<DiscMotion> motions = state.motions;
+  if (const std::optional<Tensor2>& gradient = scene.path.pattern.gradient) {
+    for (std::size_t d = 0; d < motions.size(); ++d) motions[d].u += lambda * (*gradient * assembly.centres[d]);
+  }
+  std::vector<Tensor2> stresses;
+  if (cells_hold_area(assembly)) stresses = disc_stresses(assembly, state.forces);
+  write_state(options, wanted, "",
+              {.assembly = assembly, .motions = motions, .contact_forces = state.forces, .stresses = stresses});
+}
+
+EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every)
+    : scene_(scene), every_(every), writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite}) {}
+
+bool EventFrames::due(const EventPath& run) const {
+  // Where contacts rub several events may happen at once.
+  return std::ssize(run.events()) / every_ > std::max<std::int64_t>(writer_.last_step(), 0) / every_;
+}
+
+void EventFrames::add_end(const EventPath& run, const PathState& state) {
+  const std::int64_t events = std::ssize(run.events());
+  const double of_last = events == 0 ? 0 : run.events().back().lambda;
+  if (run.lambda() != of_last) return append(events + 1, state);
+  if (writer_.last_step() < events) append(events, state);
+}
+
+void EventFrames::append(std::int64_t step, const PathState& state) {
   std::vector<BodyContact> contacts;
-  for (std::size_t c = 0; c < scene_.assembly.contacts.size(); ++c) {
-    if (run.state().status()[c] == ContactStatus::open) continue;
-    contacts.push_back(bonded_contact(scene_.assembly, c, run.state().forces()[c]));
-  }
-  append(event, run.state().motion().high, contacts);
-}
-
-void EventFrames::append(std::int64_t event, std::span<const double> motion, const std::vector<BodyContact>& contacts) {
-  const Assembly& assembly = scene_.assembly;
-  std::vector<DiscMotion> motions(assembly.size()), still(assembly.size());
-  for (std::size_t d = 0; d < motions.size(); ++d) {
-    const std::size_t first = d * per_disc_;
-    motions[d] = {{motion[first], motion[first + 1]}, per_disc_ == 3 ? motion[first + 2] / assembly.mean_radius() : 0};
-  }
-  writer_.append(event, static_cast<double>(event), motions, still, contacts);
+  for (std::size_t c = 0; c < state.forces.size(); ++c)
+    if (state.joined[c] != 0) contacts.push_back(bonded_contact(scene_.assembly, c, state.forces[c]));
+  const std::vector<DiscMotion> still(state.motions.size());
+  writer_.append(step, static_cast<double>(step), state.motions, still, contacts);
 }
 
 }  // namespace equidem

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Files of `equidem quasistatic`: the curve, the crack picture, frames.
+/// Files of `equidem quasistatic`: the curve, the crack picture, the state at the end, frames.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,23 +26,38 @@ void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted);
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
                    const EventPath& run, std::span<const std::size_t> cut, const std::string& title);
 
-/// A frame for every n-th event: the network behind the event, at its lambda; the event stands for the time.
+/// The network behind the last event of a path, at its lambda.
+struct PathState {
+  std::vector<DiscMotion> motions;   ///< per disc, beside a mean strain
+  std::vector<ContactForce> forces;  ///< N/m, per contact; 0 where it is broken or open
+  std::vector<std::uint8_t> joined;  ///< per contact, whether it is neither
+};
+/// \param cut contacts that had no bond from the start
+/// \return none where what is left of the network does not carry its loads
+std::optional<PathState> state_of(const BreakageScene& scene, const Effects& effects, std::span<const std::size_t> cut,
+                                  const BreakageRun& run, const BreakableSystem& system);
+PathState state_of(const BreakageScene& scene, const Effects& effects, const UnbondedRun& run);
+
+/// discs.csv, contacts.csv and state.vtm of the end of a path.
+void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
+                     const PathState& state);
+
+/// A frame for every n-th event, and one for the end of the path: the network behind the event, at its lambda. The
+/// event stands for the time; an end at another lambda than that of the last event is one further.
 class EventFrames {
  public:
-  EventFrames(const CommonOptions& options, const BreakageScene& scene, const Effects& effects,
-              std::span<const std::size_t> cut, std::int64_t every);
-  void add(const BreakageRun& run, const BreakableSystem& system);
-  /// Closed contacts and bonds.
-  void add(const UnbondedRun& run);
+  EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every);
+  /// Whether a frame is due behind the last event.
+  [[nodiscard]] bool due(const EventPath& run) const;
+  void add(const EventPath& run, const PathState& state) { append(std::ssize(run.events()), state); }
+  void add_end(const EventPath& run, const PathState& state);
   void finish() const { writer_.finish(); }
 
  private:
-  void append(std::int64_t event, std::span<const double> motion, const std::vector<BodyContact>& contacts);
+  void append(std::int64_t step, const PathState& state);
 
   const BreakageScene scene_;
-  std::vector<std::uint8_t> broken_;
-  std::int64_t every_, written_ = 0;  // events between frames, and frames written where contacts rub
-  std::size_t per_disc_;
+  std::int64_t every_;
   FrameWriter writer_;
 };
 

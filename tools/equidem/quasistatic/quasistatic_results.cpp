@@ -62,18 +62,34 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run) 
       .note(fmt::format(" in {}", to_string(first.mode)));
 }
 
-void add_loads(Results& out, const BreakageScene& scene, const EventPath& run) {
+/// The largest load of all events, of the start and of the ends of legs.
+void add_peak(Results& out, const BreakageScene& scene, const EventPath& run) {
   const std::vector<BreakEvent>& events = run.events();
-  if (events.empty()) return;
+  const std::vector<LegPoint> points = run.leg_points();
+  const auto size_of = [](const auto& point) { return std::abs(point.load); };
+  const auto event = std::ranges::max_element(events, {}, size_of);
+  const auto point = std::ranges::max_element(points, {}, size_of);
   const std::string load = unit_of_load(scene.path.driven_by), motion = unit_of_motion(scene.path.driven_by);
-  const auto larger = [](const BreakEvent& a, const BreakEvent& b) { return std::abs(a.load) < std::abs(b.load); };
-  const auto peak = std::ranges::max_element(events, larger);
-  out.line("largest load")
-      .add("peak/load", "", peak->load, load, {.digits = 9})
-      .add("peak/motion", "at the motion", peak->motion, motion)
-      .add("peak/lambda", "lambda", peak->lambda)
-      .add("peak/event", "event", peak - events.begin());
-  out.set("peak/stress", peak->stress);
+  const auto add = [&](const auto& peak) {
+    out.line("largest load")
+        .add("peak/load", "", peak.load, load, {.digits = 9})
+        .add("peak/motion", "at the motion", peak.motion, motion)
+        .add("peak/lambda", "lambda", peak.lambda);
+  };
+  if (event != events.end() && (point == points.end() || size_of(*event) >= size_of(*point))) {
+    add(*event);
+    out.add("peak/event", "event", event - events.begin()).set("peak/stress", event->stress);
+  } else if (events.size() + points.size() > 1) {
+    add(*point);
+    const auto leg = point - points.begin() - 1;
+    out.note(leg < 0 ? ", at the start" : fmt::format(", at the end of leg {}", leg)).set("peak/event", nullptr);
+    out.set("peak/stress", point->stress ? ResultValue(*point->stress) : ResultValue(nullptr));
+  }
+}
+
+void add_loads(Results& out, const BreakageScene& scene, const EventPath& run) {
+  add_peak(out, scene, run);
+  if (run.events().empty()) return;
   const auto avalanches = [&](const std::string& key, const std::string& name, double BreakEvent::*quantity) {
     const Avalanches found = avalanches_by(run, quantity);
     out.line(name)
@@ -202,7 +218,7 @@ Results curve_results(const LoadCurve& curve) {
 /// Sizes, path, events and loads.
 Results first_results(const QuasistaticOutcome& outcome, const EventPath& run) {
   Results out = problem_results(outcome.problem, outcome.effects);
-  out.append(path_results(outcome.scene, outcome.cut));
+  out.append(path_results(outcome.scene, outcome.cut, outcome.residual_friction));
   add_events(out, outcome.scene, run);
   add_loads(out, outcome.scene, run);
   return out;
@@ -220,7 +236,7 @@ Results events_and_curves(const QuasistaticOutcome& outcome, const EventPath& ru
 
 }  // namespace
 
-Results path_results(const BreakageScene& scene, std::size_t cut) {
+Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<double> residual_friction) {
   Results out;
   const auto [low, high] = std::ranges::minmax(scene.strengths.tension);
   const auto [low_shear, high_shear] = std::ranges::minmax(scene.strengths.shear);
@@ -229,6 +245,10 @@ Results path_results(const BreakageScene& scene, std::size_t cut) {
   out.set("strength/tension", std::vector<double>{low, high})
       .set("strength/shear", std::vector<double>{low_shear, high_shear});
   out.set("strength/friction", scene.strengths.friction);
+  if (residual_friction) {
+    out.note(fmt::format("; contacts without a bond rub with friction {:g}", *residual_friction));
+    out.set("strength/residual_friction", *residual_friction);
+  }
   const LoadPath& path = scene.path;
   std::string legs = path.legs.empty() ? ", until nothing breaks" : ", lambda from 0";
   for (const double to : path.legs) legs += fmt::format(" to {:g}", to);

@@ -3,6 +3,8 @@
 /// Report and JSON of `equidem quasistatic`.
 #pragma once
 
+#include <optional>
+
 #include "equidem/breakage/breakage_run.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/contact/effects.hpp"
@@ -12,7 +14,8 @@
 namespace equidem {
 
 /// Strengths, path and control.
-Results path_results(const BreakageScene& scene, std::size_t cut);
+/// \param residual_friction of contacts without a bond, where they rub
+Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<double> residual_friction);
 
 /// The scene of results.
 struct QuasistaticOutcome {
@@ -20,6 +23,7 @@ struct QuasistaticOutcome {
   const Effects& effects;
   BreakageScene scene;
   std::size_t cut = 0;
+  std::optional<double> residual_friction{};  ///< of contacts without a bond, where they rub
 };
 
 /// Events, avalanches, energies, stability, residual.

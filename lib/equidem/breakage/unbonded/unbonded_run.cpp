@@ -38,7 +38,7 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
                                            first_status(scene_, laws_));
   idle_ = untouched();
   dead_done_ = !scene_.path.dead;
-  if (dead_done_) points_.push_back({0, 0, state_->load(), state_->mean_motion()});
+  if (dead_done_) add_leg_point();
 }
 
 std::vector<std::int32_t> UnbondedRun::untouched() const {
@@ -276,6 +276,11 @@ void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
   checked_ = false;
 }
 
+void UnbondedRun::add_leg_point() {
+  points_.push_back({std::ssize(events_), state_->lambda(), state_->load(), state_->mean_motion(), load_rate_,
+                     motion_rate_, state_->stress()});
+}
+
 void UnbondedRun::finish_stage() {
   rates_.reset();
   checked_ = false;
@@ -293,10 +298,10 @@ void UnbondedRun::finish_stage() {
   if (!dead_done_) {
     dead_done_ = true;
     travelled_ = 0;
-    points_.push_back({std::ssize(events_), 0, state_->load(), state_->mean_motion()});
+    add_leg_point();
     return;
   }
-  points_.push_back({std::ssize(events_), state_->lambda(), state_->load(), state_->mean_motion()});
+  add_leg_point();
   if (++leg_ == std::ssize(scene_.path.legs))
     end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
 }

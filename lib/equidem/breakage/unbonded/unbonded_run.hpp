@@ -83,6 +83,7 @@ class UnbondedRun : public EventPath {
   /// \return false where the path ends
   bool move(double t);
   void finish_stage();
+  void add_leg_point();
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);

@@ -290,7 +290,7 @@ std::vector<Key<OutputCase>> output_keys() {
       key("probe_interval", &OutputCase::probe_interval, unit("s"), positive,
           "from one row of the histories of a run to the next"),
       key("checkpoint_interval", &OutputCase::checkpoint_interval, unit("s"), positive,
-          "wall-clock time from one checkpoint of a run to the next")};
+          "wall-clock time from one checkpoint of a run, or of the events of quasistatic, to the next")};
 }
 
 const File<CaseTables>& case_file() {

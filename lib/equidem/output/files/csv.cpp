@@ -194,17 +194,28 @@ std::optional<std::int64_t> csv_integer(const std::string& cell) {
   return whole_cell<std::int64_t>(cell);
 }
 
-StoredTable::StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy)
-    : path_(std::move(path)), remedy_(std::move(remedy)), cells_(csv_cells(read_file(path_))) {
+StoredTable::StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy,
+                         std::string rows, CutRow cut)
+    : path_(std::move(path)), remedy_(std::move(remedy)), rows_(std::move(rows)) {
+  const std::string text = read_file(path_);
+  cells_ = csv_cells(text);
   std::vector<std::string> columns = names_in(like.columns());
   columns.emplace_back("checksum");
   if (cells_.empty() || (columns.size() == 1 ? cells_.front().back() != columns.back() : cells_.front() != columns))
     refuse(fmt::format("its columns are those of another {}, or of another table", of));
   columns = cells_.front();
+  const auto whole = [&](const std::vector<std::string>& cells) {
+    return cells.size() == columns.size() && cells.back() == checksum_of(columns, cells, columns.size() - 1);
+  };
+  // Every row that was written to its end ends its line.
+  if (cut == CutRow::left_out && cells_.size() > 1 && text.back() != '\n' && !whole(cells_.back())) {
+    cells_.pop_back();
+    cut_ = true;
+  }
   for (std::size_t row = 1; row < cells_.size(); ++row) {
     if (cells_[row].size() != columns.size())
       refuse(fmt::format("line {} has {}", row + 1, counted(std::ssize(cells_[row]), "cell")));
-    if (cells_[row].back() != checksum_of(columns, cells_[row], columns.size() - 1))
+    if (!whole(cells_[row]))
       refuse(fmt::format("line {} was altered since it was written: its checksum is wrong", row + 1));
   }
 }
@@ -223,7 +234,7 @@ std::int64_t StoredTable::integer(std::size_t row, std::size_t column, std::int6
 }
 
 void StoredTable::refuse(const std::string& why) const {
-  bad_input_at(path_.string(), "the samples to continue cannot be read", why, remedy_);
+  bad_input_at(path_.string(), fmt::format("the {} to continue cannot be read", rows_), why, remedy_);
 }
 
 }  // namespace equidem

@@ -88,16 +88,22 @@ std::optional<std::int64_t> csv_integer(const std::string& cell);
 /// \throws Error (bad_input) as write_file does
 void write_samples(const std::filesystem::path& path, Table table);
 
+/// What becomes of a last row that was cut short.
+enum class CutRow { refused, left_out };
+
 /// The rows of a table of write_samples that an earlier computation wrote and that this one continues.
 class StoredTable {
  public:
   /// \param like has the columns that are expected, without the checksum; without columns: any are accepted
   /// \param of what the samples are of: "sweep", "study"
   /// \param remedy of every error
+  /// \param rows what one row is, several of them: "samples", "events"
   /// \throws Error (bad_input) where the columns are others, or a row was altered since it was written
-  StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy);
+  StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy,
+              std::string rows = "samples", CutRow cut = CutRow::refused);
 
   [[nodiscard]] std::size_t rows() const { return cells_.size() - 1; }
+  [[nodiscard]] bool cut() const { return cut_; }  ///< whether a last row was left out
   [[nodiscard]] const std::vector<std::string>& columns() const { return cells_.front(); }  ///< and the checksum
   [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const { return cells_[row + 1][column]; }
   /// NaN where the cell is empty.
@@ -111,7 +117,8 @@ class StoredTable {
 
  private:
   std::filesystem::path path_;
-  std::string remedy_;
+  std::string remedy_, rows_;
+  bool cut_ = false;
   std::vector<std::vector<std::string>> cells_;
 };
 
