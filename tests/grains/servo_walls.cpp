@@ -143,7 +143,7 @@ TEST_CASE("a_servo_wall_does_not_run_past_its_force_the_further_the_slower_it_me
     CAPTURE(relaxation, report.overshoot, report.mean_error, report.force);
     CHECK(report.reached);
     CHECK(std::abs(report.force - 20) < 1e-3 * 20);
-    CHECK(report.overshoot < 0.1);  // half of the force, where the mean speed takes in the approach
+    CHECK(report.overshoot < 0.05);
   }
 }
 
