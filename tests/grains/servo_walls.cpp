@@ -129,24 +129,6 @@ TEST_CASE("a_servo_wall_keeps_below_its_speed") {
   CHECK(fastest > 0.09);
 }
 
-TEST_CASE("a_servo_wall_does_not_run_past_its_force_the_further_the_slower_it_mends_it") {
-  for (const double relaxation : {0.5, 0.1, 0.02}) {
-    GrainScene scene =
-        scene_of({ball({0.5, 0.5}, 0.5)}, {line("floor", {0, 0}, {0, 1}), line("lid", {0, 1.001}, {0, -1})},
-                 one_second(NormalLaw::linear_dashpot, 0.3));
-    scene.pairs[0].stiffness *= 1000;
-    scene.walls[1] = pushing(scene.walls[1], 20, 0.1);
-    scene.walls[1].servo->relaxation = relaxation;
-    GrainSimulation simulation(scene, options_of(steppings_of_servos[1], 2e-4));
-    simulation.advance(200000);
-    const ServoReport report = simulation.servos().front();
-    CAPTURE(relaxation, report.overshoot, report.mean_error, report.force);
-    CHECK(report.reached);
-    CHECK(std::abs(report.force - 20) < 1e-3 * 20);
-    CHECK(report.overshoot < 0.05);
-  }
-}
-
 TEST_CASE("servo_walls_go_on_from_a_saved_state_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(steppings_of_servos));
   CAPTURE(stepping.name());

@@ -10,11 +10,8 @@
 namespace equidem {
 namespace {
 
-/// Share of the last step in the mean speed u of a servo wall, over the relaxation r: slow beside it, fast beside the
-/// motion. Where bodies give way in a row, the wall meets the share c of the stiffness k of its contacts. The missing
-/// force e and u then change in a step by -c (r e + k dt u) and s r e/(k dt), s being the share: damped by the ratio
-/// sqrt(c r/s)/2, which must not fall with r.
-constexpr double share_of_pace = 0.04;
+/// Share of the last step in the mean speed of a servo wall: slow beside the relaxation, fast beside the motion.
+constexpr double share_of_pace = 0.02;
 
 std::size_t place_of_name(const GrainScene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.walls, name, &Wall::name);
@@ -113,10 +110,8 @@ void steer(GrainSystem& system, ServoState& state) {
     state.free_way = 0;
     const double missing = servo.relaxation * (state.wanted - state.force);
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
-    const double asked = (missing + going_on) / resistance.sum();
-    state.speed = std::clamp(asked, -servo.max_speed, servo.max_speed);
-    // The speed at which a wall approaches its force is not that of the bodies: it would run past by that.
-    if (state.speed == asked) state.pace += share_of_pace * servo.relaxation * (state.speed - state.pace);
+    state.speed = std::clamp((missing + going_on) / resistance.sum(), -servo.max_speed, servo.max_speed);
+    state.pace += share_of_pace * (state.speed - state.pace);
   } else {
     state.speed = state.wanted > 0 ? servo.max_speed : 0;
     state.pace = 0;
