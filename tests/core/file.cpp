@@ -145,6 +145,21 @@ TEST_CASE("a_folder_is_locked_once_and_free_again_when_the_lock_is_gone") {
   CHECK(refusal_of([&] { FolderLock second(out); }).message.empty());
 }
 
+TEST_CASE("folders_that_were_made_and_not_written_to_are_removed_again") {
+  const TemporaryFolder folder;
+  { const FolderLock lock(folder.path() / "deep" / "out/"); }
+  CHECK_FALSE(fs::exists(folder.path() / "deep"));
+  {
+    const FolderLock lock(folder.path() / "deep" / "out");
+    write_file(folder.path() / "deep" / "note.txt", "kept", false);
+  }
+  CHECK_FALSE(fs::exists(folder.path() / "deep" / "out"));
+  CHECK(fs::exists(folder.path() / "deep" / "note.txt"));
+  fs::create_directories(folder.path() / "mine");
+  { const FolderLock lock(folder.path() / "mine"); }
+  CHECK(fs::exists(folder.path() / "mine"));
+}
+
 TEST_CASE("the_lock_of_a_killed_process_is_gone") {
   const TemporaryFolder folder;
   int ready[2] = {};

@@ -19,6 +19,10 @@ namespace equidem {
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   std::error_code ignored;
+  for (std::filesystem::path missing = folder; !missing.empty() && !std::filesystem::exists(missing, ignored);
+       missing = missing.parent_path()) {
+    if (missing.has_filename()) made_.push_back(missing);
+  }
   std::filesystem::create_directories(folder, ignored);
   descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) {
@@ -35,9 +39,14 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
 }
 
 FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) close(descriptor_);
+  if (descriptor_ < 0) return;
+  for (const std::filesystem::path& folder : made_) {
+    if (rmdir(folder.c_str()) != 0) break;  // something is in it
+  }
+  close(descriptor_);
 }
 
-FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+FolderLock::FolderLock(FolderLock&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)), made_(std::move(other.made_)) {}
 
 }  // namespace equidem

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace equidem {
 
@@ -11,7 +12,8 @@ namespace equidem {
 /// Where the file system has no locks for folders (NFS), the folder is not locked.
 class FolderLock {
  public:
-  /// Missing folders are made, and files that killed processes left half written in it are removed.
+  /// Missing folders are made, and files that killed processes left half written in it are removed. Folders that were
+  /// made and in which nothing was written are removed again with the lock.
   /// \throws Error (bad_input) where the folder is locked already, or where it cannot be opened
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
@@ -22,6 +24,7 @@ class FolderLock {
 
  private:
   int descriptor_ = -1;
+  std::vector<std::filesystem::path> made_;  ///< the innermost first
 };
 
 }  // namespace equidem
