@@ -24,7 +24,7 @@ struct RestOfNetwork {
 /// All discs and the contacts that are not broken. \param broken per contact, 1
 RestOfNetwork unbroken_rest(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken);
 
-/// Of it the discs that can carry a force (load_bearing.hpp), and their contacts. \param held per disc, 1
+/// The discs of the rest that can carry a force (load_bearing.hpp), and their contacts. \param held per disc, 1
 RestOfNetwork load_bearing_rest(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken,
                                 const std::vector<std::uint8_t>& held);
 

@@ -26,7 +26,7 @@ struct ContactLedger {
   double friction = 0;    ///< lost by slip
   double released = 0;    ///< by bonds that broke
   double negligible = 0;  ///< energy of forces that are round-off
-  /// Of the terms so far. Forces balance to a share of the largest so far, and limits are met to such a share: where
+  /// The largest term so far. Forces balance to a share of the largest so far, and so are limits met: where
   /// all forces have vanished again, that share of an energy which is gone is missing.
   double largest = 0;
 

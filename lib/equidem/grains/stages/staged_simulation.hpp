@@ -115,7 +115,7 @@ class StagedSimulation final : public AnySimulation {
   };
   [[nodiscard]] HoldingBonds holding_bonds() const;
 
-  /// Of all stages together; StageReport has those of each.
+  /// The effects of all stages together; StageReport has those of each.
   [[nodiscard]] const Effects& effects() const override { return effects_; }
   /// Stops at the end of a stage; the next call goes on with the next one.
   /// \throws Error as GrainSimulation and, where a stage begins, as make_bonds: the state is then that before it;

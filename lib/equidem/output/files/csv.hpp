@@ -88,7 +88,7 @@ std::optional<std::int64_t> csv_integer(const std::string& cell);
 /// \throws Error (bad_input) as write_file does
 void write_samples(const std::filesystem::path& path, Table table);
 
-/// What becomes of a last row that was cut short.
+/// Says how a last row that was cut short is read.
 enum class CutRow { refused, left_out };
 
 /// The rows of a table of write_samples that an earlier computation wrote and that this one continues.

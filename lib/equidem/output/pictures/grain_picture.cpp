@@ -33,13 +33,13 @@ bool is_there(Vec2 place) {
   return !std::isnan(place.x);
 }
 
-/// What a picture shows of the grains.
+/// The grains that a picture shows.
 struct ShownGrains {
   std::vector<Grain> grains;
   std::vector<int> groups;
   std::vector<GrainBond> bonds;  ///< between grains that are shown, by their numbers here
 
-  /// Of those for which `is_shown` holds.
+  /// Takes the grains for which `is_shown` holds.
   ShownGrains(const GrainPicture& picture, const std::vector<bool>& is_shown) {
     std::vector<std::size_t> numbers(picture.grains.size());
     for (std::size_t g = 0; g < picture.grains.size(); ++g) {

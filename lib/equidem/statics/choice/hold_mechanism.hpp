@@ -11,7 +11,7 @@
 
 namespace equidem {
 
-/// Of a positive semidefinite K, with a mechanism beside those that another factorization names.
+/// Solves with a positive semidefinite K that has a mechanism beside those which another factorization names.
 /// \param rest of K with one component held, in which the mechanism cannot move
 /// \param component held there, which moves in the mechanism
 /// \param motion the mechanism, per component
