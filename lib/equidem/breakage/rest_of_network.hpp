@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What is left of a network once contacts have broken.
+/// The rest of a network once contacts have broken.
 #pragma once
 
 #include <cstdint>

@@ -102,8 +102,8 @@ void check_null_motions(const System& system, const Factorization& factor) {
 
 std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms);
 
-/// Of K without the component that moves most in a mechanism, for which elimination took a pivot that rounding has
-/// left. K must be positive semidefinite: what costs no energy then moves without a force.
+/// Factorizes K without the component that moves most in a mechanism, for which elimination took a pivot that rounding
+/// has left. K must be positive semidefinite: what costs no energy then moves without a force.
 std::unique_ptr<Factorization> hold_softest(const System& system, std::vector<double> softest) {
   const auto most = std::ranges::max_element(softest, {}, [](double x) { return std::abs(x); });
   const auto component = static_cast<std::size_t>(most - softest.begin());
