@@ -346,3 +346,30 @@ TEST_CASE("a_mechanism_is_held_where_no_load_drives_it_and_changes_no_force") {
   CHECK(driven.says("a load drives a mechanism"));
   CHECK_THROWS_AS(EquilibriumSolver(truss, springs, supports), Error);
 }
+
+TEST_CASE("a_stiff_block_that_turns_far_on_a_soft_spring_balances_its_load") {
+  // The block turns about its pinned corner. What stretches its own springs is 1e-11 and less of the motion.
+  const int rows = 6;
+  Assembly block = hexagonal_lattice({.columns = 8, .rows = rows, .radius = 0.5});
+  const std::int32_t pin = group(block, "bottom_left").discs[0], on_spring = group(block, "bottom_right").discs[0];
+  const std::int32_t loaded = group(block, "top").discs.back(), ground = static_cast<std::int32_t>(block.size());
+  block.centres.push_back(block.centres[on_spring] - Vec2{0, 1});
+  block.cell_areas.clear();
+  block.facet_lengths.clear();
+  block.radii.push_back(0.5);
+  block.contacts.push_back({.i = ground, .j = on_spring, .lever_i = 0.5, .lever_j = 0.5});
+  block.groups = {{"held", {{pin, ground}, {}}}, {"loaded", {{loaded}, {}}}};
+  const std::vector<Support> supports{{.group = "held", .ux = 0.0, .uy = 0.0, .rotation = {}}};
+  const auto reach = [&](std::int32_t disc) { return block.centres[disc].x - block.centres[pin].x; };
+  const double force = reach(loaded) / reach(on_spring);  // moments about the pin
+  for (const double softness : {1e-3, 1e-9, 1e-11, 1e-12}) {
+    std::vector<SpringConstants> k(block.contacts.size(), {1e9, 0});
+    k.back().kN = softness * 1e9;
+    const Equilibrium state =
+        solve_equilibrium(block, ContactSprings(k), supports, {{.group = "loaded", .force = {0, 1}}});
+    CAPTURE(softness, state.relative_residual, state.refinements, state.contact_forces.back().normal, force);
+    CHECK(state.relative_residual <= 1e-13);
+    CHECK(state.contact_forces.back().normal == Approx(force).epsilon(1e-13));
+    CHECK(state.motions[on_spring].u.y == Approx(force / (softness * 1e9)).epsilon(1e-13));
+  }
+}

@@ -134,16 +134,21 @@ void RefactorizedSystem::solve_cases(const RestOfNetwork& rest, DegreesOfFreedom
 bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const RestOfNetwork& rest,
                                           const StiffnessSolver& solver) {
   if (given.force.empty()) return false;
-  for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
-    const std::vector<double> motion = solver.factor().null_motion(m);
+  const auto works = [&](const std::vector<double>& motion) {
     double work = 0, largest_motion = 0, load = 0;
     for (std::size_t k = 0; k < motion.size(); ++k) {
       work += motion[k] * given.force[k];
       largest_motion = std::max(largest_motion, std::abs(motion[k]));
       load += std::abs(given.force[k]);
     }
-    if (std::abs(work) <= negligible * largest_motion * load) continue;
-    const std::vector<DiscMotion> of_rest = disc_motions(solver.unknowns(), without_forces(rest, solver, motion));
+    return std::abs(work) > negligible * largest_motion * load;
+  };
+  for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
+    std::vector<double> motion = solver.factor().null_motion(m);
+    if (!works(motion)) continue;
+    motion = without_forces(rest, solver, std::move(motion));
+    if (!works(motion)) continue;  // the load had worked on what the factor was wrong by
+    const std::vector<DiscMotion> of_rest = disc_motions(solver.unknowns(), motion);
     std::vector<DiscMotion> motions(network_.assembly.size());
     for (std::size_t d = 0; d < of_rest.size(); ++d) motions[static_cast<std::size_t>(rest.discs[d])] = of_rest[d];
     why_not_ = describe_driven(network_, rest, std::move(motions));

@@ -11,6 +11,11 @@ namespace {
 constexpr std::size_t grain = 1 << 13;
 
 using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
+#if defined(__SIZEOF_FLOAT128__)
+__extension__ typedef __float128 Quadruple;  // NOLINT(modernize-use-using): an alias cannot be marked as an extension
+#else
+using Quadruple = long double;
+#endif
 
 /// Stretch and slip of a contact, and the rotations of its discs, rad.
 struct Evaluated {
@@ -18,32 +23,40 @@ struct Evaluated {
   Extended theta_i = 0, theta_j = 0;
 };
 
-/// Evaluates a contact under the motion and the mean displacement gradient.
-Evaluated evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
-                   const PreciseMotion& motion, const ContactDeformation& affine = {}) {
+template <typename Number>
+Evaluated evaluate_in(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
+                      const PreciseMotion& motion, const ContactDeformation& affine) {
   const auto b = static_cast<std::size_t>(unknowns.per_disc);
   const std::size_t i = contact.i * b, j = contact.j * b;
   const auto difference = [&](std::size_t c) {
-    const Extended high = static_cast<Extended>(motion.high[j + c]) - motion.high[i + c];
-    return motion.low.empty() ? high : high + (static_cast<Extended>(motion.low[j + c]) - motion.low[i + c]);
+    const Number high = static_cast<Number>(motion.high[j + c]) - motion.high[i + c];
+    return motion.low.empty() ? high : high + (static_cast<Number>(motion.low[j + c]) - motion.low[i + c]);
   };
   const auto rotation_of = [&](std::size_t disc) {
-    const Extended high = motion.high[disc + 2];
+    const Number high = motion.high[disc + 2];
     return motion.low.empty() ? high : high + motion.low[disc + 2];
   };
   Evaluated result;
-  Extended turn = 0, opening = 0;
+  Number turn = 0, opening = 0;
   if (b == 3) {
-    const Extended turn_i = rotation_of(i), turn_j = rotation_of(j);
+    const Number turn_i = rotation_of(i), turn_j = rotation_of(j);
     turn = (frame.lever_i * turn_i + frame.lever_j * turn_j) / unknowns.rotation_scale;
     if (frame.offset_i != 0 || frame.offset_j != 0)
       opening = (frame.offset_i * turn_i + frame.offset_j * turn_j) / unknowns.rotation_scale;
-    result.theta_i = turn_i / unknowns.rotation_scale;
-    result.theta_j = turn_j / unknowns.rotation_scale;
+    result.theta_i = static_cast<Extended>(turn_i / unknowns.rotation_scale);
+    result.theta_j = static_cast<Extended>(turn_j / unknowns.rotation_scale);
   }
   const auto d = deformation(frame, difference(0), difference(1), turn, opening);
-  result.deformation = {d.normal + affine.normal, d.tangential + affine.tangential};
+  result.deformation = {static_cast<Extended>(d.normal + affine.normal),
+                        static_cast<Extended>(d.tangential + affine.tangential)};
   return result;
+}
+
+/// Evaluates a contact under the motion and the mean displacement gradient.
+Evaluated evaluate(const Contact& contact, const ContactFrame& frame, const DegreesOfFreedom& unknowns,
+                   const PreciseMotion& motion, const ContactDeformation& affine = {}) {
+  return motion.quadruple ? evaluate_in<Quadruple>(contact, frame, unknowns, motion, affine)
+                          : evaluate_in<Extended>(contact, frame, unknowns, motion, affine);
 }
 
 ContactResponse<Extended> response_of(const ContactSprings& springs, std::size_t contact, const Evaluated& by) {

@@ -22,6 +22,9 @@ namespace equidem {
 struct PreciseMotion {
   std::vector<double> high;
   std::vector<double> low;  ///< empty: 0
+  /// Stretches and slips are differences in quadruple precision, not in extended: for motions so far beyond them that
+  /// the rounding of 64 bits counts.
+  bool quadruple = false;
 
   explicit PreciseMotion(std::size_t components) : high(components, 0.0) {}
   /// Add a correction, keeping the digits that a sum in one double would lose.
@@ -39,7 +42,8 @@ ContactMotion motion_of(const SpringNetwork& network, const PreciseMotion& motio
 /// The change of the force of a contact along the normal and tangent of before the motion, prestress included.
 ContactForce force_of(const ContactSprings& springs, std::size_t contact, const ContactMotion& motion);
 
-/// Stretch and slip of a contact by the motion, from differences in extended precision, and by a mean strain.
+/// Stretch and slip of a contact by the motion, from differences in extended precision or more, and by a
+/// mean strain.
 /// \param gradient of the mean displacement (affine_deformation); none: 0
 ContactDeformation deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
                                   const std::optional<Tensor2>& gradient, std::size_t contact);
@@ -49,8 +53,8 @@ using PreciseDeformation = DeformationOf<long double>;
 PreciseDeformation precise_deformation_of(const SpringNetwork& network, const PreciseMotion& motion,
                                           const std::optional<Tensor2>& gradient, std::size_t contact);
 
-/// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision: a disc
-/// that has turned far stretches its contacts by small differences of large products.
+/// Force of every contact, from the differences of the motion of its discs, evaluated in extended precision or more: a
+/// disc that has turned far stretches its contacts by small differences of large products.
 void contact_forces_of(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns,
                        const PreciseMotion& motion, std::span<ContactForce> forces);
 
@@ -67,7 +71,7 @@ void internal_force(const SpringNetwork& network, const PreciseMotion& motion, c
                     std::span<double> result);
 
 /// Residual force f - f_int(motion) on free components, 0 on held ones.
-/// Stretch, slip, forces and their sums are all evaluated in extended precision.
+/// Stretch, slip, forces and their sums are all evaluated in extended precision or more.
 /// \param gradient as in deformation_of
 /// \param f per component; empty: no load
 void residual_force(const SpringNetwork& network, const PreciseMotion& motion, const std::optional<Tensor2>& gradient,

@@ -93,12 +93,14 @@ void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x)
 }
 
 void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) {
-  constexpr double slow = 0.05;  // share of the error that a pass leaves
+  constexpr double slow = 0.05;         // share of the error that a pass leaves
+  constexpr double negligible = 1e-13;  // residual over its scale
   const double step = solver.norm_of_free(x);
   const bool scaled = pass > 0 && step > slow * last_step_ && scale_to_least_energy(x);
   last_step_ = step;
   if (pass > 0) previous_ = solution.motion;
   solution.motion.add(x);
+  if (pass == 0) solution.motion.quadruple = rounding_of_forces() > negligible * solution.scale;
   const double before = solution.residual;
   const double now = evaluate(x);
   if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
@@ -176,6 +178,30 @@ Solution StiffnessSolver::Refinement::finish() {
 double StiffnessSolver::Refinement::evaluate(std::span<double> residual) const {
   solver.evaluate_residual(given, solution.motion, residual);
   return solver.norm_of_free(residual);
+}
+
+/// Size of what the rounding of extended precision, 2^-64 of the motion of one body against the other, does to the
+/// forces of contacts, N/m.
+double StiffnessSolver::Refinement::rounding_of_forces() const {
+  const Assembly& assembly = solver.assembly_;
+  const auto b = static_cast<std::size_t>(solver.unknowns_.per_disc);
+  const double scale = solver.unknowns_.rotation_scale;
+  const std::vector<double>& u = solution.motion.high;
+  const auto squared = [](double x) { return x * x; };
+  return 0x1.0p-64 *
+         std::sqrt(sums_over<1>(assembly.contacts.size(), components_each, [&](std::size_t begin, std::size_t end) {
+           double sum = 0;
+           for (std::size_t c = begin; c < end; ++c) {
+             const Contact& contact = assembly.contacts[c];
+             const std::size_t i = contact.i * b, j = contact.j * b;
+             double square = squared(u[j] - u[i]) + squared(u[j + 1] - u[i + 1]);
+             if (b == 3)
+               square += squared(contact.lever_i * u[i + 2] / scale) + squared(contact.lever_j * u[j + 2] / scale);
+             const SpringConstants& k = solver.springs_[c];
+             sum += (squared(k.kN) + squared(k.kT)) * square;
+           }
+           return std::array{sum};
+         })[0]);
 }
 
 /// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.

@@ -17,6 +17,9 @@ namespace equidem {
 /// part, and always the same one: where corrections shrink slowly, each is scaled to the least energy,
 /// u := u + (d.r / d.K d) d, which brings all of one such motion.
 ///
+/// Where the rounding of extended precision could leave a residual that counts, contacts are evaluated in quadruple
+/// precision.
+///
 /// With a factor in single precision, corrections are the steps of preconditioned conjugate gradients, with the
 /// direction of Polak & Ribiere (Notay 2000). In between, the residual follows from r := r - alpha K p; it is replaced
 /// by that of the contact law (van der Vorst & Ye 2000) where it has fallen by so much that the rounding of K p in
@@ -47,6 +50,7 @@ struct StiffnessSolver::Refinement {
   void add_correction(std::span<double> x, int pass);
   void add_conjugate_step(std::span<double> x, int pass);
   double evaluate(std::span<double> residual) const;
+  [[nodiscard]] double rounding_of_forces() const;
   bool scale_to_least_energy(std::span<double> x) const;
   [[nodiscard]] double affine_length() const;
   [[nodiscard]] double affine_force() const;
