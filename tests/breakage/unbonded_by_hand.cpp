@@ -159,7 +159,7 @@ TEST_CASE("loads_under_control_of_their_motion_fall_as_a_bond_lets_go") {
   CHECK(pulled.event(0).load == Approx(2 * tension).epsilon(1e-12));
   CHECK(pulled.event(0).motion == Approx(tension / normal_spring).epsilon(1e-12));
   // With the bond both springs resist the motion, behind it one: the load at the end of the leg follows from it.
-  const LegPoint& end = pulled.run().leg_points()[1];
+  const LegPoint end = pulled.run().leg_points()[1];
   CHECK(end.lambda == Approx(8).epsilon(1e-12));
   CHECK(end.motion == Approx(8 / normal_spring).epsilon(1e-12));
   CHECK(pulled.run().state().ledger().released == Approx(tension * tension / (2 * normal_spring)).epsilon(1e-12));
