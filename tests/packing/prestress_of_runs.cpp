@@ -61,7 +61,7 @@ std::array<double, 6> forces_of_run(const GrainPacking& packing, const std::arra
   simulation.advance(1);
   std::array<double, 6> forces{};
   for (std::size_t k = 0; k < 2; ++k) {
-    const Grain& after = simulation.grains()[k];
+    const Grain after = simulation.grains()[k];
     const Vec2 force = (after.inertia.mass / step) * after.velocity;
     forces[3 * k] = force.x, forces[3 * k + 1] = force.y, forces[3 * k + 2] = after.inertia.moment * after.spin / step;
   }
