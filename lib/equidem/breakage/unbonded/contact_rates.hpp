@@ -35,8 +35,9 @@ struct Rates {
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing
 /// resists: those motions are then the least ones.
+/// \param begin motions and lambda to begin with, which may be larger by motions that nothing resists; null: none
 Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving);
+               const Driving& driving, const Rates* begin = nullptr);
 
 struct RateProblem {
   const ContactOperator& contacts;
@@ -52,6 +53,9 @@ struct RateAnswer {
 };
 
 std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
+
+/// Sets Rates::negligible.
+void set_negligible(const RateProblem& problem, Rates& rates);
 
 /// Sets the statuses of the contacts on limits to those that follow from the rates, RateAnswer::agrees and
 /// Rates::negligible.
