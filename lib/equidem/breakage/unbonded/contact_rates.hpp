@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 #include "equidem/breakage/unbonded/tangent_solver.hpp"
@@ -31,6 +32,8 @@ struct Rates {
   double force_scale = 0;  ///< the largest rate of a contact force or load
   double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
   bool balanced = false;   ///< false: loads drive a motion that nothing resists
+
+  void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, negligible, balanced); }
 };
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing

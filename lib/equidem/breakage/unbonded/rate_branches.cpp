@@ -81,10 +81,11 @@ Branches find_branches(const RateProblem& problem, TangentSolver& solver, const 
     if (all.count() > static_cast<double>(most_branches)) return result;
   }
   if (places.empty()) return result;
+  const std::vector<ContactTangent> base = solver.base(), tangents = tangents_of(problem.laws, answer.status);
   const CondensedRates condensed(problem, solver, places, answer.status);
   if (!condensed.known()) {
     ++result.ties;
-    solver.set(tangents_of(problem.laws, answer.status));
+    solver.restore(base, tangents);
     return result;
   }
   std::vector<std::vector<ContactForce>> known(1), ties;
@@ -108,7 +109,7 @@ Branches find_branches(const RateProblem& problem, TangentSolver& solver, const 
     known.push_back(tried.force);
   } while (all.next());
   result.ties = std::ssize(ties);
-  solver.set(tangents_of(problem.laws, answer.status));
+  solver.restore(base, tangents);
   return result;
 }
 

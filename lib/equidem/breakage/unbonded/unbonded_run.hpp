@@ -42,6 +42,12 @@ struct UnbondedCounters {
   /// Relative, of the rates of motion and of load of the first other answer.
   double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;  ///< of the states of the path, relative
+
+  /// Without those of the solver.
+  void pass(PathNumbers& n) {
+    n.pass(unique, not_unique, no_answer, unchecked, ties, most_unchecked_contacts);
+    n.pass(largest_motion_difference, largest_load_difference, largest_residual);
+  }
 };
 
 class UnbondedRun : public EventPath {
@@ -71,6 +77,12 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
   [[nodiscard]] const UnbondedState& state() const { return *state_; }
   [[nodiscard]] UnbondedCounters counters() const;
+  /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
+  /// same bits.
+  void pass(PathNumbers& n) {
+    n.pass(events_, points_, breaking_, begun_, rates_, dead_done_, checked_, standstill_, leg_, load_rate_);
+    n.pass(motion_rate_, share_, travelled_, end_, why_, counters_, *state_, solver_);
+  }
 
  private:
   [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
