@@ -245,12 +245,12 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence)
   StoredEvents stored = read_events(table, sequence.run(), sequence.scene());
   std::optional<FileMark> frames;
   std::string cut = stored.cut ? "the last line is cut short; " : "";
-  const auto there = counted(std::ssize(stored.events), "event");
+  const std::int64_t found = std::ssize(stored.events);
   if (keeps_state(sequence.problem.resolved)) {
     const std::optional<Checkpoint> kept = PathCheckpoint(options, sequence).read();
     if (!kept) {
-      say(options,
-          fmt::format("{}: {} that lie there are computed again: no state was kept yet", table.string(), there));
+      say(options, fmt::format("{}: {} that lie there are computed again: no state was kept yet", table.string(),
+                               counted(found, "event")));
       return {};
     }
     if (sequence.unbonded) {
@@ -261,10 +261,12 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence)
       stored.events.resize(std::min(stored.events.size(), static_cast<std::size_t>(kept->state.step)));
     }
     if (sequence.problem.resolved.quasistatic.frame_every != 0) frames = kept->mark_of("frames.pvd");
-    say(options, fmt::format("{}: {}going on behind {}, where the last state was kept, of {} that lie there",
-                             table.string(), cut, kept->state.step, there));
+    const std::int64_t step = sequence.unbonded ? kept->state.step : std::ssize(stored.events);
+    const std::string later =
+        step < found ? fmt::format(" of the {} that lie there: no later state was kept", found) : "";
+    say(options, fmt::format("{}: {}going on behind {}{}", table.string(), cut, counted(step, "event"), later));
   } else if (stored.cut) {
-    say(options, fmt::format("{}: {}going on behind {}", table.string(), cut, there));
+    say(options, fmt::format("{}: {}going on behind {}", table.string(), cut, counted(found, "event")));
   }
   if (sequence.brittle) sequence.brittle->resume(std::move(stored.events));
   return frames;
