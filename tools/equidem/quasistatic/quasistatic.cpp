@@ -186,16 +186,16 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   if (rubs) {
     further.line("",
                  "how often contacts break, open, close, slip and stick is not known before: eight paths of 64 to 1840 "
-                 "discs had 0.06 to 7 times as many events, and an event took 0.5 to 5 times its share of the time");
+                 "discs had 0.06 to 7 times as many events, and an event took 0.3 to 3 times its share of the time");
     further.line("",
                  "where hardly a bond holds the discs, the search for the first states of their contacts may take far "
                  "longer than all of this");
   }
-  deliver(
-      options, "dry_run",
-      dry_run_results(problem, solutions_of_path(events, rubs), further, AssemblyKeys::all, 0,
-                      rubs ? "if there are so many events, within a factor of five" : "mostly within a factor of two"),
-      problem.times);
+  deliver(options, "dry_run",
+          dry_run_results(
+              problem, solutions_of_path(events, rubs), further, AssemblyKeys::all, 0,
+              rubs ? "if there are so many events, mostly within a factor of three" : "mostly within a factor of two"),
+          problem.times);
   return 0;
 }
 
