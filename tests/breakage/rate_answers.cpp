@@ -10,7 +10,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 
-#include "breakage/limit_network.hpp"
+#include "breakage/all_statuses.hpp"
 #include "breakage/unbonded_scenes.hpp"
 #include "support/catch.hpp"
 

@@ -38,6 +38,9 @@ def jobs_of(cases, papers):
                                      "run.step_rule=bound"], "run.checkpoint.h5"),
         "run, colliding bodies": (None, ["run", cases / "grains_shaken.toml", *often, "--set", "shaking.start=0.02", "--set",
                                          "run.duration=0.1", "--set", "output.probe_interval=4e-3"], "run.checkpoint.h5"),
+        "quasistatic, contacts that rub": (None, ["quasistatic", cases / "rubbing_notch.toml", *often, "--set",
+                                                  "quasistatic.max_events=200", "--set", "quasistatic.frame_every=30"],
+                                           "quasistatic.checkpoint.h5"),
         "pack, growth": (None, ["pack", cases / "pack_jammed.toml", "--set", "packing.grains=150"], None),
         "pack, falling": (None, ["pack", cases / "pack_soil.toml", "--set", "packing.grains=60", "--set",
                                  "packing.box=[0.15, 1.0]"], None),
@@ -112,7 +115,7 @@ class Killing:
                 files[path.name] = lasting(json.loads(files[path.name]))
             elif path.name == "index.html":  # it tells times; the film is among the arrays of the checkpoint
                 files[path.name] = files[path.name].endswith(b"</html>\n")
-            elif path.name == "run.checkpoint.h5":
+            elif path.name.endswith(".checkpoint.h5"):
                 files[path.name] = {key: value for key, value in datasets(path).items() if key != "counters"}
         if name == "study":
             result = files["result.json"]

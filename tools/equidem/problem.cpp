@@ -332,7 +332,8 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
 
 /// \param before s of what is done beside these solutions
 /// \param memory_limit bytes; 0: what is available
-Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit) {
+Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit,
+                         const std::string& trust) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
@@ -352,15 +353,14 @@ Results estimate_results(const SolveEstimate& e, double solutions, double before
         .add("other_time_ratio", "", e.other_seconds, "times the time", {.digits = 2});
   }
   const double seconds = before + estimate_seconds(e, solutions, measure_solve_rates(e.method), thread_count());
-  results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, mostly within a factor of two",
-                           {.digits = 2});
+  results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, " + trust, {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");
 }
 
 }  // namespace
 
 Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys,
-                        double complex_solutions) {
+                        double complex_solutions, const std::string& trust) {
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   SolveEstimate estimate =
       estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
@@ -374,7 +374,7 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   }
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, solutions, before, problem.resolved.solver.memory_limit));
+      .append(estimate_results(estimate, solutions, before, problem.resolved.solver.memory_limit, trust));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

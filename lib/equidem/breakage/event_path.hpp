@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "equidem/breakage/break_search.hpp"
+#include "equidem/breakage/path_numbers.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 
@@ -39,6 +40,12 @@ struct BreakEvent {
   double friction = 0;                                ///< N, lost by slip so far
   std::int64_t other_answers = 0;                     ///< found for the increment that begins here; -1: not known
   double motion_difference = 0, load_difference = 0;  ///< relative, of their rates
+
+  void pass(PathNumbers& n) {
+    n.pass(leg, lambda, contact, mode, ties, gap, load, motion, stress, energy_before, energy_after, energy_released);
+    n.pass(work, load_rate, motion_rate, unstable_modes, relative_residual, loosened);
+    n.pass(friction, other_answers, motion_difference, load_difference);
+  }
 };
 
 /// The reason for which a path ended.
@@ -73,6 +80,8 @@ struct LegPoint {
   double lambda = 0, load = 0, motion = 0;
   double load_rate = 0, motion_rate = 0;  ///< of lambda, as it was reached
   std::optional<Tensor2> stress{};        ///< Pa; none: not known
+
+  void pass(PathNumbers& n) { n.pass(events_before, lambda, load, motion, load_rate, motion_rate, stress); }
 };
 
 class EventPath {

@@ -18,15 +18,17 @@ inline std::int64_t estimated_events(std::int64_t contacts) {
   return std::llround(broken_share * static_cast<double>(contacts));
 }
 
-/// Events of contacts that rub: breaks, and contacts that open, close, slip and stick behind them.
+/// Events of contacts that rub: breaks, and contacts that open, close, slip and stick. Eight paths of 64 to 1840 discs,
+/// with a crack, with bonds and without, along one to three legs, had 0.06 to 7 times as many.
 inline std::int64_t estimated_rubbing_events(std::int64_t contacts) {
-  constexpr double for_each_break = 2.5;
-  return std::llround(for_each_break * static_cast<double>(estimated_events(contacts)));
+  constexpr double for_each_contact = 0.5;
+  return std::llround(for_each_contact * static_cast<double>(contacts));
 }
 
-/// Time of the first state and of all events, in solutions with their error bound.
+/// Time of the first state and of all events, in solutions with their error bound. An event of contacts that rub
+/// took 0.5 to 4.5 solutions on those paths, the more the fewer discs there are.
 inline double solutions_of_path(std::int64_t events, bool rubs = false) {
-  const double event = rubs ? 0.4 : 0.13;
+  const double event = rubs ? 1.5 : 0.13;
   return 1 + event * static_cast<double>(events);
 }
 

@@ -31,8 +31,9 @@ std::string with_unit(const std::string& name, const std::string& unit) {
 
 }  // namespace
 
-void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted) {
+void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool checkpoint) {
   plan.expect(event_table_name);
+  if (checkpoint) plan.expect(path_checkpoint_name);
   plan.expect_plot("curve");
   if (wanted.picture)
     for (const char* end : {".svg", ".png"}) plan.expect(std::string("cracks") + end);
@@ -130,8 +131,11 @@ void write_end_state(const CommonOptions& options, const OutputCase& wanted, con
               {.assembly = assembly, .motions = motions, .contact_forces = state.forces, .stresses = stresses});
 }
 
-EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every)
-    : scene_(scene), every_(every), writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite}) {}
+EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every,
+                         const std::optional<FileMark>& from)
+    : scene_(scene),
+      every_(every),
+      writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite, .continue_from = from}) {}
 
 bool EventFrames::due(const EventPath& run) const {
   // Where contacts rub several events may happen at once.
@@ -141,16 +145,16 @@ bool EventFrames::due(const EventPath& run) const {
 void EventFrames::add_end(const EventPath& run, const PathState& state) {
   const std::int64_t events = std::ssize(run.events());
   const double of_last = events == 0 ? 0 : run.events().back().lambda;
-  if (run.lambda() != of_last) return append(events + 1, state);
-  if (writer_.last_step() < events) append(events, state);
+  if (run.lambda() != of_last) return append(events + 1, state, false);
+  if (writer_.last_step() < events) append(events, state, false);
 }
 
-void EventFrames::append(std::int64_t step, const PathState& state) {
+void EventFrames::append(std::int64_t step, const PathState& state, bool regular) {
   std::vector<BodyContact> contacts;
   for (std::size_t c = 0; c < state.forces.size(); ++c)
     if (state.joined[c] != 0) contacts.push_back(bonded_contact(scene_.assembly, c, state.forces[c]));
   const std::vector<DiscMotion> still(state.motions.size());
-  writer_.append(step, static_cast<double>(step), state.motions, still, contacts);
+  writer_.append(step, static_cast<double>(step), state.motions, still, contacts, regular);
 }
 
 }  // namespace equidem

@@ -18,9 +18,12 @@
 namespace equidem {
 
 inline constexpr const char* event_table_name = "events.csv";
+/// The state from which a path goes on that the table of events does not hold: where contacts rub, and frames.
+inline constexpr const char* path_checkpoint_name = "quasistatic.checkpoint.h5";
 
+/// \param checkpoint whether a state is kept
 /// \throws Error (bad_input) where a file could not be written
-void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted);
+void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool checkpoint);
 
 /// The curve of load against motion with its envelopes, and the picture of the cracks.
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
@@ -46,15 +49,22 @@ void write_end_state(const CommonOptions& options, const OutputCase& wanted, con
 /// event stands for the time; an end at another lambda than that of the last event is one further.
 class EventFrames {
  public:
-  EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every);
+  /// \param from frames of the path so far; none: it begins
+  EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every,
+              const std::optional<FileMark>& from);
   /// Whether a frame is due behind the last event.
   [[nodiscard]] bool due(const EventPath& run) const;
-  void add(const EventPath& run, const PathState& state) { append(std::ssize(run.events()), state); }
+  void add(const EventPath& run, const PathState& state) { append(std::ssize(run.events()), state, true); }
   void add_end(const EventPath& run, const PathState& state);
+  /// The frames so far, on disk.
+  FileMark kept() {
+    writer_.sync();
+    return writer_.mark();
+  }
   void finish() const { writer_.finish(); }
 
  private:
-  void append(std::int64_t step, const PathState& state);
+  void append(std::int64_t step, const PathState& state, bool regular);
 
   const BreakageScene scene_;
   std::int64_t every_;

@@ -167,19 +167,26 @@ void add_trust(Results& out, const UnbondedRun& run) {
       .set("increments/not_unique", counters.not_unique)
       .set("increments/no_answer", counters.no_answer)
       .set("increments/not_decided", counters.unchecked)
-      .set("increments/not_decided_contacts", counters.most_unchecked_contacts);
+      .set("increments/not_decided_contacts", counters.most_unchecked_contacts)
+      .set("increments/not_decided_by_round_off", counters.ties);
   if (counters.not_unique > 0) {
     out.line("", fmt::format("of several answers that which Newton's method reaches from the present states was taken; "
                              "the rates of motion of another differ by {:.2g}, those of load by {:.2g}, relative, at "
                              "most",
                              counters.largest_motion_difference, counters.largest_load_difference));
   }
-  if (counters.unchecked > 0) {
+  if (counters.unchecked > counters.ties) {
     out.line("",
              fmt::format("not decided are increments with up to {} on limits, for which one answer is not proved and "
                          "not all combinations were tried (those of the contacts of the event were, where they are "
                          "few)",
                          counted(counters.most_unchecked_contacts, "contact")));
+  }
+  if (counters.ties > 0) {
+    out.line("", fmt::format("of {} not decided all combinations of the states of contacts on limits were tried: "
+                             "whether one of them is another answer hangs on round-off, as where a force lies on a "
+                             "limit of its law. Friction, springs or loads that differ by a millionth decide it",
+                             counted(counters.ties, "increment")));
   }
   out.set("increments/motion_difference", counters.largest_motion_difference)
       .set("increments/load_difference", counters.largest_load_difference);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "equidem/breakage/path_numbers.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/material/spring_constants.hpp"
 
@@ -48,6 +49,7 @@ struct ContactTangent {
   [[nodiscard]] ContactForce rate(const ContactDeformation& d) const {
     return {nn * d.normal, tn * d.normal + tt * d.tangential};
   }
+  void pass(PathNumbers& n) { n.pass(nn, tn, tt); }
   friend bool operator==(const ContactTangent&, const ContactTangent&) = default;
 };
 

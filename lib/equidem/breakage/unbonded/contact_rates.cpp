@@ -72,9 +72,10 @@ class RateResidual {
 constexpr double balanced = 1e-11, refined = 1e-14;
 constexpr int most_refinements = 40;
 
+/// \param solved whether the rates may be right already
 /// \return the residual that is left
 double refine(const ContactOperator& contacts, const RateResidual& residual_of, const TangentSolver& solver,
-              const Driving& driving, Rates& rates) {
+              const Driving& driving, bool solved, Rates& rates) {
   const std::vector<double>& load = driving.pattern->force;
   std::vector<double> residual(rates.motion.size()), along;
   double along_load = 0;
@@ -88,7 +89,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   Rates best = rates;
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
-    if (k > 0 && left <= refined) break;
+    if ((k > 0 || solved) && left <= refined) break;
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
     rates.lambda += lambda;
@@ -104,17 +105,6 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   }
   rates = std::move(best);
   return left;
-}
-
-/// Rates::negligible of these rates.
-double negligible_rate(const RateProblem& problem, const Rates& rates) {
-  double largest = 0;
-  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
-    const ContactDeformation& d = rates.deformation[c];
-    const SpringConstants& k = problem.laws[c].k;
-    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
-  }
-  return 1e-9 * rates.force_scale + 1e-11 * largest;
 }
 
 struct StatusChange {
@@ -142,7 +132,7 @@ std::vector<StatusChange> inconsistent(const RateProblem& problem, const RateAns
 }  // namespace
 
 Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving) {
+               const Driving& driving, const Rates* begin) {
   const RateResidual residual_of(contacts, tangents, driving);
   const auto& held = contacts.unknowns().held;
   const std::vector<double>& prescribed = driving.pattern->prescribed;
@@ -155,7 +145,8 @@ Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (held[k] != 0 && !prescribed.empty()) rates.motion[k] = rates.lambda * prescribed[k];
     }
-    const double left = refine(contacts, residual_of, solver, driving, rates);
+    if (begin != nullptr) rates.motion = begin->motion, rates.lambda = begin->lambda;
+    const double left = refine(contacts, residual_of, solver, driving, begin != nullptr, rates);
     rates.balanced = left <= balanced;
     if (rates.balanced || attempt > 0) return rates;
     solver.refresh();
@@ -169,8 +160,18 @@ std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::
   return tangents;
 }
 
+void set_negligible(const RateProblem& problem, Rates& rates) {
+  double largest = 0;
+  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
+    const ContactDeformation& d = rates.deformation[c];
+    const SpringConstants& k = problem.laws[c].k;
+    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
+  }
+  rates.negligible = 1e-9 * rates.force_scale + 1e-11 * largest;
+}
+
 bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {
-  answer.rates.negligible = negligible_rate(problem, answer.rates);
+  set_negligible(problem, answer.rates);
   const auto wrong = inconsistent(problem, answer);
   answer.agrees = std::ranges::all_of(wrong, &StatusChange::forceless);
   for (const StatusChange& change : wrong) answer.status[change.contact] = change.wanted;

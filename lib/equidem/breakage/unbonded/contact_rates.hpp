@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 #include "equidem/breakage/unbonded/tangent_solver.hpp"
@@ -31,12 +32,15 @@ struct Rates {
   double force_scale = 0;  ///< the largest rate of a contact force or load
   double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
   bool balanced = false;   ///< false: loads drive a motion that nothing resists
+
+  void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, negligible, balanced); }
 };
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing
 /// resists: those motions are then the least ones.
+/// \param begin motions and lambda to begin with, which may be larger by motions that nothing resists; null: none
 Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving);
+               const Driving& driving, const Rates* begin = nullptr);
 
 struct RateProblem {
   const ContactOperator& contacts;
@@ -52,6 +56,9 @@ struct RateAnswer {
 };
 
 std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
+
+/// Sets Rates::negligible.
+void set_negligible(const RateProblem& problem, Rates& rates);
 
 /// Sets the statuses of the contacts on limits to those that follow from the rates, RateAnswer::agrees and
 /// Rates::negligible.

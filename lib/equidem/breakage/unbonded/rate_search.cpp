@@ -24,6 +24,7 @@ RateSearch search_rates(const RateProblem& problem, TangentSolver& solver, const
   if (!other) {
     TriedStatuses all = try_all_statuses(problem, solver, status);
     search.tried = all.tried;
+    search.ties = all.ties;
     other = std::move(all.answer);
   }
   search.found = other.has_value();

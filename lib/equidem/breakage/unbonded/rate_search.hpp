@@ -14,6 +14,7 @@ struct RateSearch {
   RateAnswer answer;  ///< where none is found: of Newton's method, or of contacts that stick and do not hold the loads
   bool found = false;
   std::int64_t tried = 0;  ///< where none is found: combinations of statuses that were tried, which are all; 0: none
+  std::int64_t ties = 0;   ///< of which round-off decides whether they are an answer
 };
 
 /// By Newton's method, then along a path from contacts that stick (rate_path.hpp), then by all combinations of statuses

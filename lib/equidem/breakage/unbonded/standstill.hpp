@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 
 namespace equidem {
@@ -37,6 +38,7 @@ class Standstill {
     until_ *= 2;
     return false;
   }
+  void pass(PathNumbers& n) { n.pass(kept_, steps_, until_); }
 
  private:
   std::vector<ContactStatus> kept_;

@@ -64,6 +64,27 @@ const TangentSolver::Columns& TangentSolver::columns_of(std::size_t contact) {
   return columns_.emplace(contact, std::move(columns)).first->second;
 }
 
+void TangentSolver::restore(const std::vector<ContactTangent>& base, std::span<const ContactTangent> tangents) {
+  if (base_ != base) {
+    now_ = base;
+    factorize();
+  }
+  set(tangents);
+}
+
+void TangentSolver::pass(PathNumbers& n) {
+  std::vector<ContactTangent> base = base_, now = now_;
+  std::int64_t factorizations = factorizations_, updates = updates_;
+  std::vector<std::size_t> solved;
+  for (const auto& [contact, columns] : columns_) solved.push_back(contact);
+  n.pass(base, now, solved, factorizations, updates);
+  if (!n.restores()) return;
+  if (!base.empty()) restore(base, now);
+  for (const std::size_t contact : solved) columns_of(contact);
+  factorizations_ = factorizations;
+  updates_ = updates;
+}
+
 bool TangentSolver::update() {
   const std::size_t n = 2 * changed_.size();
   capacity_.assign(n * n, 0.0);

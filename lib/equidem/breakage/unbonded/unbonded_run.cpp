@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/breakage/unbonded/limit_compliance.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/breakage/unbonded/unique_rates.hpp"
@@ -107,10 +106,10 @@ bool UnbondedRun::find_rates() {
   if (!search.found) {
     if (answer.agrees) {
       record_changes(answer.status);
-    } else if (search.tried > 0) {
+    } else if (search.tried > 0 && search.ties == 0) {
       ++counters_.no_answer;
     } else {
-      count_unchecked(limits.size());
+      count_unchecked(limits.size(), search.ties > 0);
     }
     end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
     return false;
@@ -124,8 +123,12 @@ bool UnbondedRun::find_rates() {
   return true;
 }
 
-void UnbondedRun::count_unchecked(std::size_t limits) {
+void UnbondedRun::count_unchecked(std::size_t limits, bool tie) {
   ++counters_.unchecked;
+  if (tie) {
+    ++counters_.ties;
+    return;
+  }
   counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, static_cast<std::int64_t>(limits));
 }
 
@@ -139,31 +142,32 @@ void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer
   checked_ = true;
   Branches branches;
   if (problem.limits.size() <= most_on_limits) {
-    const std::vector<double> compliance = limit_compliance(problem, solver_);
-    if (proved_unique(problem, compliance, answer.status)) {
+    if (proved_unique(problem, solver_, answer.status)) {
       ++counters_.unique;
       return;
     }
-    branches = find_branches(problem, compliance, answer, fresh);
+    branches = find_branches(problem, solver_, answer, fresh);
   }
-  if (branches.others == 0 && !branches.all_tried) {
-    count_unchecked(problem.limits.size());
+  if (branches.others > 0) {
+    ++counters_.not_unique;
+  } else if (branches.decided()) {
+    ++counters_.unique;
   } else {
-    ++(branches.others > 0 ? counters_.not_unique : counters_.unique);
+    count_unchecked(problem.limits.size(), branches.all_tried);
   }
-  if (!branches.all_tried) {
+  if (!branches.decided()) {
     for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
   }
   if (branches.others == 0) return;
-  const Rates other = rates_of(contacts_, solver_, tangents_of(laws_, branches.other), problem.driving);
-  solver_.set(tangents_of(laws_, answer.status));
+  const Rates& other = branches.other.rates;
   double size = 0, change = 0;
   for (std::size_t k = 0; k < other.motion.size(); ++k) {
     size = std::max(size, std::abs(answer.rates.motion[k]));
     change = std::max(change, std::abs(other.motion[k] - answer.rates.motion[k]));
   }
   const double by_motion = size > 0 ? change / size : infinite;
-  const double load = load_rate_of(answer.rates, answer.status), other_load = load_rate_of(other, branches.other);
+  const double load = load_rate_of(answer.rates, answer.status),
+               other_load = load_rate_of(other, branches.other.status);
   const double by_load = load != 0 ? std::abs(other_load / load - 1) : other_load != 0 ? infinite : 0;
   counters_.largest_motion_difference = std::max(counters_.largest_motion_difference, by_motion);
   counters_.largest_load_difference = std::max(counters_.largest_load_difference, by_load);
@@ -192,12 +196,19 @@ double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStat
 
 std::string UnbondedRun::sentence_on(const RateSearch& search, std::size_t limits) const {
   const RateAnswer& answer = search.answer;
-  if (!answer.agrees && search.tried > 0) {
+  const auto tried = [&] {
+    return fmt::format("the {} of {} on limits",
+                       counted(search.tried, "combination of the states", "combinations of the states"),
+                       counted(static_cast<std::int64_t>(limits), "contact"));
+  };
+  if (!answer.agrees && search.ties > 0) {
     return fmt::format(
-        "none of the {} of {} on limits balances what acts on them: with friction the increment has no "
-        "answer",
-        counted(search.tried, "combination of the states", "combinations of the states"),
-        counted(static_cast<std::int64_t>(limits), "contact"));
+        "of {} none balances what acts on them beyond doubt, and {} within round-off: whether the "
+        "increment has an answer is not decided",
+        tried(), search.ties);
+  }
+  if (!answer.agrees && search.tried > 0) {
+    return fmt::format("none of {} balances what acts on them: with friction the increment has no answer", tried());
   }
   if (!answer.agrees) {
     return "no statuses of the contacts on their limits were found that balance what acts on them: with friction "

@@ -36,11 +36,18 @@ struct UnbondedCounters {
   std::int64_t unique = 0;      ///< increments of which no other answer exists
   std::int64_t not_unique = 0;  ///< of which another answer was found
   std::int64_t no_answer = 0;   ///< of which no combination of states of contacts on limits balances
-  std::int64_t unchecked = 0;   ///< neither proved nor with few enough contacts on limits to try all combinations
-  std::int64_t most_unchecked_contacts = 0;  ///< on limits, of such an increment
+  std::int64_t unchecked = 0;   ///< neither proved to have one answer nor decided by all combinations of statuses
+  std::int64_t ties = 0;        ///< of which all combinations were tried, and round-off decides on one of them
+  std::int64_t most_unchecked_contacts = 0;  ///< on limits, of an increment with too many combinations
   /// Relative, of the rates of motion and of load of the first other answer.
   double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;  ///< of the states of the path, relative
+
+  /// Without those of the solver.
+  void pass(PathNumbers& n) {
+    n.pass(unique, not_unique, no_answer, unchecked, ties, most_unchecked_contacts);
+    n.pass(largest_motion_difference, largest_load_difference, largest_residual);
+  }
 };
 
 class UnbondedRun : public EventPath {
@@ -70,6 +77,12 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
   [[nodiscard]] const UnbondedState& state() const { return *state_; }
   [[nodiscard]] UnbondedCounters counters() const;
+  /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
+  /// same bits.
+  void pass(PathNumbers& n) {
+    n.pass(events_, points_, breaking_, begun_, rates_, dead_done_, checked_, standstill_, leg_, load_rate_);
+    n.pass(motion_rate_, share_, travelled_, end_, why_, counters_, *state_, solver_);
+  }
 
  private:
   [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
@@ -87,7 +100,7 @@ class UnbondedRun : public EventPath {
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
-  void count_unchecked(std::size_t limits);
+  void count_unchecked(std::size_t limits, bool tie);
   void end(PathEnd why, std::string sentence);
 
   BreakageScene scene_;

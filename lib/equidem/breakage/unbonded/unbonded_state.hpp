@@ -32,6 +32,7 @@ struct ContactLedger {
 
   /// All works of a step are in. \param elastic_now behind it
   void take(double elastic_now);
+  void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
   /// The sum that should vanish, over the largest of its terms so far.
   [[nodiscard]] double error() const;
 };
@@ -53,6 +54,11 @@ class UnbondedState {
   void break_bond(std::size_t contact, ContactStatus status);
   /// Nothing is left of the forces of broken bonds.
   void end_release();
+  /// All that the constructor does not find.
+  void pass(PathNumbers& n) {
+    n.pass(status_, slip_, motion_.high, motion_.low, lambda_, dead_, releasing_, kept_, share_, kept_share_);
+    n.pass(released_by_, deformation_, forces_, internal_, ledger_, residual_, force_scale_, round_off_force_);
+  }
 
   [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
   /// Per contact, N/m, those of broken bonds included.

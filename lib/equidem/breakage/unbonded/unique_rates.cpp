@@ -12,6 +12,41 @@ namespace {
 
 constexpr double least_share = 1e-8;  // of a spring: entries of S and pivots below are round-off
 
+/// The network as the contacts on limits feel it, C = G K^-1 G^T: their deformations, row by row, by unit pairs of
+/// forces at them, 2 rows and columns a contact: stretch and slip. Where the driving prescribes a motion it is kept.
+std::vector<double> limit_compliance(const RateProblem& problem, const TangentSolver& solver) {
+  const ContactOperator& contacts = problem.contacts;
+  const auto& held = contacts.unknowns().held;
+  const std::vector<double>& load = problem.driving.pattern->force;
+  const std::size_t m = problem.limits.size(), n = 2 * m;
+  std::vector<double> c(n * n), along;
+  const auto dot = [&](std::span<const double> x) {
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
+    return sum;
+  };
+  const auto solve = [&](std::vector<double>& x) {
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = held[k] != 0 ? 0 : x[k];
+    solver.solve(x);
+  };
+  if (problem.driving.by_motion) solve(along = load);
+  for (std::size_t q = 0; q < n; ++q) {
+    std::vector<double> z(contacts.components(), 0.0);
+    contacts.add_internal(problem.limits[q / 2].contact, q % 2 == 0 ? ContactForce{1, 0} : ContactForce{0, 1}, z);
+    solve(z);
+    if (problem.driving.by_motion) {
+      const double by = dot(z) / dot(along);
+      for (std::size_t k = 0; k < z.size(); ++k) z[k] -= by * along[k];
+    }
+    for (std::size_t p = 0; p < m; ++p) {
+      const ContactDeformation d = contacts.deformation(problem.limits[p].contact, z);
+      c[2 * p * n + q] = d.normal;
+      c[(2 * p + 1) * n + q] = d.tangential;
+    }
+  }
+  return c;
+}
+
 /// The tangent of a contact that sticks.
 ContactTangent sticking(const RateProblem& problem, std::size_t place) {
   return problem.laws[problem.limits[place].contact].tangent(ContactStatus::stuck);
@@ -65,11 +100,10 @@ bool is_positive_definite(std::vector<double>& a, std::size_t n, double least) {
 
 }  // namespace
 
-bool proved_unique(const RateProblem& problem, std::span<const double> compliance,
-                   std::span<const ContactStatus> status) {
+bool proved_unique(const RateProblem& problem, const TangentSolver& solver, std::span<const ContactStatus> status) {
   const std::size_t m = problem.limits.size(), n = 2 * m;
   if (m == 0) return true;
-  const std::vector<double> s = schur_complement(problem, compliance, status);
+  const std::vector<double> s = schur_complement(problem, limit_compliance(problem, solver), status);
   if (s.empty()) return false;
   struct Unknown {
     std::size_t row;  // of S

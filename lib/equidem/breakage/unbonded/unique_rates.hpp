@@ -24,10 +24,9 @@
 
 namespace equidem {
 
-/// \param compliance of the contacts on limits (limit_compliance.hpp), with the tangents of `status`
+/// \param solver with the tangents of `status`
 /// \param status per contact
 /// \return true: the rates of every load are unique; false: nothing is proved
-bool proved_unique(const RateProblem& problem, std::span<const double> compliance,
-                   std::span<const ContactStatus> status);
+bool proved_unique(const RateProblem& problem, const TangentSolver& solver, std::span<const ContactStatus> status);
 
 }  // namespace equidem

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The state of a path as a list of numbers, bit for bit: one description of it saves and restores.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/vector.hpp"
+
+namespace equidem {
+
+class PathNumbers {
+ public:
+  /// To save into.
+  PathNumbers() = default;
+  /// To restore from.
+  explicit PathNumbers(std::vector<double> numbers) : numbers_(std::move(numbers)), restores_(true) {}
+
+  [[nodiscard]] bool restores() const { return restores_; }
+  [[nodiscard]] const std::vector<double>& numbers() const { return numbers_; }
+  /// \throws Error (bad_input) where numbers are left over
+  void check_end() const {
+    if (restores_ && next_ != numbers_.size()) refuse();
+  }
+
+  /// Saves these, or restores them.
+  template <typename... Values>
+  void pass(Values&... values) {
+    (one(values), ...);
+  }
+
+ private:
+  [[noreturn]] static void refuse() {
+    bad_input("the state of the path cannot be restored", "it has another number of contacts or events",
+              "Begin anew, without --resume and with --overwrite");
+  }
+  double& next() {
+    if (!restores_) return numbers_.emplace_back();
+    if (next_ == numbers_.size()) refuse();
+    return numbers_[next_++];
+  }
+
+  template <typename T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void one(T& value) {
+    double& number = next();
+    if (restores_) {
+      value = static_cast<T>(number);
+    } else {
+      number = static_cast<double>(value);  // integers below 2^53 are exact
+    }
+  }
+  // 64 bits of mantissa are two numbers of 53.
+  void one(long double& value) {
+    auto high = static_cast<double>(value);
+    auto low = static_cast<double>(value - static_cast<long double>(high));
+    pass(high, low);
+    if (restores_) value = high;
+    if (restores_ && low != 0) value += low;  // the sum of -0 and 0 is 0
+  }
+  template <typename T>
+  void one(DeformationOf<T>& d) {
+    pass(d.normal, d.tangential);
+  }
+  void one(ContactForce& f) { pass(f.normal, f.tangential); }
+  void one(Tensor2& t) { pass(t.xx, t.xy, t.yx, t.yy); }
+  template <typename T>
+  requires requires(T& value, PathNumbers& numbers) { value.pass(numbers); }
+  void one(T& value) { value.pass(*this); }
+  template <typename T>
+  void one(std::optional<T>& value) {
+    bool there = value.has_value();
+    one(there);
+    if (restores_ && there) value.emplace();
+    if (restores_ && !there) value.reset();
+    if (there) one(*value);
+  }
+  template <typename T>
+  void one(std::vector<T>& values) {
+    std::size_t size = values.size();
+    one(size);
+    if (restores_ && size > numbers_.size()) refuse();
+    values.resize(size);
+    for (T& value : values) one(value);
+  }
+  void one(std::string& text) {
+    std::vector<char> letters(text.begin(), text.end());
+    one(letters);
+    text.assign(letters.begin(), letters.end());
+  }
+
+  std::vector<double> numbers_;
+  std::size_t next_ = 0;
+  bool restores_ = false;
+};
+
+}  // namespace equidem

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which combinations of the statuses of contacts on limits are answers: beside closed forms and all combinations of
+// the whole network.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "breakage/all_statuses.hpp"
+#include "breakage/unbonded_scenes.hpp"
+#include "support/assemblies.hpp"
+#include "support/catch.hpp"
+
+using namespace equidem;
+using namespace equidem::test;
+
+namespace {
+
+constexpr double normal_stiffness = 1000, tangential_stiffness = 300;
+
+/// A disc of radius 1 at the origin between two held ones. \param angles of the directions to them, rad
+Assembly groove(double first, double second) {
+  Assembly scene = chain_of_discs(3, 1);
+  scene.centres = {2 * Vec2{std::cos(first), std::sin(first)}, {0, 0}, 2 * Vec2{std::cos(second), std::sin(second)}};
+  scene.contacts = {{0, 1, 0, 0, 1, 1}, {1, 2, 0, 0, 1, 1}};
+  scene.groups["held"] = {{0, 2}, {}};
+  scene.groups["disc"] = {{1}, {}};
+  return scene;
+}
+
+Unbonded pressed_into(double slope, double friction, bool turns) {
+  LoadPathOptions options;
+  const double down = -std::numbers::pi / 2;
+  options.supports = {{"held", 0, 0, 0}};
+  if (!turns) options.supports.push_back({"disc", {}, {}, 0});
+  options.loads = {{"disc", LoadKind::per_disc, {0, -1}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {1};
+  return {groove(down - slope, down + slope), ContactSprings(SpringConstants{normal_stiffness, tangential_stiffness}),
+          options, friction};
+}
+
+/// A disc that does not turn, bonded along a direction of 45 degrees and touching another without a force: its
+/// openings and slips are its motion, and every status gives the load as a linear function of it.
+struct TiedDisc {
+  /// \param spring_across spring of the bond at right angles to it
+  explicit TiedDisc(double mu, double spring_across = 0)
+      : friction(mu), across(spring_across), network(scene(), springs(spring_across), supports(), mu) {
+    network.bond(1);
+    network.limit({0, OnLimit::apex, 1});
+  }
+  static Assembly scene() {
+    Assembly scene = chain_of_discs(2, 1);
+    const double r = std::sqrt(2.0);
+    scene.centres.push_back(scene.centres[1] + Vec2{r, r});
+    scene.radii.push_back(1);
+    scene.contacts.push_back({1, 2, 0, 0, 1, 1});
+    scene.groups["held"] = {{0, 2}, {}};
+    scene.groups["disc"] = {{1}, {}};
+    return scene;
+  }
+  static ContactSprings springs(double spring_across) {
+    return ContactSprings(
+        std::vector<SpringConstants>{{normal_stiffness, tangential_stiffness}, {normal_stiffness, spring_across}});
+  }
+  static std::vector<Support> supports() { return {{"held", 0, 0, 0}, {"disc", {}, {}, 0}}; }
+
+  /// The load of the motion (n, t) with a status; K of the oblique bond has the entries (kN + kT)/2, (kN - kT)/2.
+  [[nodiscard]] Vec2 load(ContactStatus status, Vec2 u) const {
+    const double tie = 0.5 * normal_stiffness * (u.x + u.y), aside = 0.5 * across * (u.x - u.y);
+    const double normal = status == ContactStatus::open ? 0 : normal_stiffness * u.x;
+    const double along = status == ContactStatus::open    ? 0
+                         : status == ContactStatus::stuck ? tangential_stiffness * u.y
+                                                          : -direction_of(status) * friction * normal;
+    return {tie + aside + normal, tie - aside + along};
+  }
+  [[nodiscard]] bool allows(ContactStatus status, Vec2 u) const {
+    const double beyond = tangential_stiffness * std::abs(u.y) + friction * normal_stiffness * u.x;
+    if (status == ContactStatus::open) return u.x > 0;
+    if (status == ContactStatus::stuck) return beyond < 0;
+    return u.x < 0 && beyond > 0 && direction_of(status) * u.y > 0;
+  }
+  /// Statuses whose motion under a load is one of theirs.
+  [[nodiscard]] std::vector<ContactStatus> answers(Vec2 f) const {
+    using enum ContactStatus;
+    std::vector<ContactStatus> found;
+    for (const ContactStatus status : {stuck, open, slips_forward, slips_backward}) {
+      const Vec2 a = load(status, {1, 0}), b = load(status, {0, 1});
+      const double det = a.x * b.y - b.x * a.y;
+      if (std::abs(det) < 1e-9 * normal_stiffness * normal_stiffness)
+        continue;  // the load of the open disc is along the spring alone
+      if (allows(status, {(f.x * b.y - b.x * f.y) / det, (a.x * f.y - f.x * a.y) / det})) found.push_back(status);
+    }
+    return found;
+  }
+  [[nodiscard]] LimitNetwork::Answers under(Vec2 f) {
+    std::vector<double> force(network.components());
+    force[3] = f.x, force[4] = f.y;
+    return network.load(force);
+  }
+
+  double friction, across;
+  LimitNetwork network;
+};
+
+Vec2 direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+// By symmetry the disc does not turn and moves down by d: N = normal_stiffness d cos(slope) at each contact, and T =
+// tangential_stiffness d sin(slope) where they stick, |T| = mu N where they slip. Neither contact carries a force at
+// first, and one alone, or none, does not carry the disc: combinations with an open contact leave motions free, as does
+// that of two slips if the disc turns.
+TEST_CASE("of_a_disc_pressed_into_a_groove_every_combination_of_states_is_decided_from_the_first_load_on") {
+  for (const double slope : {0.3, 0.7, 1.2}) {
+    for (const double friction : {0.0, 0.05, 0.1, 0.25, 0.5, 0.9, 2.0, 9.0}) {
+      for (const bool turns : {false, true}) {
+        Unbonded disc = pressed_into(slope, friction, turns);
+        disc.all();
+        const UnbondedCounters counters = disc.run().counters();
+        CAPTURE(slope, friction, turns, counters.unique, counters.not_unique, counters.unchecked, counters.ties,
+                disc.run().why());
+        REQUIRE(disc.run().end() == PathEnd::legs_done);
+        CHECK(counters.unique > 0);
+        CHECK(counters.not_unique == 0);
+        CHECK(counters.unchecked == 0);
+        const double share =
+            std::min(friction, friction > 0 ? tangential_stiffness / normal_stiffness * std::tan(slope) : 0);
+        const double normal = -1 / (2 * (std::cos(slope) + share * std::sin(slope)));
+        for (const ContactForce& f : disc.run().state().forces()) {
+          CHECK(f.normal == Approx(normal).epsilon(1e-12));
+          CHECK(std::abs(f.tangential) == Approx(-share * normal).epsilon(1e-12).margin(1e-15));
+        }
+      }
+    }
+  }
+}
+
+// A wedge that does not turn between two planes with different angles of friction: where both slip, N n + T t of both
+// balance the load; each T has the side on which its plane is passed.
+TEST_CASE("a_wedge_pressed_between_two_planes_slips_on_those_whose_friction_it_exceeds") {
+  const double down = -std::numbers::pi / 2;
+  for (const double slope : {1.0, 1.35}) {
+    for (const std::array<double, 2> friction :
+         {std::array{0.1, 0.2}, {0.1, 5.0}, {5.0, 0.1}, {5.0, 5.0}, {0.3, 0.0}}) {
+      LimitNetwork wedge(groove(down - slope, down + slope),
+                         ContactSprings(SpringConstants{normal_stiffness, tangential_stiffness}),
+                         {{"held", 0, 0, 0}, {"disc", {}, {}, 0}}, 0);
+      for (std::size_t c = 0; c < 2; ++c) {
+        wedge.friction(c, friction[c]);
+        wedge.limit({c, OnLimit::apex, 1});
+      }
+      std::vector<double> force(wedge.components());
+      force[4] = -1;
+      const LimitNetwork::Answers answers = wedge.load(force);
+      CAPTURE(slope, friction[0], friction[1], answers.branches.others, answers.branches.ties);
+      REQUIRE(answers.found);
+      CHECK(answers.branches.all_tried);
+      CHECK(answers.branches.ties == 0);
+      CHECK(answers.branches.others == 0);
+      // The forces on the disc: compression from both sides, friction upwards along the planes.
+      double up = 0, aside = 0;
+      for (std::size_t c = 0; c < 2; ++c) {
+        const double n = -answers.force[c].normal, t = std::abs(answers.force[c].tangential), side = c == 0 ? 1 : -1;
+        up += n * std::cos(slope) + t * std::sin(slope);
+        aside += side * (n * std::sin(slope) - t * std::cos(slope));
+        const bool slips = is_slipping(answers.status[wedge.limits()[c].contact]) || friction[c] == 0;
+        CHECK(slips == (friction[c] < 1));
+        if (slips) CHECK(t == Approx(friction[c] * n).margin(1e-14));
+        CHECK(t <= friction[c] * n + 1e-12);
+      }
+      CHECK(up == Approx(1).epsilon(1e-12));
+      CHECK(aside == Approx(0).margin(1e-12));
+    }
+  }
+}
+
+TEST_CASE("a_contact_without_force_opens_sticks_or_slips_as_the_load_is_directed_and_all_answers_are_told") {
+  std::array<int, 5> with_answers{};
+  for (const double friction : {0.2, 0.8, 1.5, 4.0}) {
+    TiedDisc disc(friction);
+    for (int k = 0; k < 180; ++k) {
+      const Vec2 f = direction(0.01 + std::numbers::pi * k / 90);
+      const std::vector<ContactStatus> expected = disc.answers(f);
+      const LimitNetwork::Answers answers = disc.under(f);
+      CAPTURE(friction, k, expected.size(), answers.found, answers.tried, answers.branches.others);
+      ++with_answers[expected.size()];
+      CHECK(answers.found == !expected.empty());
+      CHECK(answers.ties == 0);
+      if (!answers.found) continue;
+      CHECK(std::ranges::count(expected, answers.status[0]) == 1);
+      CHECK(answers.branches.all_tried);
+      CHECK(answers.branches.ties == 0);
+      CHECK(answers.branches.others + 1 == std::ssize(expected));
+    }
+  }
+  CAPTURE(with_answers);
+  CHECK(with_answers[0] > 100);  // the load leads to a motion that opens, which the spring alone does not carry
+  CHECK(with_answers[1] > 100);
+  CHECK(with_answers[2] > 2);
+}
+
+// The limits are the loads of motions on the borders between statuses: u = (0, +-1) between slip and opening,
+// u = (-tangential_stiffness, +-mu normal_stiffness) between sticking and slip.
+TEST_CASE("statuses_change_at_the_loads_at_which_theory_says_so") {
+  using enum ContactStatus;
+  for (const double friction : {0.2, 0.8}) {
+    TiedDisc disc(friction);
+    for (const double side : {1.0, -1.0}) {
+      const Vec2 sliding = disc.load(stuck, {-tangential_stiffness, side * friction * normal_stiffness});
+      const double at = std::atan2(sliding.y, sliding.x);
+      for (const double by : {1e-2, 1e-6, 1e-8}) {
+        CAPTURE(friction, side, by);
+        const bool before = disc.under(direction(at - by)).status[0] == stuck;
+        const bool behind = disc.under(direction(at + by)).status[0] == stuck;
+        CHECK(before != behind);
+        for (const double angle : {at - by, at + by}) {
+          const LimitNetwork::Answers answers = disc.under(direction(angle));
+          CHECK(answers.status[0] == disc.answers(direction(angle)).front());
+          CHECK(answers.branches.decided());
+          CHECK(answers.branches.others == 0);
+        }
+      }
+      // On the border both statuses have the same forces, which are one answer.
+      const LimitNetwork::Answers border = disc.under(direction(at));
+      CHECK(border.found);
+      CHECK(border.branches.decided());
+      CHECK(border.branches.others == 0);
+      CHECK(std::abs(border.force[0].tangential) == Approx(-friction * border.force[0].normal).epsilon(1e-12));
+    }
+  }
+}
+
+// With this friction the disc may stick, or slip along the ground, or hang on the bond, on one side of the load of the
+// motion (0, -1), and sticks alone on the other: at the load itself round-off decides.
+TEST_CASE("round_off_decides_where_another_answer_begins_and_this_is_said") {
+  const double friction = 4, across = 100;
+  TiedDisc disc(friction, across);
+  const Vec2 border = disc.load(ContactStatus::open, {0, -1});
+  const double at = std::atan2(border.y, border.x);
+  std::vector<std::size_t> answers;
+  for (const double by : {-1e-5, 1e-5}) {
+    const LimitNetwork::Answers beside = disc.under(direction(at + by));
+    answers.push_back(disc.answers(direction(at + by)).size());
+    CAPTURE(by, answers);
+    CHECK(beside.found);
+    CHECK(beside.branches.decided());
+    CHECK(beside.branches.others + 1 == static_cast<std::int64_t>(answers.back()));
+  }
+  CHECK(answers[0] != answers[1]);
+  const LimitNetwork::Answers on_it = disc.under(direction(at));
+  CHECK(on_it.found);
+  CHECK(on_it.branches.ties > 0);
+  CHECK(on_it.branches.others == 0);
+  CHECK_FALSE(on_it.branches.decided());
+
+  LoadPathOptions options;
+  options.supports = TiedDisc::supports();
+  options.loads = {{"disc", LoadKind::per_disc, direction(at), 0}};
+  options.control = LoadControl::load;
+  options.legs = {1};
+  ContactStrengths strengths = equal_strengths(TiedDisc::scene(), 0, 0);
+  strengths.tension[1] = strengths.shear[1] = 1e9;
+  Unbonded path(TiedDisc::scene(), TiedDisc::springs(across), strengths, options, {friction, {}});
+  path.all();
+  CHECK(path.run().counters().unchecked == 1);
+  CHECK(path.run().counters().ties == 1);
+}
+
+TEST_CASE("answers_that_are_told_are_those_of_all_combinations_of_the_whole_network") {
+  std::int64_t loads = 0, decided = 0, several = 0, free = 0, none = 0, singular = 0, tied = 0;
+  std::vector<std::uint64_t> wrong;
+  for (std::uint64_t seed = 1; seed <= 900; ++seed) {
+    Random random(seed);
+    const double friction = std::array{0.1, 0.3, 0.8, 2.0, 5.0}[seed % 5];
+    const auto network = random_limit_network(seed, random, friction, 5, seed % 3 == 0 ? 0.9 : 0.4,
+                                              seed % 2 == 0 ? std::array{0.12, 0.3, 0.7} : std::array{0.2, 0.5, 0.55});
+    // Loads on a few discs leave others without a force, which may hang on contacts that slip or open.
+    std::vector<double> force(network->components());
+    for (std::size_t k = 0; k < force.size(); ++k) {
+      const bool loaded = seed % 4 == 0 || (k / 3 + seed) % 5 == 0;
+      if (loaded && (k % 3 < 2 || seed % 4 == 0)) force[k] = random.uniform(-1, 1);
+    }
+    const LimitNetwork::Answers answers = network->load(force);
+    const AllStatuses::Count count = AllStatuses(*network).under(force);
+    if (!count.carried) continue;
+    ++loads;
+    free += count.by_free_motions > 0 ? 1 : 0;
+    tied += !count.ties.empty() ? 1 : 0;
+    const std::int64_t ties = answers.ties + answers.branches.ties;
+    singular += ties > 0 ? 1 : 0;
+    const auto found = answers.found ? answers.branches.others + 1 : 0;
+    CAPTURE(seed, friction, network->limits().size(), count.tried, count.forces.size(), count.ties.size(),
+            answers.found, found, ties);
+    if (count.ties.empty()) CHECK(ties == 0);
+    if (ties > 0 || !count.ties.empty()) continue;
+    ++decided;
+    none += found == 0 ? 1 : 0;
+    several += found > 1 ? 1 : 0;
+    CHECK(found == std::ssize(count.forces));
+    if (found != std::ssize(count.forces)) wrong.push_back(seed);
+    if (!answers.found) continue;
+    CHECK(answers.branches.all_tried);
+  }
+  CAPTURE(loads, decided, several, free, none, singular, tied, wrong);
+  CHECK(wrong.empty());
+  CHECK(decided > loads * 9 / 10);
+  CHECK(several > loads / 20);
+  CHECK(free > loads / 50);
+  CHECK(none > loads / 50);
+}
