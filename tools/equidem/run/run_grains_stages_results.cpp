@@ -20,6 +20,8 @@ std::string changes_of(const StageReport& stage) {
   add(stage.renamed, "grain", " renamed");
   add(stage.added, "grain", " added");
   add(stage.bonds_made, "bond", " made");
+  for (const WallRenaming& wall : stage.renamed_walls)
+    changes.push_back(fmt::format("wall '{}' renamed '{}'", wall.from, wall.to));
   return joined(changes);
 }
 
@@ -78,6 +80,12 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
                                      {"added", stage.added},
                                      {"bonds_made", stage.bonds_made}})
       if (count > 0) row.set(key, count);
+    if (!stage.renamed_walls.empty()) {
+      std::vector<Results> names;
+      for (const WallRenaming& wall : stage.renamed_walls)
+        names.emplace_back().set("from", wall.from).set("to", wall.to);
+      row.set("renamed_walls", std::move(names));
+    }
     if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
     if (stage.displacement > 0)
       row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");

@@ -22,11 +22,13 @@ struct BodyChoiceTable {
   std::optional<Rectangle> box;  ///< m
 };
 
-/// [[stage.rename]].
+/// [[stage.rename]]: bodies, or a wall.
 struct BodyRenamingTable {
   BodyChoiceTable which;
+  std::optional<std::string> wall;
   std::string to;
 };
+std::vector<Key<BodyRenamingTable>> renaming_keys();
 
 /// All bodies of a run up to a stage, each as often as there are groups that it may have: their kinds and the masses
 /// that meet in contacts do not depend on where bodies will be.

@@ -235,6 +235,7 @@ void StagedSimulation::restore(const SavedState& state) {
         reports.emplace_back(report_of(stages_[k].name, stages.data() + numbers_per_stage * k, simulation->effects()));
     report.added = stages_[k].bodies.added.size();
     report.bonds_made = static_cast<std::size_t>(std::ranges::count(bonds.stages, k));
+    report.renamed_walls = stages_[k].renamed_walls;
   }
   take_servos(state["stage_servos"], stages_, reports);
   past_breaks_ = std::move(past);
