@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -23,6 +24,24 @@ std::string changes_of(const StageReport& stage) {
   for (const WallRenaming& wall : stage.renamed_walls)
     changes.push_back(fmt::format("wall '{}' renamed '{}'", wall.from, wall.to));
   return joined(changes);
+}
+
+/// Removals and renamings of a stage that held no grain: the line of each in the case and what to do.
+std::vector<std::string> idle_choices(const TomlValue& table, const StageReport& stage) {
+  std::vector<std::string> told;
+  const auto tell = [&](const char* list, const std::vector<std::size_t>& idle) {
+    std::vector<const TomlValue*> choices;
+    for (const TomlValue& choice : casefile::repeated(table, list))
+      if (choice.find("wall") == nullptr) choices.push_back(&choice);
+    for (const std::size_t k : idle)
+      told.push_back(fmt::format("{}: stage.{}: {} of the stage '{}' held no grain where the stage began, and nothing "
+                                 "was {}d; correct {}, or leave the table out",
+                                 choices[k]->where(), list, choices[k]->find("box") != nullptr ? "the box" : "the group",
+                                 stage.name, list, choices[k]->find("box") != nullptr ? "the box" : "the group"));
+  };
+  tell("remove", stage.idle_removals);
+  tell("rename", stage.idle_renamings);
+  return told;
 }
 
 }  // namespace
@@ -94,7 +113,11 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
   }
   Results out;
   out.line("stages", "what changes the energies of the scene between them is in the ledger:");
-  return out.table("stages", std::move(rows));
+  out.table("stages", std::move(rows));
+  for (std::size_t k = 0; k < stages.size(); ++k)
+    for (const std::string& text : idle_choices(casefile::repeated(resolved.document, "stage")[k], stages[k]))
+      out.line("WARNING", text);
+  return out;
 }
 
 Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,

@@ -218,7 +218,9 @@ void StagedSimulation::begin_stage() {
                       .renamed = changed.renamed,
                       .added = how.added.size(),
                       .bonds_made = bonds.all.size() - bonds_.all.size(),
-                      .renamed_walls = stages_[next].renamed_walls});
+                      .renamed_walls = stages_[next].renamed_walls,
+                      .idle_removals = changed.idle_removals,
+                      .idle_renamings = changed.idle_renamings});
   present_ = std::move(simulation);
   start_ = std::move(start);
   bonds_ = std::move(bonds);
