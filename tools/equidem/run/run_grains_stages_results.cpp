@@ -34,14 +34,20 @@ std::vector<std::string> idle_choices(const TomlValue& table, const StageReport&
     for (const TomlValue& choice : casefile::repeated(table, list))
       if (choice.find("wall") == nullptr) choices.push_back(&choice);
     for (const std::size_t k : idle)
-      told.push_back(fmt::format("{}: stage.{}: {} of the stage '{}' held no grain where the stage began, and nothing "
-                                 "was {}d; correct {}, or leave the table out",
-                                 choices[k]->where(), list, choices[k]->find("box") != nullptr ? "the box" : "the group",
-                                 stage.name, list, choices[k]->find("box") != nullptr ? "the box" : "the group"));
+      told.push_back(
+          fmt::format("{}: stage.{}: {} of the stage '{}' held no grain where the stage began, and nothing "
+                      "was {}d; correct {}, or leave the table out",
+                      choices[k]->where(), list, choices[k]->find("box") != nullptr ? "the box" : "the group",
+                      stage.name, list, choices[k]->find("box") != nullptr ? "the box" : "the group"));
   };
   tell("remove", stage.idle_removals);
   tell("rename", stage.idle_renamings);
   return told;
+}
+
+/// "'lid' in the stage 'press'"
+std::string in_stage(const GrainCase& resolved, const std::string& what, const std::string& stage) {
+  return resolved.stages.empty() ? what : fmt::format("{} in the stage '{}'", what, stage);
 }
 
 }  // namespace
@@ -127,8 +133,7 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   std::vector<std::string> missed;
   const auto add = [&](const std::string& stage, const ServoReport& servo) {
     if (!servo.reached && servo.wanted > 0)
-      missed.push_back(resolved.stages.empty() ? fmt::format("'{}'", servo.wall)
-                                               : fmt::format("'{}' in the stage '{}'", servo.wall, stage));
+      missed.push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
@@ -152,6 +157,35 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
                          "faster (max_speed), or for longer",
                          joined(missed)));
   return out;
+}
+
+Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                           const std::vector<CellServoReport>& present) {
+  std::vector<Results> rows;
+  std::vector<std::string> missed;
+  const auto add = [&](const std::string& stage, const CellServoReport& servo) {
+    if (!servo.reached && servo.wanted != 0) missed.push_back(in_stage(resolved, servo.component, stage));
+    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    Results& row = rows.emplace_back();
+    if (!resolved.stages.empty()) row.add("stage", "stage", stage);
+    row.add("component", "stress", servo.component)
+        .set("reached", servo.reached)
+        .add("wanted", "wanted, Pa", servo.wanted)
+        .add("stress", "in the last step", servo.stress)
+        .add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
+  };
+  for (const StageReport& stage : stages)
+    for (const CellServoReport& servo : &stage == &stages.back() ? present : stage.cell_servos) add(stage.name, servo);
+  Results out;
+  if (rows.empty()) return out;
+  out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
+  out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
+                                    "faster (max_rate), or for longer",
+                                    joined(missed)));
+  return out.under("cell");
 }
 
 }  // namespace equidem

@@ -24,4 +24,9 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
 Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
                       const std::vector<ServoReport>& present);
 
+/// cell/servos: a list with component, reached, wanted, stress, overshoot, mean_error, and stage where there are some.
+/// \param present of the last stage
+Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                           const std::vector<CellServoReport>& present);
+
 }  // namespace equidem

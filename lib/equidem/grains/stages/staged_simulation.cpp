@@ -156,7 +156,9 @@ void StagedSimulation::look_for_end() {
   } else {
     report.over = done == stage.steps;
   }
-  if (report.over) report.servos = present_->servos();
+  if (!report.over) return;
+  report.servos = present_->servos();
+  if (const auto cell = present_->cell()) report.cell_servos = cell->servos;
 }
 
 bool StagedSimulation::holds(const StageEnd& end) {

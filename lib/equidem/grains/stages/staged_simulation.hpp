@@ -81,7 +81,8 @@ struct StageReport {
   std::vector<WallRenaming> renamed_walls = {};                      ///< likewise
   /// Numbers of removals and renamings (StageBodies) that held no body at its start.
   std::vector<std::size_t> idle_removals = {}, idle_renamings = {};
-  std::vector<ServoReport> servos = {};                              ///< at its end; empty before
+  std::vector<ServoReport> servos = {};           ///< at its end; empty before
+  std::vector<CellServoReport> cell_servos = {};  ///< likewise
 };
 
 /// The effects of all stages together: active is what is so in any of them.
@@ -146,7 +147,8 @@ class StagedSimulation final : public AnySimulation {
   /// stage_cell: width, height, shift, corner and strain of the cell there; stage_bodies: numbers and kinds of the
   /// bodies in the order of the loops; stage_motions, stage_velocities: of the bodies at the start of the present
   /// stage, where it is not the first; stage_bonds: made so far, with stage, i, j, rest and strengths; stage_breaks: of
-  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_idle: stage, 1 for
+  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_cell_servos: likewise of
+  /// cells; stage_idle: stage, 1 for
   /// a renaming, number of a choice that held no body; stage_energies.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
