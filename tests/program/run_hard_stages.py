@@ -68,7 +68,7 @@ quantities = ["position", "velocity"]
         self.assertGreater(abs(free[0]), 1e-4)  # thrown up by the floor that was pressed
         self.assertLess(abs(result["energy"]["relative_error"]), 5e-3)
         self.refused(text.replace("removed = true", 'removed = true\ndisplacement = 0.1\nschedule = "down"'), "case.toml:",
-                     "'lid' is removed and has a displacement")
+                     "'lid' is removed, and displacement is given")
 
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Walls that get another name in a stage, as a user renames them: run_stage_walls.py PROGRAM SOURCE_FOLDER [unittest options]."""
+"""Walls that get another name in a stage, and keys of stages that do not go together: run_stage_walls.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import unittest
 
 import numpy
 
 from motion import table
+from program import equidem
 from run_stages import NO_PICTURE, PRESS, SERVO, VERLET, StageTest
 
 NAMED = PRESS + SERVO + """[[schedule]]
@@ -115,6 +116,59 @@ duration = 0.004
                              ("'floor' is renamed", "'lid' moves it as its mirror"))):
             with self.subTest(words=words):
                 self.refused(text, "case.toml:", *words)
+
+    def test_the_wrong_one_of_two_keys_is_named_with_its_line(self):
+        shaking = "[stage.shaking]\nacceleration = 1.0\nfrequency = 100.0\ncycles = 1\n"
+
+        def stage(text, base=PRESS + SERVO):
+            return base + '[run]\n[[stage]]\nname = "a"\nduration = 0.01\n[[stage]]\nname = "b"\nduration = 0.01\n' + text
+
+        def wall(name, text):
+            return f'[[stage.wall]]\nname = "{name}"\n{text}\n'
+
+        def pair(group, other):
+            return f'[[stage.pair]]\ngroup = "{group}"\nwith = "{other}"\nfriction = 0.2\n'
+        gone = wall("lid", "removed = true")
+        rename = '[[stage.rename]]\nwall = "lid"\nto = "plate"\n'
+        for text, key, line, words in (
+                (wall("lit", "removed = true"), "stage.wall.name", 'name = "lit"', ('mean "lid"',)),
+                (wall("lid", "removed = true\nshaken = false"), "stage.wall.shaken", "shaken = false", ("is removed, and shaken",)),
+                (wall("lid", "servo = { force = 1.0, max_speed = 1.0 }\nvelocity = [0.0, -1.0]"), "stage.wall.servo", "servo = {",
+                 ("a velocity", "Leave out that motion")),
+                (wall("lid", 'servo = { force = 1.0, max_speed = 1.0, mirror = "flor" }'), "stage.wall.servo.mirror", 'mirror = "flor"', ()),
+                (wall("lid", 'servo = { force = 1.0, max_speed = 1.0, mirror = "lid" }'), "stage.wall.servo.mirror", 'mirror = "lid"',
+                 ("its own mirror",)),
+                (wall("lid", 'servo = { stress = 1.0, max_speed = 1.0, from = "left", to = "west" }'), "stage.wall.servo.to", "west", ()),
+                (shaking + "direction = [0.0, 1.0]\n", "stage.shaking", "[stage.shaking]", ("'lid' shakes along", "servo")),
+                ('[stage.until]\nstrain = 0.1\nfrom = "floor"\nto = "left"\n', "stage.until.to", 'to = "left"', ("do not face",)),
+                ('[stage.until]\nstrain = 0.1\nfrom = "floor"\nto = "floor"\n', "stage.until.to", 'to = "floor"', ("the same",)),
+                ("[stage.bonds]\ngap_tolerance = 0.1\n", "stage.bonds", "[stage.bonds]", ("neither dashpots nor springs",)),
+                (pair("grains", "lid") + gone, "stage.pair.with", 'with = "lid"', ("no wall 'lid' stands",)),
+                (pair("grains", "lid") + rename, "stage.pair.with", 'with = "lid"', ('Write with = "plate"',)),
+                (pair("grains", "nobody"), "stage.pair.with", 'with = "nobody"', ("no group of grains and no wall",)),
+                (pair("lid", "grains"), "stage.pair.group", 'group = "lid"', ("is a wall", "Exchange")),
+                (pair("lid", "floor"), "stage.pair.group", 'group = "lid"', ("do not meet",)),
+                (pair("grains", "lid") + pair("grains", "lid").replace("0.2", "0.3"), "stage.pair", None, ("a pair twice",)),
+                (wall("lid", "") + wall("lid", "velocity = [0.0, 1.0]"), "stage.wall.name", None, ("two walls 'lid'",)),
+                ('[[stage.rename]]\ngroup = "grains"\nto = "lid"\n', "stage.rename.to", 'to = "lid"', ("both called 'lid'",)),
+                ('[[stage.grain]]\nposition = [0.035, 0.01]\nradius = 0.001\ngroup = "lid"\n', "stage.grain.group", 'group = "lid"',
+                 ("both called 'lid'",))):
+            with self.subTest(text=text):
+                content = stage(text)
+                self.refused(content, f": {key}: ", *words)
+                if line is None:
+                    continue
+                told = equidem("run", self.write(content)).stderr
+                number = int(told.split("case.toml:")[1].split(":")[0])
+                self.assertIn(line, content.splitlines()[number - 1], told)
+
+    def test_bonds_that_tie_nobody_are_told(self):
+        text = PRESS + "[run]\n[[stage]]\nname = \"a\"\nduration = 0.001\n[[stage]]\nname = \"tie\"\nduration = 0.001\n" + \
+            "[stage.bonds]\ngap_tolerance = {}\nnormal_spring = 1.0e5\n"  # centres 0.03 m apart, radii 0.01 m
+        none = self.run_case(self.write(text.format(0.49)))
+        self.assertIn("stage.bonds: no two discs were near enough in the stage 'tie'", " ".join(none["report"].split()))
+        one = self.run_case(self.write(text.format(0.51)))
+        self.assertEqual((one["stages"][1]["bonds_made"], "WARNING" in one["report"]), (1, False))
 
 
 if __name__ == "__main__":

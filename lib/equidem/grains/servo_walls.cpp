@@ -126,9 +126,12 @@ void steer(GrainSystem& system, ServoState& state) {
       "Let it push towards bodies, and hold them by walls on the other side", servo.place);
 }
 
+/// \param key of the table of the servo that is wrong; empty: the table
 [[noreturn]] void refuse_servo_wall(const Wall& wall, const std::string& what, const std::string& why,
-                                    const std::string& remedy) {
-  bad_input_at(wall.servo->place, fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
+                                    const std::string& remedy, const std::string& key = {}) {
+  const std::string& place = wall.servo->place;
+  bad_input_at(place.empty() || key.empty() ? place : place + "." + key,
+               fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
 }
 
 void check_mirror(const GrainScene& scene, const Wall& wall) {
@@ -136,14 +139,17 @@ void check_mirror(const GrainScene& scene, const Wall& wall) {
   const std::size_t mirror = place_of_name(scene, servo.mirror);
   if (mirror == scene.walls.size())
     refuse_servo_wall(wall, fmt::format("has the mirror '{}'", servo.mirror), "there is no wall of that name",
-                      "Name another wall of the scene");
-  if (servo.mirror == wall.name || scene.walls[mirror].servo)
+                      "Name another wall of the scene", "mirror");
+  if (servo.mirror == wall.name)
+    refuse_servo_wall(wall, "moves that wall as its own mirror", "a mirror is another wall", "Name another wall",
+                      "mirror");
+  if (scene.walls[mirror].servo)
     refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror), "that wall has a servo itself",
-                      "Give one of the two walls a servo");
+                      "Give one of the two walls a servo", "mirror");
   for (const Wall& other : scene.walls)
     if (other.servo && &other != &wall && other.servo->mirror == servo.mirror)
       refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror),
-                        fmt::format("that of wall '{}' does so too", other.name), "Let one of them move it");
+                        fmt::format("that of wall '{}' does so too", other.name), "Let one of them move it", "mirror");
 }
 
 /// The largest displacement of a wall by its schedules along a direction, either way, m.
@@ -164,23 +170,24 @@ double displaced_along(const Wall& wall, Vec2 direction) {
 void check_along(const Wall& wall, Vec2 direction, const Wall& owner) {
   if (displaced_along(wall, direction) <= 1e-9 * displaced_along(wall, perpendicular(direction))) return;
   refuse_servo_wall(owner, fmt::format("moves wall '{}' along ({:.3g}, {:.3g})", wall.name, direction.x, direction.y),
-                    "a displacement moves that wall along it as well",
-                    "Leave out the displacement, or give it a direction across that of the servo");
+                    "a displacement, a velocity or a shaking moves that wall along it as well",
+                    "Leave out that motion, or give it a direction across that of the servo");
 }
 
 void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
   const Servo& servo = *wall.servo;
   if (!servo.is_stress || servo.length > 0) return;
   for (const std::string& name : servo.between) {
+    const std::string key = &name == servo.between.data() ? "from" : "to";
     const std::size_t found = place_of_name(scene, name);
     if (found == scene.walls.size() || name == wall.name)
       refuse_servo_wall(wall, fmt::format("is a stress between '{}' and '{}'", servo.between[0], servo.between[1]),
-                        fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length");
+                        fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length", key);
     const Wall& bound = scene.walls[found];
     if (bound.shape == Wall::Shape::arc || wall.shape == Wall::Shape::arc ||
         std::abs(dot(normal_of(bound), normal_of(wall))) > 1 - 1e-9)
       refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
-                        "Name walls at an angle to it, or give the length");
+                        "Name walls at an angle to it, or give the length", key);
   }
 }
 

@@ -26,7 +26,8 @@ std::string changes_of(const StageReport& stage) {
   return joined(changes);
 }
 
-/// Removals and renamings of a stage that held no grain: the line of each in the case and what to do.
+/// Removals and renamings of a stage that held no grain, and bonds that tied none: the line of each in the case and
+/// what to do.
 std::vector<std::string> idle_choices(const TomlValue& table, const StageReport& stage) {
   std::vector<std::string> told;
   const auto tell = [&](const char* list, const std::vector<std::size_t>& idle) {
@@ -42,6 +43,11 @@ std::vector<std::string> idle_choices(const TomlValue& table, const StageReport&
   };
   tell("remove", stage.idle_removals);
   tell("rename", stage.idle_renamings);
+  if (const TomlValue* bonds = table.find("bonds"); bonds != nullptr && stage.bonds_made == 0)
+    told.push_back(
+        fmt::format("{}: stage.bonds: no two discs were near enough in the stage '{}', and no bond was made; "
+                    "give a larger gap_tolerance, or leave the table out",
+                    bonds->where(), stage.name));
   return told;
 }
 

@@ -28,7 +28,7 @@ void add_grain(const TomlValue& table, const std::string& path, const GrainTable
                std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) {
   if (!read.density && !common_density) {
     fail_at(table, path + ".density", "the density is missing", "motion needs the mass of the grains",
-            "Add density = ... in kg/m³ to [grains], or to each [[grain]]");
+            fmt::format("Add density = ... in kg/m³ to [grains], or to each [[{}]]", path));
   }
   check_group_name(*table.find("group"), path + ".group");
   Grain grain = read.grain;

@@ -15,6 +15,12 @@ std::vector<Key<BodyChoiceTable>> choice_keys() {
           key("box", &C::box, unit("m"), "those with their centre inside, where the stage begins; left out: anywhere")};
 }
 
+void check_no_wall(const TomlValue& group, const std::string& key, const std::vector<Wall>& walls) {
+  if (std::ranges::find(walls, group.text, &Wall::name) == walls.end()) return;
+  fail_at(group, key, fmt::format("a wall and a group of grains are both called '{}'", group.text),
+          "[[collisions.pair]] chooses them by name", "Give the group another name");
+}
+
 }  // namespace
 
 std::vector<Key<BodyRenamingTable>> renaming_keys() {
@@ -85,6 +91,7 @@ bool StagePopulation::read(const TomlValue& root, TomlValue& stage, const std::f
     if (renaming.wall) continue;
     check_choice(table, "stage.rename", renaming.which);
     check_group_name(*table.find("to"), "stage.rename.to");
+    check_no_wall(*table.find("to"), "stage.rename.to", tables.scene.walls);
     for (std::size_t k = 0, count = grains_.size(); k < count; ++k)
       if (!renaming.which.group || *renaming.which.group == groups_[k])
         add(numbers_[k], Grain(grains_[k]), renaming.to);
@@ -94,7 +101,10 @@ bool StagePopulation::read(const TomlValue& root, TomlValue& stage, const std::f
   if (TomlValue* table = stage.find("grains")) read_table_in_place(common_body_keys(), *table, folder, common);
   if (!common.density) common.density = tables.common.density;
   std::vector<GrainTable> read;
-  for (const TomlValue& table : repeated(stage, "grain")) read_table(grain_keys(), table, read.emplace_back());
+  for (const TomlValue& table : repeated(stage, "grain")) {
+    read_table(grain_keys(), table, read.emplace_back());
+    check_no_wall(*table.find("group"), "stage.grain.group", tables.scene.walls);
+  }
   const GrainRows rows = bodies_of(root, stage, "stage.", common, read, shapes, tables);
   for (std::size_t k = 0; k < rows.grains.size(); ++k) {
     add(first_groups_.size(), rows.grains[k], rows.groups[k]);

@@ -38,7 +38,7 @@ class StagePopulation {
 
   /// Go on to the next stage.
   /// \param[in,out] stage its table; paths become those that the program opens
-  /// \param tables get the densities of bodies that are added
+  /// \param tables with the walls of all stages; get the densities of bodies that are added
   /// \return whether it changes bodies
   /// \throws Error (bad_input) with line and key: a choice of all bodies, a group that no body has, a box without area,
   ///         names that are not plain, bodies as those of the case

@@ -57,6 +57,11 @@ std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path
   for (Wall& wall : walls) {
     if (!standing.shakes(wall)) continue;
     any = true;
+    for (const Wall& owner : walls)
+      if (owner.servo && (owner.name == wall.name || owner.servo->mirror == wall.name) &&
+          std::abs(dot(owner.servo->direction, shaking.direction)) > 1e-9)
+        fail_at(*table, "stage.shaking", fmt::format("wall '{}' shakes along the direction of its servo", wall.name),
+                "it cannot keep a force and a motion", "Shake across it, or give the wall shaken = false");
     with_place(fmt::format("{}: stage.shaking", table->where()), [&] {
       shake({&wall, 1}, shaking.direction, shaking.motion.displacement);
     });
@@ -92,13 +97,13 @@ StageEnd end_of_stage(const TomlValue& stage, const std::vector<Wall>& walls, co
     fail_at(*table, "stage.until", "nothing is given that ends the stage", "its duration ends it without that table",
             "Give kinetic, unbalanced, strain or displacement, or leave it out");
   if (end.strain > 0 && !end.of_cell && end.walls[0] == end.walls[1])
-    fail_at(*table, "stage.until.to", "both walls are the same", "the distance of a wall to itself does not change",
-            "Name two walls");
+    fail_at(*table->find("to"), "stage.until.to", "both walls are the same",
+            "the distance of a wall to itself does not change", "Name two walls");
   if (end.strain > 0 && !end.of_cell) {
     const Wall &from = *find_wall(walls, end.walls[0]), &to = *find_wall(walls, end.walls[1]);
     const bool lines = from.shape == Wall::Shape::line && to.shape == Wall::Shape::line;
     if (!lines || norm(from.normal + to.normal) > 1e-9 || dot(to.point - from.point, from.normal) == 0)
-      fail_at(*table, "stage.until.strain",
+      fail_at(*table->find("to"), "stage.until.to",
               fmt::format("the walls '{}' and '{}' do not face each other", from.name, to.name),
               "the strain is the change of the distance of two parallel lines", "Name two lines with opposite normals");
   }
@@ -110,6 +115,33 @@ void replace_keys(TomlValue& table, const TomlValue& by) {
   for (const TomlEntry& entry : by.entries) {
     TomlValue* old = table.find(entry.name);
     old != nullptr ? void(*old = entry.value) : void(table.entries.push_back(entry));
+  }
+}
+
+/// Pairs of a stage name walls that stand from then on, and each two once.
+/// \param all walls of all stages; \param to_come the stage and later ones
+void check_stage_pairs(const std::vector<TomlValue>& pairs, const std::vector<Wall>& all,
+                       std::span<const StageCase> to_come) {
+  const auto names = [](const TomlValue& pair) {
+    return std::minmax(pair.find("group")->text, pair.find("with")->text);
+  };
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    for (std::size_t earlier = 0; earlier < k; ++earlier)
+      if (names(pairs[earlier]) == names(pairs[k]))
+        fail_at(pairs[k], "stage.pair",
+                fmt::format("'{}' and '{}' are a pair twice", names(pairs[k]).first, names(pairs[k]).second),
+                "two bodies meet in one way", "Keep one of them");
+    const TomlValue& with = *pairs[k].find("with");
+    const auto stands = [&](const StageCase& stage) {
+      return find_wall(stage.scene.walls, with.text) != stage.scene.walls.end();
+    };
+    if (find_wall(all, with.text) == all.end() || std::ranges::any_of(to_come, stands)) continue;
+    const std::vector<WallRenaming>& renamed = to_come.front().renamed_walls;
+    const auto renaming = std::ranges::find(renamed, with.text, &WallRenaming::from);
+    fail_at(with, "stage.pair.with", fmt::format("no wall '{}' stands in this stage or a later one", with.text),
+            "nothing would meet it",
+            renaming != renamed.end() ? fmt::format("Write with = \"{}\", its new name", renaming->to)
+                                      : "Name a wall that stands, or remove the pair");
   }
 }
 
@@ -225,8 +257,10 @@ void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::
       fail_at(table, "stage", "the first stage changes the grains", "it begins with those of the case",
               "Give the case those grains, or do it in a later stage");
     changed.scene.grains = population.grains();
+    check_stage_pairs(repeated(table, "pair"), all, std::span(tables.stages).subspan(k));
     const bool other_contacts = change_contacts(table, contacts_now, changed.collisions.contact);
-    if (other_contacts || other_bodies || k == 0) complete_collisions(contacts_now, population.groups(), changed);
+    if (other_contacts || other_bodies || k == 0)
+      complete_collisions(contacts_now, population.groups(), changed, &table);
     StageCase& stage = tables.stages[k];
     stage.bodies = population.changes(changed.scene.grains);
     std::vector<Wall> walls = std::move(stage.scene.walls);

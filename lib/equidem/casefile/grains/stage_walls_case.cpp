@@ -85,6 +85,12 @@ void StageWalls::check_servos_of_others(const TomlValue& table, const std::strin
   }
 }
 
+void StageWalls::refuse_unknown(const TomlValue& name, const char* key, const char* what) const {
+  const auto meant = nearest(name.text, names_of(walls_));
+  fail_at(name, key, fmt::format("no wall {} stands in the stage before", name.shown()), "",
+          meant ? fmt::format("Did you mean \"{}\"?", *meant) : fmt::format("{} a wall that stands there", what));
+}
+
 void StageWalls::rename(const TomlValue& table) {
   BodyRenamingTable read;
   read_table(renaming_keys(), table, read);
@@ -95,14 +101,7 @@ void StageWalls::rename(const TomlValue& table) {
             fmt::format("wall '{}' gets the name '{}' and then another one", other->from, other->to),
             "it has one name in a stage", "Rename it once");
   const auto at = find_named(walls_, *read.wall);
-  if (at == walls_.end()) {
-    std::vector<std::string> names;
-    for (const Wall& wall : walls_) names.push_back(wall.name);
-    const auto meant = nearest(*read.wall, names);
-    fail_at(*table.find("wall"), "stage.rename.wall",
-            fmt::format("no wall {} stands in the stage before", table.find("wall")->shown()), "",
-            meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Rename a wall that stands there");
-  }
+  if (at == walls_.end()) refuse_unknown(*table.find("wall"), "stage.rename.wall", "Rename");
   check_plain_name(*table.find("to"), "stage.rename.to", "a wall", "it stands in the names of columns");
   if (find_named(all_, read.to) != all_.end())
     fail_at(*table.find("to"), "stage.rename.to",
@@ -134,14 +133,12 @@ void StageWalls::change(const TomlValue& table, std::span<const NamedSchedule> s
   const std::string& name = read.wall.wall.name;
   const auto at = find_named(walls_, name);
   if (read.removed) {
-    if (at == walls_.end())
-      fail_at(table, "stage.wall", fmt::format("there is no wall '{}'", name), "",
-              "Remove a wall that stands in the stage before");
+    if (at == walls_.end()) refuse_unknown(*table.find("name"), "stage.wall.name", "Remove");
     for (const TomlEntry& entry : table.entries)
       if (entry.name != "name" && entry.name != "removed" && !is_default(entry))
         fail_at(entry.value, fmt::format("stage.wall.{}", entry.name),
-                fmt::format("wall '{}' is removed and has a {}", name, entry.name), "a wall that is gone does not move",
-                "Remove one of them");
+                fmt::format("wall '{}' is removed, and {} is given", name, entry.name),
+                "nothing counts of a wall that is gone", "Remove one of them");
     walls_.erase(at);
     return;
   }
@@ -161,7 +158,8 @@ void StageWalls::change(const TomlValue& table, std::span<const NamedSchedule> s
                [&] { check_start(wall); });
   } else {
     if (find_named(all_, name) != all_.end())
-      fail_at(table, "stage.wall.name", fmt::format("wall '{}' is new, and an earlier one had that name", name),
+      fail_at(*table.find("name"), "stage.wall.name",
+              fmt::format("wall '{}' is new, and an earlier one had that name", name),
               "histories and contacts go by the names of walls", "Give the new wall another name");
     for (const char* key : read.wall.wall.shape == Wall::Shape::line      ? std::array{"point", "normal"}
                            : read.wall.wall.shape == Wall::Shape::segment ? std::array{"point", "end"}
@@ -178,7 +176,7 @@ void StageWalls::change(const TomlValue& table, std::span<const NamedSchedule> s
 }
 
 void StageWalls::read(const TomlValue& stage, std::span<const NamedSchedule> schedules) {
-  check_names(stage, "wall");
+  check_names(stage, "wall", "stage.");
   renamed_.clear();
   for (Wall& wall : walls_) wall.move_x = wall.move_y = {};
   for (const TomlValue& table : repeated(stage, "rename")) rename(table);

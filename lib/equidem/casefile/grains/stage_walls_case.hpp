@@ -32,6 +32,7 @@ class StageWalls {
   [[nodiscard]] const std::vector<Wall>& all() const { return all_; }
 
  private:
+  [[noreturn]] void refuse_unknown(const TomlValue& name, const char* key, const char* what) const;
   void rename(const TomlValue& table);
   void check_name(const TomlValue& table) const;
   void change(const TomlValue& table, std::span<const NamedSchedule> schedules);
