@@ -162,7 +162,7 @@ TEST_CASE("servos_that_contradict_each_other_are_refused") {
   refused([](GrainScene&, Servo& s) { s.relaxation = 1.5; }, {"'lid'", "relaxation"});
   refused([](GrainScene&, Servo& s) { s.direction = {0, 2}; }, {"'lid'", "unit vector"});
   refused([](GrainScene&, Servo& s) { s.mirror = "top"; }, {"'lid'", "'top'", "no wall"});
-  refused([](GrainScene&, Servo& s) { s.mirror = "lid"; }, {"'lid'", "servo itself"});
+  refused([](GrainScene&, Servo& s) { s.mirror = "lid"; }, {"'lid'", "own mirror"});
   refused([](GrainScene& g, Servo& s) { s.mirror = "floor", g.walls[1].servo = s; }, {"'floor'", "does so too"});
   refused(
       [](GrainScene& g, Servo&) {

@@ -146,7 +146,7 @@ duration = 0.004
                 (pair("grains", "lid") + gone, "stage.pair.with", 'with = "lid"', ("no wall 'lid' stands",)),
                 (pair("grains", "lid") + rename, "stage.pair.with", 'with = "lid"', ('Write with = "plate"',)),
                 (pair("grains", "nobody"), "stage.pair.with", 'with = "nobody"', ("no group of grains and no wall",)),
-                (pair("lid", "grains"), "stage.pair.group", 'group = "lid"', ("is a wall", "Exchange")),
+                (pair("lid", "grains"), "stage.pair.group", 'group = "lid"', ("but a wall", "Exchange")),
                 (pair("lid", "floor"), "stage.pair.group", 'group = "lid"', ("do not meet",)),
                 (pair("grains", "lid") + pair("grains", "lid").replace("0.2", "0.3"), "stage.pair", None, ("a pair twice",)),
                 (wall("lid", "") + wall("lid", "velocity = [0.0, 1.0]"), "stage.wall.name", None, ("two walls 'lid'",)),

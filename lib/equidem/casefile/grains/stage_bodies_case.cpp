@@ -44,7 +44,7 @@ void bind_stage_bodies(File<GrainTables>& file) {
   file.table("stage.remove", repeated_table, "bodies that are taken away where the stage begins, their bonds too")
       .described(choice_keys());
   file.table("stage.rename", repeated_table,
-             "bodies that get another group, after those that are taken away; or a wall that gets another name")
+             "bodies that get another group, after those that go; or a wall another name")
       .described(renaming_keys());
   file.table("stage.grains", "bodies of a file that come where the stage begins").described(common_body_keys());
   file.table("stage.grain", repeated_table, "one body that comes, as [[grain]]; those of the file come before it")

@@ -42,7 +42,7 @@ std::vector<std::string> check_pairs(const CollisionOptions& options, const std:
   for (std::size_t k = 0; k < options.pairs.size(); ++k) {
     const CollisionOptions::Pair& pair = options.pairs[k];
     if (!contains(groups, pair.group) && contains(names_of(walls), pair.group))
-      bad_input_at(fmt::format("pairs.{}.group", k), fmt::format("'{}' is a wall", pair.group),
+      bad_input_at(fmt::format("pairs.{}.group", k), fmt::format("'{}' is no group of grains but a wall", pair.group),
                    contains(groups, pair.with) ? "group names grains, and with names grains or a wall"
                                                : "walls do not meet one another",
                    contains(groups, pair.with) ? "Exchange group and with" : "Name a group of grains");
