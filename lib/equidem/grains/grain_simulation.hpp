@@ -74,8 +74,8 @@ class GrainSimulation final : public AnySimulation {
   /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with bodies and walls that
   /// are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin as at the start
   /// of a simulation; the control of servo walls that both have goes on, and their errors are counted anew.
-  /// \param origins of the bodies, bonds and walls of this scene in that of `before`; order() keeps the order of those that
-  ///        both have, and new ones follow
+  /// \param origins of the bodies, bonds and walls of this scene in that of `before`; order() keeps the order of bodies
+  ///        that both have, and new ones follow
   void take_over(const GrainSimulation& before, const SceneOrigins& origins);
 
   [[nodiscard]] const Effects& effects() const override;
