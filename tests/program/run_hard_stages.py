@@ -68,7 +68,7 @@ quantities = ["position", "velocity"]
         self.assertGreater(abs(free[0]), 1e-4)  # thrown up by the floor that was pressed
         self.assertLess(abs(result["energy"]["relative_error"]), 5e-3)
         self.refused(text.replace("removed = true", 'removed = true\ndisplacement = 0.1\nschedule = "down"'), "case.toml:",
-                     "'lid' is removed and has a displacement")
+                     "'lid' is removed, and displacement is given")
 
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
@@ -104,6 +104,25 @@ quantities = ["position", "velocity"]
         done = equidem("run", self.write(full + cell.format(-1000.0, 1e-5)))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("the stress of the cell never came within 1 % of the wanted one: yy", " ".join(done.stdout.split()))
+
+    def test_a_cell_that_misses_its_stress_in_any_stage_is_told(self):
+        squares = "".join(f"[[grain]]\nposition = [{0.01 + 0.02 * i}, {0.01 + 0.02 * j}]\nradius = 0.01\n"
+                          for i in range(5) for j in range(5))
+        stages = "".join(f'[[stage]]\nname = "{name}"\nduration = {time}\n[stage.cell.servo]\nstress_yy = -1000.0\nmax_rate = {rate}\n'
+                         for name, time, rate in (("slow", 0.01, 1e-5), ("fast", 0.5, 0.1), ("again", 0.01, 1e-9)))
+        text = TWO[:TWO.index("[[grain]]")] + squares + TWO[TWO.index("[collisions]"):] + \
+            '[cell]\nwidth = 0.1\nheight = 0.1\n[run]\nintegrator = "velocity_verlet"\n' + stages
+        case, out = self.write(text), self.folder / "out"
+        for options in ((), ("--resume",)):
+            result = self.run_case(case, "--out", out, *options, *NO_PICTURE)
+            servos = result["cell"]["servos"]
+            self.assertEqual([(servo["stage"], servo["component"], servo["reached"]) for servo in servos],
+                             [("slow", "yy", False), ("fast", "yy", True), ("again", "yy", True)])
+            self.assertEqual([servo["overshoot"] is None for servo in servos], [True, False, False])
+            self.assertGreater(servos[0]["stress"], 0.5 * servos[0]["wanted"])
+            self.assertIn("the stress of the cell never came within 1 % of the wanted one: yy in the stage 'slow'; let it",
+                          " ".join(result["report"].split()))
+            (out / "run.checkpoint.h5").write_bytes((out / "run.slow.checkpoint.h5").read_bytes())
 
     def test_bonds_stiffer_than_the_step_bears_are_refused_with_the_step_that_they_bear(self):
         run = "[run]\nduration = 0.01\ntime_step = {}\n"

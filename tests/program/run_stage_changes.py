@@ -175,6 +175,33 @@ class Bodies(StageTest):
                 self.assertEqual((whole / name).read_bytes(), (parts / name).read_bytes(), (stage, name))
 
 
+    def test_a_choice_that_holds_no_grain_is_told_with_its_line(self):
+        text = STAGES.replace("box = [0.05, 0.0, 0.07, 0.06]", "box = [0.2, 0.0, 0.3, 0.06]") + """[[stage.remove]]
+box = [0.2, 0.0, 0.3, 0.03]
+group = "smooth"
+[[stage.rename]]
+box = [5.0, 5.0, 6.0, 6.0]
+to = "far"
+"""
+        case, out = self.write(text), self.folder / "out"
+        lines = text.splitlines()
+        level = lines.index("[[stage.remove]]") + 1
+        last = len(lines) - lines[::-1].index("[[stage.remove]]"), len(lines) - 2
+        for options in ((), ("--resume",)):
+            result = self.run_case(case, "--out", out, *options, *NO_PICTURE)
+            report = " ".join(result["report"].split())
+            self.assertEqual(report.count("WARNING"), 3, report)
+            for line, words in ((level, "stage.remove: the box of the stage 'level' held no grain"),
+                                (last[0], "stage.remove: the box of the stage 'last' held no grain"),
+                                (last[1], "stage.rename: the box of the stage 'last' held no grain")):
+                self.assertIn(f"case.toml:{line}: {words}", report)
+            self.assertIn("correct the box", report)
+            if not options:
+                (out / "run.checkpoint.h5").write_bytes((out / "run.level.checkpoint.h5").read_bytes())
+        whole = self.run_case(self.write(STAGES), *NO_PICTURE)
+        self.assertNotIn("WARNING", whole["report"])
+
+
 class Branches(StageTest):
     def test_a_case_begins_with_the_state_at_the_end_of_a_stage_of_another_run(self):
         case, whole = self.write(STAGES), self.folder / "whole"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -55,19 +54,15 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
-  system.smallest_radius = std::numeric_limits<double>::infinity();
+  system.smallest_radius = smallest_inscribed_radius(scene);
   double fastest = 0;
-  for (const Grain& grain : scene.grains) {
-    system.smallest_radius = std::min(system.smallest_radius, grain.radius);
+  for (const Grain& grain : scene.grains)
     fastest = std::max(
         fastest, norm(grain.velocity) + (grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius));
-  }
   system.length = reference_length(scene, options);
-  double smallest_size = system.smallest_radius;
-  for (const GrainPart& part : system.shapes.parts) {
-    smallest_size = std::min(smallest_size, part.size);
-    system.smallest_radius = std::min(system.smallest_radius, part.b);
-  }
+  const auto& parts = system.shapes.parts;  // none where all bodies are discs
+  const double smallest_size =
+      parts.empty() ? system.smallest_radius : std::ranges::min(parts, {}, &GrainPart::size).size;
   system.bodies.next = system.bodies.motions;
   self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
                                              : part_candidate_loop(options.law, system.friction);

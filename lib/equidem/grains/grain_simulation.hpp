@@ -56,9 +56,9 @@ struct BondReport {
   double step_limit = 0;       ///< largest time step that the bonds allow, s; infinite: no limit
 };
 
-/// The numbers of bodies and bonds of a scene in another one; -1: they are new.
+/// The numbers of bodies, bonds and walls of a scene in another one; -1: they are new.
 struct SceneOrigins {
-  std::vector<std::int32_t> bodies, bonds;
+  std::vector<std::int32_t> bodies, bonds, walls;
 };
 
 struct BondBreak;
@@ -74,8 +74,8 @@ class GrainSimulation final : public AnySimulation {
   /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with bodies and walls that
   /// are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin as at the start
   /// of a simulation; the control of servo walls that both have goes on, and their errors are counted anew.
-  /// \param origins of the bodies and bonds of this scene in that of `before`; order() keeps the order of those that
-  ///        both have, and new ones follow
+  /// \param origins of the bodies, bonds and walls of this scene in that of `before`; order() keeps the order of bodies
+  ///        that both have, and new ones follow
   void take_over(const GrainSimulation& before, const SceneOrigins& origins);
 
   [[nodiscard]] const Effects& effects() const override;

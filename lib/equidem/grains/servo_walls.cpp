@@ -10,8 +10,13 @@
 namespace equidem {
 namespace {
 
-/// Share of the last step in the mean speed of a servo wall: slow beside the relaxation, fast beside the motion.
-constexpr double share_of_pace = 0.02;
+/// The loop of a servo wall. Bodies in a row give way: of the stiffness k of its contacts the wall meets the share c,
+/// some 1/13 across 12 discs. With the relaxation r, the missing force e and the share s of the last step in the mean
+/// speed u, a step changes e by -c (r e + k dt u) and u by s r e/(k dt): modes that fall by the factor 1 + z, z² + c r
+/// z + c s r = 0, damped by the ratio sqrt(c r/s)/2. It must not fall with r: s is share_of_pace times r. As u sums up
+/// e, the force runs past W after a step of W, by some tenth of that step. Thus u follows freely only where e is below
+/// near_share of W, beyond it by the square of near_share W/e; at max_speed it waits.
+constexpr double share_of_pace = 0.04, near_share = 0.1;
 
 std::size_t place_of_name(const GrainScene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.walls, name, &Wall::name);
@@ -108,10 +113,13 @@ void steer(GrainSystem& system, ServoState& state) {
   if (resistance.sum() > 0) {
     state.touched = 1;
     state.free_way = 0;
-    const double missing = servo.relaxation * (state.wanted - state.force);
+    const double missing = state.wanted - state.force, near = near_share * state.wanted;
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
-    state.speed = std::clamp((missing + going_on) / resistance.sum(), -servo.max_speed, servo.max_speed);
-    state.pace += share_of_pace * (state.speed - state.pace);
+    const double asked = (servo.relaxation * missing + going_on) / resistance.sum();
+    state.speed = std::clamp(asked, -servo.max_speed, servo.max_speed);
+    const double approach = std::abs(missing) <= near ? 1 : near / missing;
+    if (state.speed == asked)
+      state.pace += share_of_pace * servo.relaxation * approach * approach * (state.speed - state.pace);
   } else {
     state.speed = state.wanted > 0 ? servo.max_speed : 0;
     state.pace = 0;
@@ -126,9 +134,12 @@ void steer(GrainSystem& system, ServoState& state) {
       "Let it push towards bodies, and hold them by walls on the other side", servo.place);
 }
 
+/// \param key of the table of the servo that is wrong; empty: the table
 [[noreturn]] void refuse_servo_wall(const Wall& wall, const std::string& what, const std::string& why,
-                                    const std::string& remedy) {
-  bad_input_at(wall.servo->place, fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
+                                    const std::string& remedy, const std::string& key = {}) {
+  const std::string& place = wall.servo->place;
+  bad_input_at(place.empty() || key.empty() ? place : place + "." + key,
+               fmt::format("the servo of wall '{}' {}", wall.name, what), why, remedy);
 }
 
 void check_mirror(const GrainScene& scene, const Wall& wall) {
@@ -136,14 +147,17 @@ void check_mirror(const GrainScene& scene, const Wall& wall) {
   const std::size_t mirror = place_of_name(scene, servo.mirror);
   if (mirror == scene.walls.size())
     refuse_servo_wall(wall, fmt::format("has the mirror '{}'", servo.mirror), "there is no wall of that name",
-                      "Name another wall of the scene");
-  if (servo.mirror == wall.name || scene.walls[mirror].servo)
+                      "Name another wall of the scene", "mirror");
+  if (servo.mirror == wall.name)
+    refuse_servo_wall(wall, "moves that wall as its own mirror", "a mirror is another wall", "Name another wall",
+                      "mirror");
+  if (scene.walls[mirror].servo)
     refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror), "that wall has a servo itself",
-                      "Give one of the two walls a servo");
+                      "Give one of the two walls a servo", "mirror");
   for (const Wall& other : scene.walls)
     if (other.servo && &other != &wall && other.servo->mirror == servo.mirror)
       refuse_servo_wall(wall, fmt::format("moves '{}' as its mirror", servo.mirror),
-                        fmt::format("that of wall '{}' does so too", other.name), "Let one of them move it");
+                        fmt::format("that of wall '{}' does so too", other.name), "Let one of them move it", "mirror");
 }
 
 /// The largest displacement of a wall by its schedules along a direction, either way, m.
@@ -164,23 +178,24 @@ double displaced_along(const Wall& wall, Vec2 direction) {
 void check_along(const Wall& wall, Vec2 direction, const Wall& owner) {
   if (displaced_along(wall, direction) <= 1e-9 * displaced_along(wall, perpendicular(direction))) return;
   refuse_servo_wall(owner, fmt::format("moves wall '{}' along ({:.3g}, {:.3g})", wall.name, direction.x, direction.y),
-                    "a displacement moves that wall along it as well",
-                    "Leave out the displacement, or give it a direction across that of the servo");
+                    "a displacement, a velocity or a shaking moves that wall along it as well",
+                    "Leave out that motion, or give it a direction across that of the servo");
 }
 
 void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
   const Servo& servo = *wall.servo;
   if (!servo.is_stress || servo.length > 0) return;
   for (const std::string& name : servo.between) {
+    const std::string key = &name == servo.between.data() ? "from" : "to";
     const std::size_t found = place_of_name(scene, name);
     if (found == scene.walls.size() || name == wall.name)
       refuse_servo_wall(wall, fmt::format("is a stress between '{}' and '{}'", servo.between[0], servo.between[1]),
-                        fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length");
+                        fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length", key);
     const Wall& bound = scene.walls[found];
     if (bound.shape == Wall::Shape::arc || wall.shape == Wall::Shape::arc ||
         std::abs(dot(normal_of(bound), normal_of(wall))) > 1 - 1e-9)
       refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
-                        "Name walls at an angle to it, or give the length");
+                        "Name walls at an angle to it, or give the length", key);
   }
 }
 

@@ -13,10 +13,11 @@ namespace equidem {
 
 /// Control of a wall by the force F with which it pushes bodies along `direction`. In each step its speed is
 /// v' = (relaxation (W - F) + k dt u + c v)/(k dt + c), at most max_speed either way; W is the wanted force, v the
-/// speed of the last step, u its mean over the last 50 steps or so, k and c are the sums of stiffness and dashpot of
-/// the contacts on the wall along the direction. If the bodies moved at u, F' = F + k dt (v' - u) + c (v' - v) would
-/// mend that share of the difference. Without dashpots and u this is the gain of Itasca's PFC, v' = alpha (W - F)/(k
-/// dt). A wall that touches nothing approaches at max_speed.
+/// speed of the last step, u its mean over the last 25/relaxation steps or so, in which the force was near W and the
+/// wall slower than max_speed, k and c are the sums of stiffness and dashpot of the contacts on the wall along the
+/// direction. If the bodies moved at u, F' = F + k dt (v' - u) + c (v' - v) would mend that share of the difference.
+/// Without dashpots and u this is the gain of Itasca's PFC, v' = alpha (W - F)/(k dt). A wall that touches nothing
+/// approaches at max_speed.
 struct Servo {
   Vec2 direction = {};                      ///< unit, towards the bodies
   Schedule wanted = {};                     ///< force, N (discs: N/m), or stress, Pa; >= 0

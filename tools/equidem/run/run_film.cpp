@@ -60,7 +60,7 @@ void add_film(const std::string& title, const Assembly& assembly, std::span<cons
 }
 
 void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<const int> colours,
-              std::span<const FilmFrame> frames) {
+              std::span<const Grain> started, std::span<const FilmFrame> frames) {
   if (frames.size() < 2) return;
   std::vector<GrainFrame> places;
   for (const FilmFrame& frame : frames) {
@@ -77,7 +77,8 @@ void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<
               .shapes = bodies,
               .clumps = resolved.scene.clumps,
               .groups = colours,
-              .walls = walls},
+              .walls = walls,
+              .started = started},
              places);
 }
 

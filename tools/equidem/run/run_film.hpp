@@ -20,8 +20,8 @@ std::int64_t frames_of_film(std::size_t bodies);
 /// Add the film to the figures of this thread (DrawnFigures), where it has two frames at least. Displacements of bonded
 /// discs are enlarged where they are too small to be seen, as in write_picture.
 void add_film(const std::string& title, const Assembly& assembly, std::span<const FilmFrame> frames);
-/// \param colours of each grain
+/// \param colours of each grain \param started as GrainAnimation
 void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<const int> colours,
-              std::span<const FilmFrame> frames);
+              std::span<const Grain> started, std::span<const FilmFrame> frames);
 
 }  // namespace equidem

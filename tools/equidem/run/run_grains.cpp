@@ -349,6 +349,7 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
   write_breaks(folder, resolved, {simulation_.bonds(), breaks}, step_.step, overwrite);
   if (resolved.output.picture) {
     std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
+    const std::span<const Grain> started = resolved.scene.grains;
     for (const std::vector<Vec2>& places : result.record.paths) {
       std::vector<Vec2>& shown = paths.emplace_back();
       for (const std::size_t number : numbers) shown.push_back(places[number]);
@@ -361,14 +362,15 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
                          .groups = colours,
                          .bonds = holding.bonds,
                          .walls = walls,
-                         .started = resolved.scene.grains,
+                         .started = started,
                          .paths = paths},
                         overwrite);
     write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
     write_probe_paths(folder, resolved, overwrite);
     std::vector<int> first_colours;
     for (const std::string& group : resolved.groups) first_colours.push_back(colour_of(group));
-    add_film(resolved, walls_, first_colours, result.record.film);
+    // where paths are drawn, pictures show where each body went
+    add_film(resolved, walls_, first_colours, paths.empty() ? started : std::span<const Grain>(), result.record.film);
   }
   write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
   write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);

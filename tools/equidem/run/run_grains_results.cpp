@@ -61,7 +61,7 @@ void add_bodies(Results& out, const GrainCase& resolved, const std::vector<Wall>
   out.add("", ellipses + clumps == 0 ? "radius" : "radius of the circle around each", range(smallest, largest), "m")
       .add("", "", mass, resolved.body == Body::disc ? "kg per m of depth in all" : "kg in all");
   if (const std::size_t later = resolved.groups.size() - resolved.scene.grains.size(); later > 0)
-    out.line("").add("added_in_stages", "stages add", later, "more", {Shown::count});
+    out.line("").add("added_in_stages", "stages add", later, "", {Shown::count}).note(" more");
   if (clumps > 0) {
     const auto [fewest, most] =
         std::ranges::minmax(resolved.scene.clumps, {}, [](const Clump& clump) { return clump.discs.size(); });
@@ -284,7 +284,8 @@ Results GrainRun::events() const {
   Results out = measures_ ? measures_->results() : Results();
   if (!case_.stages.empty()) out.append(stage_results(case_, simulation_.reports(), step_.step));
   out.append(servo_results(case_, simulation_.reports(), simulation_.present().servos()));
-  if (const auto cell = simulation_.cell()) out.append(cell_results(*cell));
+  if (const auto cell = simulation_.cell())
+    out.append(cell_results(*cell)).append(cell_servo_results(case_, simulation_.reports(), cell->servos));
   out.line("collisions")
       .add("contacts", "", counters.contacts, "contact", {Shown::count})
       .note(" begun")

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -20,7 +21,39 @@ std::string changes_of(const StageReport& stage) {
   add(stage.renamed, "grain", " renamed");
   add(stage.added, "grain", " added");
   add(stage.bonds_made, "bond", " made");
+  for (const WallRenaming& wall : stage.renamed_walls)
+    changes.push_back(fmt::format("wall '{}' renamed '{}'", wall.from, wall.to));
   return joined(changes);
+}
+
+/// Removals and renamings of a stage that held no grain, and bonds that tied none: the line of each in the case and
+/// what to do.
+std::vector<std::string> idle_choices(const TomlValue& table, const StageReport& stage) {
+  std::vector<std::string> told;
+  const auto tell = [&](const char* list, const std::vector<std::size_t>& idle) {
+    std::vector<const TomlValue*> choices;
+    for (const TomlValue& choice : casefile::repeated(table, list))
+      if (choice.find("wall") == nullptr) choices.push_back(&choice);
+    for (const std::size_t k : idle)
+      told.push_back(
+          fmt::format("{}: stage.{}: {} of the stage '{}' held no grain where the stage began, and nothing "
+                      "was {}d; correct {}, or leave the table out",
+                      choices[k]->where(), list, choices[k]->find("box") != nullptr ? "the box" : "the group",
+                      stage.name, list, choices[k]->find("box") != nullptr ? "the box" : "the group"));
+  };
+  tell("remove", stage.idle_removals);
+  tell("rename", stage.idle_renamings);
+  if (const TomlValue* bonds = table.find("bonds"); bonds != nullptr && stage.bonds_made == 0)
+    told.push_back(
+        fmt::format("{}: stage.bonds: no two discs were near enough in the stage '{}', and no bond was made; "
+                    "give a larger gap_tolerance, or leave the table out",
+                    bonds->where(), stage.name));
+  return told;
+}
+
+/// "'lid' in the stage 'press'"
+std::string in_stage(const GrainCase& resolved, const std::string& what, const std::string& stage) {
+  return resolved.stages.empty() ? what : fmt::format("{} in the stage '{}'", what, stage);
 }
 
 }  // namespace
@@ -78,6 +111,12 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
                                      {"added", stage.added},
                                      {"bonds_made", stage.bonds_made}})
       if (count > 0) row.set(key, count);
+    if (!stage.renamed_walls.empty()) {
+      std::vector<Results> names;
+      for (const WallRenaming& wall : stage.renamed_walls)
+        names.emplace_back().set("from", wall.from).set("to", wall.to);
+      row.set("renamed_walls", std::move(names));
+    }
     if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
     if (stage.displacement > 0)
       row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
@@ -86,7 +125,11 @@ Results stage_results(const GrainCase& resolved, const std::vector<StageReport>&
   }
   Results out;
   out.line("stages", "what changes the energies of the scene between them is in the ledger:");
-  return out.table("stages", std::move(rows));
+  out.table("stages", std::move(rows));
+  for (std::size_t k = 0; k < stages.size(); ++k)
+    for (const std::string& text : idle_choices(casefile::repeated(resolved.document, "stage")[k], stages[k]))
+      out.line("WARNING", text);
+  return out;
 }
 
 Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
@@ -96,8 +139,7 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   std::vector<std::string> missed;
   const auto add = [&](const std::string& stage, const ServoReport& servo) {
     if (!servo.reached && servo.wanted > 0)
-      missed.push_back(resolved.stages.empty() ? fmt::format("'{}'", servo.wall)
-                                               : fmt::format("'{}' in the stage '{}'", servo.wall, stage));
+      missed.push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
@@ -121,6 +163,35 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
                          "faster (max_speed), or for longer",
                          joined(missed)));
   return out;
+}
+
+Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                           const std::vector<CellServoReport>& present) {
+  std::vector<Results> rows;
+  std::vector<std::string> missed;
+  const auto add = [&](const std::string& stage, const CellServoReport& servo) {
+    if (!servo.reached && servo.wanted != 0) missed.push_back(in_stage(resolved, servo.component, stage));
+    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    Results& row = rows.emplace_back();
+    if (!resolved.stages.empty()) row.add("stage", "stage", stage);
+    row.add("component", "stress", servo.component)
+        .set("reached", servo.reached)
+        .add("wanted", "wanted, Pa", servo.wanted)
+        .add("stress", "in the last step", servo.stress)
+        .add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
+  };
+  for (const StageReport& stage : stages)
+    for (const CellServoReport& servo : &stage == &stages.back() ? present : stage.cell_servos) add(stage.name, servo);
+  Results out;
+  if (rows.empty()) return out;
+  out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
+  out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
+                                    "faster (max_rate), or for longer",
+                                    joined(missed)));
+  return out.under("cell");
 }
 
 }  // namespace equidem

@@ -16,8 +16,8 @@ std::filesystem::path opened(const std::filesystem::path& written, const std::fi
   return (written.is_absolute() ? written : folder / written).lexically_normal();
 }
 
-void check_names(const TomlValue& root, const char* list) {
-  const std::string key = fmt::format("{}.name", list);
+void check_names(const TomlValue& root, const char* list, const std::string& prefix) {
+  const std::string key = fmt::format("{}{}.name", prefix, list);
   std::map<std::string_view, const TomlValue*> known;
   for (const TomlValue& table : repeated(root, list)) {
     const TomlValue& name = *table.find("name");

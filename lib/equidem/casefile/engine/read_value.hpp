@@ -60,7 +60,7 @@ const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name);
 std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder);
 
 /// \throws Error (bad_input) where two tables of a list have one name, or a name is empty
-void check_names(const TomlValue& root, const char* list);
+void check_names(const TomlValue& root, const char* list, const std::string& prefix = {});
 
 /// \param what "a load case"
 /// \param use "it becomes part of the names of files"

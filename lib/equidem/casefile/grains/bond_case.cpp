@@ -76,6 +76,10 @@ std::vector<Key<StageBonds>> stage_bond_keys() {
 StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, std::size_t stage) {
   StageBonds bonds{.like = tables.bonds.common, .strengths = tables.strength};
   read_table(stage_bond_keys(), table, bonds);
+  const GrainBond& like = bonds.like;
+  if (!like.has_springs() && like.normal_dashpot == 0 && like.tangential_dashpot == 0 && like.rolling_dashpot == 0)
+    fail_at(table, "stage.bonds", "the bonds have neither dashpots nor springs", "they would tie nothing",
+            "Give normal_spring or normal_dashpot here or in [bonds]");
   if (bonds.strengths) bonds.strengths->seed += stage + 1;  // the bonds of the start take the seed itself
   return bonds;
 }

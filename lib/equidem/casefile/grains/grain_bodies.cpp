@@ -28,7 +28,7 @@ void add_grain(const TomlValue& table, const std::string& path, const GrainTable
                std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) {
   if (!read.density && !common_density) {
     fail_at(table, path + ".density", "the density is missing", "motion needs the mass of the grains",
-            "Add density = ... in kg/m³ to [grains], or to each [[grain]]");
+            fmt::format("Add density = ... in kg/m³ to [grains], or to each [[{}]]", path));
   }
   check_group_name(*table.find("group"), path + ".group");
   Grain grain = read.grain;
@@ -65,14 +65,16 @@ void check_group_name(const TomlValue& group, const std::string& key) {
 }
 
 void check_names_of_walls(const TomlValue& holder, const std::string& path, const std::vector<std::string>& groups) {
-  for (const TomlValue& wall : repeated(holder, "wall")) {
-    const TomlValue& name = *wall.find("name");
+  const auto check = [&](const TomlValue& name, const std::string& key) {
     if (name.text == name_of_all_walls)
-      fail_at(name, path + ".name", "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
+      fail_at(name, key, "a wall is called 'walls'", "the name stands for all of them", "Name it otherwise");
     if (std::find(groups.begin(), groups.end(), name.text) != groups.end())
-      fail_at(name, path + ".name", fmt::format("a wall and a group of grains are both called '{}'", name.text),
+      fail_at(name, key, fmt::format("a wall and a group of grains are both called '{}'", name.text),
               "[[collisions.pair]] chooses them by name", "Rename one of them");
-  }
+  };
+  for (const TomlValue& wall : repeated(holder, "wall")) check(*wall.find("name"), path + ".name");
+  for (const TomlValue& renaming : repeated(holder, "rename"))
+    if (renaming.find("wall") != nullptr) check(*renaming.find("to"), "stage.rename.to");
 }
 
 GrainRows bodies_of(const TomlValue& root, const TomlValue& holder, const std::string& prefix,

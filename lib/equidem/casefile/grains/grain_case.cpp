@@ -195,6 +195,7 @@ std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double ste
                                        .steps = stage.steps ? *stage.steps : count_steps(*stage.duration, step),
                                        .end = stage.end,
                                        .bodies = stage.bodies,
+                                       .renamed_walls = stage.renamed_walls,
                                        .bonds = stage.bonds,
                                        .place = repeated(resolved.document, "stage")[k].where()});
     made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);

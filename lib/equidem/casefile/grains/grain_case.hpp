@@ -28,6 +28,7 @@ struct StageCase {
   std::optional<std::int64_t> steps;  ///< instead
   StageEnd end;
   StageBodies bodies;
+  std::vector<WallRenaming> renamed_walls;
   std::optional<StageBonds> bonds;
   /// As GrainStage::scene; `pairs` is not set. Its bodies are all that the run may have until then, with every group.
   GrainScene scene;

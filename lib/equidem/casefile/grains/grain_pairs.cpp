@@ -217,8 +217,18 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
   if (!is_map(tables.options.law)) bodies.tangential_ratio = constants.ratio();
 }
 
+/// Whether a value stands in one of these tables, or is one of them.
+bool stands_in(std::span<const TomlValue> tables, const TomlValue& value) {
+  return std::ranges::any_of(tables, [&](const TomlValue& table) {
+    return table.where() == value.where() || std::ranges::any_of(table.entries, [&](const TomlEntry& entry) {
+             return entry.value.where() == value.where();
+           });
+  });
+}
+
 /// The error of set_kinds with the line and the key of its option: "walls.stiffness", "pairs.2.with".
-[[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions) {
+/// \param stage that may have given it; null: none
+[[noreturn]] void fail_at_option(const Error& error, const TomlValue& collisions, const TomlValue* stage) {
   std::string option = error.where(), name = "collisions";
   const auto next_segment = [&] {
     const std::size_t dot = std::min(option.find('.'), option.size());
@@ -243,14 +253,18 @@ void take_springs(const TomlValue& root, const GrainTables& tables, PairOptions&
   tables.push_back(&collisions);
   const auto found =
       std::ranges::find_if(tables, [&](const TomlValue* table) { return table->find(option) != nullptr; });
+  const TomlValue& culprit = found == tables.end() ? *tables.front() : *(*found)->find(option);
+  if (stage != nullptr && stands_in(repeated(*stage, "pair"), culprit)) name = "stage.pair";
+  if (const TomlValue* changed = stage != nullptr ? stage->find("collisions") : nullptr)
+    if (stands_in({changed, 1}, culprit)) name = "stage.collisions";
   if (!option.empty()) name += '.' + option;
-  fail_at(found == tables.end() ? *tables.front() : *(*found)->find(option), name, error.problem(), error.why(),
-          error.remedy());
+  fail_at(culprit, name, error.problem(), error.why(), error.remedy());
 }
 
 }  // namespace
 
-void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables) {
+void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables,
+                         const TomlValue* stage) {
   const TomlValue& table = *root.find("collisions");
   const auto& [contact, young_modulus, poisson_ratio, shear_wave_speed] = tables.collisions;
   CollisionOptions options{.body = tables.body, .bodies = contact};
@@ -271,7 +285,7 @@ void complete_collisions(const TomlValue& root, const std::vector<std::string>& 
   try {
     tables.contacts = set_kinds(tables.scene, groups, options, tables.options.law);
   } catch (const Error& error) {
-    fail_at_option(error, table);
+    fail_at_option(error, table, stage);
   }
 }
 

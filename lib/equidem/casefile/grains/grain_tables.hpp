@@ -127,9 +127,11 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainShapes& sha
 
 /// Set the kinds of grains and walls, and the contact properties of every two kinds.
 /// \param groups of each grain
+/// \param stage whose tables have changed those of the case; null: none
 /// \throws Error (bad_input) with line and key as set_kinds; also: wave speeds with several densities,
 ///         [springs] beside a stiffness of [collisions], or that no grain has the density of
-void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables);
+void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables,
+                         const TomlValue* stage = nullptr);
 
 /// The bonds of the file, then those of the case, and their strengths.
 /// \param tables with bodies

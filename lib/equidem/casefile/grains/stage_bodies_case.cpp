@@ -15,6 +15,14 @@ std::vector<Key<BodyChoiceTable>> choice_keys() {
           key("box", &C::box, unit("m"), "those with their centre inside, where the stage begins; left out: anywhere")};
 }
 
+void check_no_wall(const TomlValue& group, const std::string& key, const std::vector<Wall>& walls) {
+  if (std::ranges::find(walls, group.text, &Wall::name) == walls.end()) return;
+  fail_at(group, key, fmt::format("a wall and a group of grains are both called '{}'", group.text),
+          "[[collisions.pair]] chooses them by name", "Give the group another name");
+}
+
+}  // namespace
+
 std::vector<Key<BodyRenamingTable>> renaming_keys() {
   std::vector<Key<BodyRenamingTable>> keys;
   for (const Key<BodyChoiceTable>& of_choice : choice_keys()) {
@@ -23,17 +31,20 @@ std::vector<Key<BodyRenamingTable>> renaming_keys() {
     key.read = [read = of_choice.read](BodyRenamingTable& table, TomlValue& value,
                                        const std::filesystem::path& folder) { read(table.which, value, folder); };
   }
+  keys.push_back(key("wall", &BodyRenamingTable::wall,
+                     not_beside({"group", "box"}, "one table renames bodies or a wall"),
+                     "instead of bodies: this wall, before [[stage.wall]] of the stage is read"));
   keys.push_back(key("to", &BodyRenamingTable::to, required,
-                     "their group from now on, a new one or one that there is: contacts go by it"));
+                     "their group from now on, a new one or one that there is, or the new name of the wall: contacts, "
+                     "and histories of walls, go by it"));
   return keys;
 }
-
-}  // namespace
 
 void bind_stage_bodies(File<GrainTables>& file) {
   file.table("stage.remove", repeated_table, "bodies that are taken away where the stage begins, their bonds too")
       .described(choice_keys());
-  file.table("stage.rename", repeated_table, "bodies that get another group, after those that are taken away")
+  file.table("stage.rename", repeated_table,
+             "bodies that get another group, after those that go; or a wall another name")
       .described(renaming_keys());
   file.table("stage.grains", "bodies of a file that come where the stage begins").described(common_body_keys());
   file.table("stage.grain", repeated_table, "one body that comes, as [[grain]]; those of the file come before it")
@@ -56,7 +67,8 @@ void StagePopulation::check_choice(const TomlValue& table, const std::string& pa
                                    const BodyChoiceTable& choice) const {
   if (!choice.group && !choice.box)
     fail_at(table, path, "neither a group nor a box is given", "all bodies would be chosen",
-            "Give group = ... or box = [x_min, y_min, x_max, y_max]");
+            path == "stage.rename" ? "Give group = ... or box = [x_min, y_min, x_max, y_max], or the name of a wall"
+                                   : "Give group = ... or box = [x_min, y_min, x_max, y_max]");
   if (choice.box) check_box(*table.find("box"), path + ".box", choice.box->low, choice.box->high);
   if (!choice.group || std::ranges::find(groups_, *choice.group) != groups_.end()) return;
   const auto meant = nearest(*choice.group, groups_);
@@ -74,19 +86,25 @@ bool StagePopulation::read(const TomlValue& root, TomlValue& stage, const std::f
     check_choice(table, "stage.remove", removed_.back());
   }
   for (const TomlValue& table : repeated(stage, "rename")) {
-    BodyRenamingTable& renaming = renamed_.emplace_back();
+    BodyRenamingTable renaming;
     read_table(renaming_keys(), table, renaming);
+    if (renaming.wall) continue;
     check_choice(table, "stage.rename", renaming.which);
     check_group_name(*table.find("to"), "stage.rename.to");
+    check_no_wall(*table.find("to"), "stage.rename.to", tables.scene.walls);
     for (std::size_t k = 0, count = grains_.size(); k < count; ++k)
       if (!renaming.which.group || *renaming.which.group == groups_[k])
         add(numbers_[k], Grain(grains_[k]), renaming.to);
+    renamed_.push_back(std::move(renaming));
   }
   CommonBodyTable common;
   if (TomlValue* table = stage.find("grains")) read_table_in_place(common_body_keys(), *table, folder, common);
   if (!common.density) common.density = tables.common.density;
   std::vector<GrainTable> read;
-  for (const TomlValue& table : repeated(stage, "grain")) read_table(grain_keys(), table, read.emplace_back());
+  for (const TomlValue& table : repeated(stage, "grain")) {
+    read_table(grain_keys(), table, read.emplace_back());
+    check_no_wall(*table.find("group"), "stage.grain.group", tables.scene.walls);
+  }
   const GrainRows rows = bodies_of(root, stage, "stage.", common, read, shapes, tables);
   for (std::size_t k = 0; k < rows.grains.size(); ++k) {
     add(first_groups_.size(), rows.grains[k], rows.groups[k]);

@@ -22,11 +22,13 @@ struct BodyChoiceTable {
   std::optional<Rectangle> box;  ///< m
 };
 
-/// [[stage.rename]].
+/// [[stage.rename]]: bodies, or a wall.
 struct BodyRenamingTable {
   BodyChoiceTable which;
+  std::optional<std::string> wall;
   std::string to;
 };
+std::vector<Key<BodyRenamingTable>> renaming_keys();
 
 /// All bodies of a run up to a stage, each as often as there are groups that it may have: their kinds and the masses
 /// that meet in contacts do not depend on where bodies will be.
@@ -36,7 +38,7 @@ class StagePopulation {
 
   /// Go on to the next stage.
   /// \param[in,out] stage its table; paths become those that the program opens
-  /// \param tables get the densities of bodies that are added
+  /// \param tables with the walls of all stages; get the densities of bodies that are added
   /// \return whether it changes bodies
   /// \throws Error (bad_input) with line and key: a choice of all bodies, a group that no body has, a box without area,
   ///         names that are not plain, bodies as those of the case

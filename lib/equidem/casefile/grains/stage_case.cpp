@@ -3,11 +3,11 @@
 /// [[stage]]: a run in stages.
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/stage_bodies_case.hpp"
+#include "equidem/casefile/grains/stage_walls_case.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -18,13 +18,6 @@ struct UntilTable {
   std::optional<double> kinetic, unbalanced, strain, displacement;
   std::optional<std::string> from, to, wall;
   std::optional<StageEnd::CellStrain> component;
-};
-
-/// [[stage.wall]]: a wall of another motion, or a new one.
-struct StageWallTable {
-  WallTable wall;
-  bool removed = false;
-  std::optional<Vec2> velocity;  ///< m/s
 };
 
 std::vector<Key<UntilTable>> until_keys() {
@@ -46,135 +39,14 @@ std::vector<Key<UntilTable>> until_keys() {
       key("wall", &U::wall, only_with({"displacement"}, "it says whose way counts"), "that wall")};
 }
 
-/// The keys of a wall, none of them required: a wall that is there gets another motion.
-std::vector<Key<StageWallTable>> stage_wall_keys() {
-  std::vector<Key<StageWallTable>> keys;
-  for (const Key<WallTable>& of_wall : wall_keys(BodyFamily::colliding)) {
-    Key<StageWallTable>& key = keys.emplace_back();
-    key.spec = of_wall.spec;
-    if (key.spec.name == "name") {
-      key.spec.help = "of a wall that is there: its motion in this stage, none where none is given; or of a new wall";
-    } else if (key.spec.name == "shaken") {
-      key.spec.help = "false: [stage.shaking] does not move it, in later stages neither";
-    } else if (key.spec.is_required()) {
-      key.spec.fallback = KeySpec::none;
-    }
-    if (of_wall.read)
-      key.read = [read = of_wall.read](StageWallTable& table, TomlValue& value, const std::filesystem::path& folder) {
-        read(table.wall, value, folder);
-      };
-  }
-  keys.push_back(key("removed", &StageWallTable::removed, optional, "true: the wall is taken away"));
-  keys.push_back(key("velocity", &StageWallTable::velocity, unit("m/s"),
-                     not_beside({"displacement"}, "each says how the wall moves"), "constant in this stage"));
-  return keys;
-}
-
 template <class Walls>
 auto find_wall(Walls& walls, const std::string& name) {
   return std::ranges::find(walls, name, &Wall::name);
 }
 
-/// \throws Error where a servo needs a wall that goes
-void check_removal(const TomlValue& table, const std::vector<Wall>& walls, const std::string& name) {
-  for (const Wall& wall : walls) {
-    if (!wall.servo) continue;
-    const Servo& servo = *wall.servo;
-    if (servo.mirror != name && servo.between[0] != name && servo.between[1] != name) continue;
-    fail_at(table, "stage.wall", fmt::format("wall '{}' is removed", name),
-            fmt::format("the servo of wall '{}' {}", wall.name,
-                        servo.mirror == name ? "moves it as its mirror" : "measures its length to it"),
-            fmt::format("Name '{}' in this stage too, without that servo", wall.name));
-  }
-}
-
-/// The shape is the only key with a default that stands in every table of a wall.
-bool is_default(const TomlEntry& entry) {
-  return entry.name == "shape" && entry.value.text == to_string(Wall::Shape::line);
-}
-
-void move_at(Wall& wall, Vec2 velocity) {
-  constexpr double longest = 1e9;  // s; a limit of the stage may be raised
-  const auto ramp = [&](double speed) {
-    return Schedule{.kind = Schedule::Kind::table, .times = {0, longest}, .values = {0, speed * longest}};
-  };
-  if (velocity.x != 0) wall.move_x = ramp(velocity.x);
-  if (velocity.y != 0) wall.move_y = ramp(velocity.y);
-}
-
-/// Change the walls of the stage before by one [[stage.wall]].
-/// \param known walls of all stages so far
-void change_wall(const TomlValue& table, std::span<const NamedSchedule> schedules, const std::vector<Wall>& known,
-                 std::vector<Wall>& walls) {
-  StageWallTable read;
-  read_table(stage_wall_keys(), table, read);
-  const std::string& name = read.wall.wall.name;
-  const auto at = find_wall(walls, name);
-  if (read.removed) {
-    if (at == walls.end())
-      fail_at(table, "stage.wall", fmt::format("there is no wall '{}'", name), "",
-              "Remove a wall that stands in the stage before");
-    for (const TomlEntry& entry : table.entries)
-      if (entry.name != "name" && entry.name != "removed" && !is_default(entry))
-        fail_at(entry.value, fmt::format("stage.wall.{}", entry.name),
-                fmt::format("wall '{}' is removed and has a {}", name, entry.name), "a wall that is gone does not move",
-                "Remove one of them");
-    walls.erase(at);
-    return;
-  }
-  Wall wall;
-  if (at != walls.end()) {
-    for (const char* key : {"shape", "point", "normal", "end", "centre", "radius"})
-      if (const TomlValue* given = table.find(key); given != nullptr && !is_default({key, *given}))
-        fail_at(*given, fmt::format("stage.wall.{}", key), fmt::format("wall '{}' is there already", name),
-                "it stays where it is when a stage begins", "Leave the key out, or give the new wall another name");
-    wall = *at;
-    wall.move_x = wall.move_y = {};
-    wall.servo.reset();
-    read.wall.wall = wall;
-    set_motion(table, "stage.wall", read.wall, schedules, wall);
-    if (table.find("displacement") != nullptr)
-      with_key(table, "stage.wall", table.find("schedule") != nullptr ? "schedule" : "displacement",
-               [&] { check_start(wall); });
-  } else {
-    if (find_wall(known, name) != known.end())
-      fail_at(table, "stage.wall.name", fmt::format("wall '{}' is new, and an earlier one had that name", name),
-              "histories and contacts go by the names of walls", "Give the new wall another name");
-    for (const char* key : read.wall.wall.shape == Wall::Shape::line      ? std::array{"point", "normal"}
-                           : read.wall.wall.shape == Wall::Shape::segment ? std::array{"point", "end"}
-                                                                          : std::array{"centre", "radius"})
-      if (table.find(key) == nullptr)
-        fail_at(table, fmt::format("stage.wall.{}", key), "missing key",
-                fmt::format("'{}' is a new wall, and none of that name stands in the stage before", name),
-                fmt::format("Add {} = ... to [[stage.wall]], or correct the name", key));
-    wall = wall_of(table, "stage.wall", read.wall, schedules);
-  }
-  if (read.velocity) move_at(wall, *read.velocity);
-  read_servo(table, "stage.wall", schedules, wall);
-  at == walls.end() ? walls.push_back(wall) : void(*at = wall);
-}
-
-/// The walls of a stage, from those of the stage before.
-/// \param[in,out] still names of walls that do not shake
-std::vector<Wall> walls_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
-                                 const std::vector<Wall>& known, std::set<std::string>& still,
-                                 std::vector<Wall> walls) {
-  check_names(stage, "wall");
-  for (Wall& wall : walls) wall.move_x = wall.move_y = {};
-  for (const TomlValue& table : repeated(stage, "wall")) {
-    change_wall(table, schedules, known, walls);
-    if (const TomlValue* shaken = table.find("shaken"))
-      shaken->boolean ? void(still.erase(table.find("name")->text)) : void(still.insert(table.find("name")->text));
-  }
-  for (const TomlValue& table : repeated(stage, "wall"))
-    if (const TomlValue* removed = table.find("removed"); removed != nullptr && removed->boolean)
-      check_removal(table, walls, table.find("name")->text);
-  return walls;
-}
-
 /// The shaking of a stage; its walls move by it.
 std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path& folder,
-                                   const std::optional<double>& duration, const std::set<std::string>& still,
+                                   const std::optional<double>& duration, const StageWalls& standing,
                                    std::vector<Wall>& walls) {
   TomlValue* table = stage.find("shaking");
   if (table == nullptr) return {};
@@ -183,8 +55,13 @@ std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path
   const Shaking shaking = read_shaking(*table, "stage.shaking", read, duration);
   bool any = false;
   for (Wall& wall : walls) {
-    if (still.contains(wall.name)) continue;
+    if (!standing.shakes(wall)) continue;
     any = true;
+    for (const Wall& owner : walls)
+      if (owner.servo && (owner.name == wall.name || owner.servo->mirror == wall.name) &&
+          std::abs(dot(owner.servo->direction, shaking.direction)) > 1e-9)
+        fail_at(*table, "stage.shaking", fmt::format("wall '{}' shakes along the direction of its servo", wall.name),
+                "it cannot keep a force and a motion", "Shake across it, or give the wall shaken = false");
     with_place(fmt::format("{}: stage.shaking", table->where()), [&] {
       shake({&wall, 1}, shaking.direction, shaking.motion.displacement);
     });
@@ -195,7 +72,7 @@ std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path
   return shaking;
 }
 
-StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls, const std::optional<PeriodicCell>& cell) {
+StageEnd end_of_stage(const TomlValue& stage, const std::vector<Wall>& walls, const std::optional<PeriodicCell>& cell) {
   StageEnd end;
   const TomlValue* table = stage.find("until");
   if (table == nullptr) return end;
@@ -220,13 +97,13 @@ StageEnd end_of_stage(const TomlValue& stage, std::vector<Wall>& walls, const st
     fail_at(*table, "stage.until", "nothing is given that ends the stage", "its duration ends it without that table",
             "Give kinetic, unbalanced, strain or displacement, or leave it out");
   if (end.strain > 0 && !end.of_cell && end.walls[0] == end.walls[1])
-    fail_at(*table, "stage.until.to", "both walls are the same", "the distance of a wall to itself does not change",
-            "Name two walls");
+    fail_at(*table->find("to"), "stage.until.to", "both walls are the same",
+            "the distance of a wall to itself does not change", "Name two walls");
   if (end.strain > 0 && !end.of_cell) {
     const Wall &from = *find_wall(walls, end.walls[0]), &to = *find_wall(walls, end.walls[1]);
     const bool lines = from.shape == Wall::Shape::line && to.shape == Wall::Shape::line;
     if (!lines || norm(from.normal + to.normal) > 1e-9 || dot(to.point - from.point, from.normal) == 0)
-      fail_at(*table, "stage.until.strain",
+      fail_at(*table->find("to"), "stage.until.to",
               fmt::format("the walls '{}' and '{}' do not face each other", from.name, to.name),
               "the strain is the change of the distance of two parallel lines", "Name two lines with opposite normals");
   }
@@ -238,6 +115,33 @@ void replace_keys(TomlValue& table, const TomlValue& by) {
   for (const TomlEntry& entry : by.entries) {
     TomlValue* old = table.find(entry.name);
     old != nullptr ? void(*old = entry.value) : void(table.entries.push_back(entry));
+  }
+}
+
+/// Pairs of a stage name walls that stand from then on, and each two once.
+/// \param all walls of all stages; \param to_come the stage and later ones
+void check_stage_pairs(const std::vector<TomlValue>& pairs, const std::vector<Wall>& all,
+                       std::span<const StageCase> to_come) {
+  const auto names = [](const TomlValue& pair) {
+    return std::minmax(pair.find("group")->text, pair.find("with")->text);
+  };
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    for (std::size_t earlier = 0; earlier < k; ++earlier)
+      if (names(pairs[earlier]) == names(pairs[k]))
+        fail_at(pairs[k], "stage.pair",
+                fmt::format("'{}' and '{}' are a pair twice", names(pairs[k]).first, names(pairs[k]).second),
+                "two bodies meet in one way", "Keep one of them");
+    const TomlValue& with = *pairs[k].find("with");
+    const auto stands = [&](const StageCase& stage) {
+      return find_wall(stage.scene.walls, with.text) != stage.scene.walls.end();
+    };
+    if (find_wall(all, with.text) == all.end() || std::ranges::any_of(to_come, stands)) continue;
+    const std::vector<WallRenaming>& renamed = to_come.front().renamed_walls;
+    const auto renaming = std::ranges::find(renamed, with.text, &WallRenaming::from);
+    fail_at(with, "stage.pair.with", fmt::format("no wall '{}' stands in this stage or a later one", with.text),
+            "nothing would meet it",
+            renaming != renamed.end() ? fmt::format("Write with = \"{}\", its new name", renaming->to)
+                                      : "Name a wall that stands, or remove the pair");
   }
 }
 
@@ -306,41 +210,38 @@ void bind_stages(File<GrainTables>& file) {
   bind_stage_bodies(file);
   file.table("stage.pair", repeated_table, "contacts of two groups, or of a group and a wall, from now on")
       .described(pair_keys());
-  file.table("stage.wall", repeated_table, "a wall that is new, goes, or moves otherwise; without a motion it stands")
-      .described(stage_wall_keys());
-  file.table("stage.wall.servo", "as [wall.servo]; its schedule begins with the stage").described(servo_keys());
+  bind_stage_walls(file);
 }
 
 std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& folder,
                               std::span<const NamedSchedule> schedules, GrainTables& tables) {
   check_names(root, "stage");
   if (!tables.stage_tables.empty()) refuse_beside_stages(root);
-  std::vector<Wall> all = tables.scene.walls, walls = all;
+  StageWalls walls(tables.scene.walls, tables.wall_tables);
   std::optional<PeriodicCell> cell = tables.scene.cell;
-  std::set<std::string> still;
-  for (const WallTable& wall : tables.wall_tables)
-    if (!wall.shaken) still.insert(wall.wall.name);
   for (std::size_t k = 0; k < tables.stage_tables.size(); ++k) {
     TomlValue& table = root.find("stage")->items[k];
     check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
     const StageTable& read = tables.stage_tables[k];
-    walls = walls_of_stage(table, schedules, all, still, walls);
+    walls.read(table, schedules);
+    if (k == 0 && !walls.renamed().empty())
+      fail_at(table, "stage.rename", fmt::format("the first stage renames the wall '{}'", walls.renamed()[0].from),
+              "it begins with the walls of the case", "Give it that name in [[wall]], or rename it in a later stage");
     cell = cell_of_stage(table, schedules, cell);
     StageCase& stage = tables.stages.emplace_back();
     stage.name = read.name;
     stage.duration = read.duration;
     stage.steps = read.steps;
     if (const TomlValue* bonds = table.find("bonds")) stage.bonds = read_stage_bonds(*bonds, tables, k);
-    stage.end = end_of_stage(table, walls, cell);
-    stage.scene.walls = walls;
-    stage.shaking = shake_stage(table, folder, read.duration, still, stage.scene.walls);
+    stage.scene.walls = walls.walls();
+    stage.renamed_walls = walls.renamed();
+    stage.end = end_of_stage(table, stage.scene.walls, cell);
+    stage.shaking = shake_stage(table, folder, read.duration, walls, stage.scene.walls);
     stage.scene.cell = cell;
     stage.scene.gravity = read.gravity.value_or(k == 0 ? tables.scene.gravity : tables.stages[k - 1].scene.gravity);
     tables.duration += stage.duration.value_or(INFINITY);
-    for (const Wall& wall : walls)
-      if (find_wall(all, wall.name) == all.end()) all.push_back(wall);
   }
-  return all;
+  return walls.all();
 }
 
 void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::vector<std::string>& groups,
@@ -356,8 +257,10 @@ void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::
       fail_at(table, "stage", "the first stage changes the grains", "it begins with those of the case",
               "Give the case those grains, or do it in a later stage");
     changed.scene.grains = population.grains();
+    check_stage_pairs(repeated(table, "pair"), all, std::span(tables.stages).subspan(k));
     const bool other_contacts = change_contacts(table, contacts_now, changed.collisions.contact);
-    if (other_contacts || other_bodies || k == 0) complete_collisions(contacts_now, population.groups(), changed);
+    if (other_contacts || other_bodies || k == 0)
+      complete_collisions(contacts_now, population.groups(), changed, &table);
     StageCase& stage = tables.stages[k];
     stage.bodies = population.changes(changed.scene.grains);
     std::vector<Wall> walls = std::move(stage.scene.walls);

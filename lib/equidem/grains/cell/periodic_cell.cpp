@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "equidem/core/error.hpp"
@@ -108,22 +107,9 @@ void check_deformation(const GrainScene& scene, const GrainOptions& options) {
               "a step mends that share of the difference, and more than 1 overshoots", "Take 0.1");
 }
 
-double inscribed_radius(const Grain& grain, const std::vector<Clump>& clumps) {
-  switch (grain.shape()) {
-    case GrainShape::clump:
-      return std::ranges::min(clumps[static_cast<std::size_t>(grain.clump)].discs, {}, &Clump::Disc::radius).radius;
-    case GrainShape::ellipse:
-      return grain.short_half_axis;
-    case GrainShape::disc:
-      break;
-  }
-  return grain.radius;
-}
-
 /// As refuse_long_ways_in_cell, before candidates are looked for as far as bodies may come.
 void check_speeds(const GrainScene& scene, const GrainOptions& options) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const Grain& grain : scene.grains) smallest = std::min(smallest, inscribed_radius(grain, scene.clumps));
+  const double smallest = smallest_inscribed_radius(scene);
   for (std::size_t g = 0; g < scene.grains.size(); ++g) {
     const Grain& grain = scene.grains[g];
     const double turning = grain.shape() == GrainShape::disc ? 0 : std::abs(grain.spin) * grain.radius;

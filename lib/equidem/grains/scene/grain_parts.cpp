@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -31,6 +32,24 @@ std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& cl
   const auto place = [](const GrainPart& part) { return std::tuple(part.offset.x, part.offset.y, part.a); };
   std::sort(parts.begin(), parts.end(), [&](const GrainPart& p, const GrainPart& q) { return place(p) < place(q); });
   return parts;
+}
+
+double inscribed_radius(const Grain& grain, std::span<const Clump> clumps) {
+  switch (grain.shape()) {
+    case GrainShape::clump:
+      return std::ranges::min(clumps[static_cast<std::size_t>(grain.clump)].discs, {}, &Clump::Disc::radius).radius;
+    case GrainShape::ellipse:
+      return grain.short_half_axis;
+    case GrainShape::disc:
+      break;
+  }
+  return grain.radius;
+}
+
+double smallest_inscribed_radius(const GrainScene& scene) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Grain& grain : scene.grains) smallest = std::min(smallest, inscribed_radius(grain, scene.clumps));
+  return smallest;
 }
 
 Vec2 axis_at(double angle) {

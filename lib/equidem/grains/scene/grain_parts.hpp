@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "equidem/contact/shapes/ellipse.hpp"
@@ -24,6 +25,11 @@ bool has_shapes(const GrainScene& scene);
 
 /// Parts of a grain; those of a clump sorted by position, so that results do not depend on the caller's order.
 std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& clumps);
+
+/// Radius of the smallest circle that is inscribed in a part of a grain, m.
+double inscribed_radius(const Grain& grain, std::span<const Clump> clumps);
+/// The smallest of all grains, m; infinite without grains.
+double smallest_inscribed_radius(const GrainScene& scene);
 
 /// The x-axis of a body as unit vector, to 1e-15; bit-identical on every machine.
 Vec2 axis_at(double angle);

@@ -41,6 +41,11 @@ std::vector<std::string> check_pairs(const CollisionOptions& options, const std:
   std::vector<std::string> apart;
   for (std::size_t k = 0; k < options.pairs.size(); ++k) {
     const CollisionOptions::Pair& pair = options.pairs[k];
+    if (!contains(groups, pair.group) && contains(names_of(walls), pair.group))
+      bad_input_at(fmt::format("pairs.{}.group", k), fmt::format("'{}' is no group of grains but a wall", pair.group),
+                   contains(groups, pair.with) ? "group names grains, and with names grains or a wall"
+                                               : "walls do not meet one another",
+                   contains(groups, pair.with) ? "Exchange group and with" : "Name a group of grains");
     check_name(pair.group, fmt::format("pairs.{}.group", k), groups, walls, false);
     check_name(pair.with, fmt::format("pairs.{}.with", k), groups, walls, true);
     if (!contains(groups, pair.with) && !contains(apart, pair.with)) apart.push_back(pair.with);

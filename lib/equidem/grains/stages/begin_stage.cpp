@@ -162,14 +162,27 @@ GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, con
   return scene;
 }
 
+/// The number of each wall of a stage in the stage before; -1: it is new.
+std::vector<std::int32_t> StagedSimulation::wall_origins(std::size_t stage) const {
+  const std::vector<std::string> before = names_of(stages_[stage - 1].scene.walls);
+  std::vector<std::int32_t> origins;
+  for (const Wall& wall : stages_[stage].scene.walls) {
+    const auto renamed = std::ranges::find(stages_[stage].renamed_walls, wall.name, &WallRenaming::to);
+    const std::string& name = renamed == stages_[stage].renamed_walls.end() ? wall.name : renamed->from;
+    const auto at = std::ranges::find(before, name);
+    origins.push_back(at == before.end() ? -1 : static_cast<std::int32_t>(at - before.begin()));
+  }
+  return origins;
+}
+
 /// The places of the walls of a stage that follows the present one.
 std::vector<Vec2> StagedSimulation::places_in(std::size_t stage) const {
   const std::vector<WallState> standing = present_->walls();
+  const std::vector<std::int32_t> origins = wall_origins(stage);
   std::vector<Vec2> places;
-  for (const Wall& wall : stages_[stage].scene.walls) {
-    const auto standing_one = std::ranges::find(standing, wall.name, &WallState::name);
-    places.push_back(standing_one == standing.end() ? wall.point : standing_one->place);
-  }
+  for (std::size_t w = 0; w < origins.size(); ++w)
+    places.push_back(origins[w] < 0 ? stages_[stage].scene.walls[w].point
+                                    : standing[static_cast<std::size_t>(origins[w])].place);
   return places;
 }
 
@@ -189,9 +202,10 @@ void StagedSimulation::begin_stage() {
     bonds = bonds_of(next, bonds_, start, contacts);
     simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_,
                                                    order_now(present_->order(), changed.origins));
-    simulation->take_over(*present_,
-                          {changed.origins, bond_origins(bonds_between(numbers(), bonds_).numbers,
-                                                         bonds_between(start.bodies.numbers, bonds).numbers)});
+    simulation->take_over(*present_, {changed.origins,
+                                      bond_origins(bonds_between(numbers(), bonds_).numbers,
+                                                   bonds_between(start.bodies.numbers, bonds).numbers),
+                                      wall_origins(next)});
   } catch (const Error& error) {
     throw error.at(stages_[next].where());
   }
@@ -203,7 +217,10 @@ void StagedSimulation::begin_stage() {
                       .removed = changed.removed,
                       .renamed = changed.renamed,
                       .added = how.added.size(),
-                      .bonds_made = bonds.all.size() - bonds_.all.size()});
+                      .bonds_made = bonds.all.size() - bonds_.all.size(),
+                      .renamed_walls = stages_[next].renamed_walls,
+                      .idle_removals = changed.idle_removals,
+                      .idle_renamings = changed.idle_renamings});
   present_ = std::move(simulation);
   start_ = std::move(start);
   bonds_ = std::move(bonds);

@@ -47,6 +47,7 @@ struct ChangedBodies {
   PresentBodies now;
   std::vector<std::int32_t> origins;  ///< place of each among those before; -1: it is new
   std::size_t removed = 0, renamed = 0;
+  std::vector<std::size_t> idle_removals, idle_renamings;  ///< numbers of choices that held no body
 };
 
 /// \param first_added number in the run of the first body that is added

@@ -111,10 +111,10 @@ StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOp
           fmt::format("of the bonds of stage '{}' and those before it some alone have strengths", stages_[k].name),
           "those without would never break, and none says so", "Give strengths to all bonds, or to none");
     if (const auto& made = stages_[k].bonds) check(*made, first.scene.grains, options_);
-    for (const Wall& wall : stages_[k].scene.walls)
-      if (k > 0 &&
-          std::ranges::find(stages_[k - 1].scene.walls, wall.name, &Wall::name) != stages_[k - 1].scene.walls.end())
-        check_start(wall);
+    if (k == 0) continue;
+    const std::vector<std::int32_t> origins = wall_origins(k);
+    for (std::size_t w = 0; w < origins.size(); ++w)
+      if (origins[w] >= 0) check_start(stages_[k].scene.walls[w]);
   }
   start_ = start_of_first();
   bonds_ = bonds_at_start();
@@ -156,7 +156,9 @@ void StagedSimulation::look_for_end() {
   } else {
     report.over = done == stage.steps;
   }
-  if (report.over) report.servos = present_->servos();
+  if (!report.over) return;
+  report.servos = present_->servos();
+  if (const auto cell = present_->cell()) report.cell_servos = cell->servos;
 }
 
 bool StagedSimulation::holds(const StageEnd& end) {

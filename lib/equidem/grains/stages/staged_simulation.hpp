@@ -39,18 +39,24 @@ struct StageEnd {
   [[nodiscard]] bool given() const { return at_rest() || strain > 0 || displacement > 0; }
 };
 
+/// A wall gets another name where a stage begins.
+struct WallRenaming {
+  std::string from, to;
+};
+
 /// \param scene its bodies, bonds and strengths count in the first stage alone, its clumps are those of all bodies so
-///        far, its walls are all that there are. Of a wall that was there in the stage before, the place is not read:
-///        it stays where it is. All stages have a periodic cell or none; its periods count in the first stage alone.
-///        Schedules begin with the stage.
+///        far, its walls are all that there are. Of a wall that was there in the stage before, by its name or by
+///        renamed_walls, the place is not read: it stays where it is. All stages have a periodic cell or none; its
+///        periods count in the first stage alone. Schedules begin with the stage.
 struct GrainStage {
   std::string name;
   GrainScene scene;
   std::int64_t steps = 0;  ///< its length or, with an end, its limit
   StageEnd end = {};
-  StageBodies bodies = {};               ///< changed at its start; of the first stage not at all
-  std::optional<StageBonds> bonds = {};  ///< made at its start, then
-  std::string place = {};                ///< in the user's input, for messages; empty: not known
+  StageBodies bodies = {};                       ///< changed at its start; of the first stage not at all
+  std::vector<WallRenaming> renamed_walls = {};  ///< the scene has the new names
+  std::optional<StageBonds> bonds = {};          ///< made at its start, then
+  std::string place = {};                        ///< in the user's input, for messages; empty: not known
 
   [[nodiscard]] std::string where() const { return (place.empty() ? "" : place + ": ") + "stage '" + name + "'"; }
 };
@@ -72,7 +78,11 @@ struct StageReport {
   std::vector<std::string> effects = {};                             ///< names of those that were active
   std::size_t removed = 0, renamed = 0, added = 0;                   ///< bodies, at its start
   std::size_t bonds_made = 0;                                        ///< likewise
-  std::vector<ServoReport> servos = {};                              ///< at its end; empty before
+  std::vector<WallRenaming> renamed_walls = {};                      ///< likewise
+  /// Numbers of removals and renamings (StageBodies) that held no body at its start.
+  std::vector<std::size_t> idle_removals = {}, idle_renamings = {};
+  std::vector<ServoReport> servos = {};           ///< at its end; empty before
+  std::vector<CellServoReport> cell_servos = {};  ///< likewise
 };
 
 /// The effects of all stages together: active is what is so in any of them.
@@ -137,7 +147,9 @@ class StagedSimulation final : public AnySimulation {
   /// stage_cell: width, height, shift, corner and strain of the cell there; stage_bodies: numbers and kinds of the
   /// bodies in the order of the loops; stage_motions, stage_velocities: of the bodies at the start of the present
   /// stage, where it is not the first; stage_bonds: made so far, with stage, i, j, rest and strengths; stage_breaks: of
-  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_energies.
+  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_cell_servos: likewise of
+  /// cells; stage_idle: stage, 1 for
+  /// a renaming, number of a choice that held no body; stage_energies.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
   /// The number of stages that have begun in a saved state; 0: it is of no simulation in stages.
@@ -170,6 +182,7 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] static SceneBonds bonds_between(const std::vector<std::size_t>& bodies, const Bonds& bonds);
   [[nodiscard]] GrainScene scene_of(std::size_t stage, std::int64_t first, const Start& start,
                                     const Bonds& bonds) const;
+  [[nodiscard]] std::vector<std::int32_t> wall_origins(std::size_t stage) const;
   [[nodiscard]] std::vector<Vec2> places_in(std::size_t stage) const;
   [[nodiscard]] Start start_of_first() const;
   [[nodiscard]] Bonds bonds_at_start() const;

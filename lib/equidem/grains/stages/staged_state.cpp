@@ -12,7 +12,7 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t numbers_per_stage = 11, numbers_of_made_bond = 9, numbers_of_servo_report = 7,
-                      numbers_of_cell_start = 8;
+                      numbers_of_cell_start = 8, numbers_of_idle_choice = 3, numbers_of_cell_servo_report = 7;
 
 /// \param effects all that there are, in the order of their bits
 std::vector<double> numbers_of_reports(const std::vector<StageReport>& reports, const Effects& effects) {
@@ -46,6 +46,26 @@ std::vector<double> numbers_of_servos(const std::vector<StageReport>& reports) {
   return numbers;
 }
 
+std::vector<double> numbers_of_cell_servos(const std::vector<StageReport>& reports) {
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < reports.size(); ++k)
+    for (const CellServoReport& servo : reports[k].cell_servos)
+      numbers.insert(numbers.end(),
+                     {static_cast<double>(k), servo.component == "xx" ? 0.0 : 1.0, servo.reached ? 1.0 : 0.0,
+                      servo.wanted, servo.stress, servo.overshoot, servo.mean_error});
+  return numbers;
+}
+
+std::vector<double> numbers_of_idle(const std::vector<StageReport>& reports) {
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < reports.size(); ++k)
+    for (const auto& [renames, choices] :
+         {std::pair{0.0, &reports[k].idle_removals}, {1.0, &reports[k].idle_renamings}})
+      for (const std::size_t choice : *choices)
+        numbers.insert(numbers.end(), {static_cast<double>(k), renames, static_cast<double>(choice)});
+  return numbers;
+}
+
 /// A report of a stage, without what it added and made.
 StageReport report_of(const std::string& name, const double* row, const Effects& effects) {
   return {.name = name,
@@ -64,6 +84,39 @@ StageReport report_of(const std::string& name, const double* row, const Effects&
 
 [[noreturn]] void refuse_state(const std::string& what, const std::string& why) {
   bad_input(what, why, "Go on with the case that the state was saved from");
+}
+
+void take_cell_servos(const std::vector<double>& numbers, std::vector<StageReport>& reports) {
+  for (std::size_t at = 0; at + numbers_of_cell_servo_report <= numbers.size(); at += numbers_of_cell_servo_report) {
+    const double* n = numbers.data() + at;
+    if (!(n[0] >= 0) || n[0] >= static_cast<double>(reports.size()))
+      refuse_state("the saved state reports stresses of a cell in a stage to come", "its file may be damaged");
+    reports[static_cast<std::size_t>(n[0])].cell_servos.push_back({.component = n[1] == 0 ? "xx" : "yy",
+                                                                   .reached = n[2] != 0,
+                                                                   .wanted = n[3],
+                                                                   .stress = n[4],
+                                                                   .overshoot = n[5],
+                                                                   .mean_error = n[6]});
+  }
+}
+
+/// Choices of bodies that held none.
+void take_idle(const std::vector<double>& numbers, const std::vector<GrainStage>& stages,
+               std::vector<StageReport>& reports) {
+  for (std::size_t at = 0; at + numbers_of_idle_choice <= numbers.size(); at += numbers_of_idle_choice) {
+    const double* n = numbers.data() + at;
+    const auto below = [](double number, std::size_t end) { return number >= 0 && number < static_cast<double>(end); };
+    if (!below(n[0], reports.size()) || !below(n[1], 2))
+      refuse_state("the saved state tells of choices of bodies in a stage to come", "its file may be damaged");
+    const auto stage = static_cast<std::size_t>(n[0]);
+    const StageBodies& how = stages[stage].bodies;
+    if (!below(n[2], n[1] == 0 ? how.removed.size() : how.renamed.size()))
+      refuse_state(
+          fmt::format("the saved state tells of choices of bodies that stage '{}' does not make", reports[stage].name),
+          "its file may be damaged");
+    (n[1] == 0 ? reports[stage].idle_removals : reports[stage].idle_renamings)
+        .push_back(static_cast<std::size_t>(n[2]));
+  }
 }
 
 /// Reports of servo walls; names are those of the walls of the stage, in their order.
@@ -133,6 +186,8 @@ SavedState StagedSimulation::save() const {
   state.arrays.push_back(std::move(made));
   state.arrays.push_back({"stage_breaks", numbers_per_break, numbers_of(past_breaks_)});
   state.arrays.push_back({"stage_servos", numbers_of_servo_report, numbers_of_servos(reports_)});
+  state.arrays.push_back({"stage_cell_servos", numbers_of_cell_servo_report, numbers_of_cell_servos(reports_)});
+  state.arrays.push_back({"stage_idle", numbers_of_idle_choice, numbers_of_idle(reports_)});
   state.arrays.push_back({"stage_energies", 1, {initial_, potential_, changes_}});
   return state;
 }
@@ -235,8 +290,11 @@ void StagedSimulation::restore(const SavedState& state) {
         reports.emplace_back(report_of(stages_[k].name, stages.data() + numbers_per_stage * k, simulation->effects()));
     report.added = stages_[k].bodies.added.size();
     report.bonds_made = static_cast<std::size_t>(std::ranges::count(bonds.stages, k));
+    report.renamed_walls = stages_[k].renamed_walls;
   }
   take_servos(state["stage_servos"], stages_, reports);
+  take_cell_servos(state["stage_cell_servos"], reports);
+  take_idle(state["stage_idle"], stages_, reports);
   past_breaks_ = std::move(past);
   present_ = std::move(simulation);
   reports_ = std::move(reports);
@@ -248,6 +306,7 @@ void StagedSimulation::restore(const SavedState& state) {
   if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) {
     last.over = false;
     last.servos.clear();
+    last.cell_servos.clear();
   }
 }
 

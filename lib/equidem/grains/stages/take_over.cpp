@@ -14,16 +14,6 @@
 namespace equidem {
 namespace {
 
-/// The place of each wall among others of the same name; -1: there is none.
-std::vector<std::int32_t> places_among(const std::vector<Wall>& walls, const std::vector<Wall>& others) {
-  std::vector<std::int32_t> places;
-  for (const Wall& wall : walls) {
-    const auto found = std::ranges::find(others, wall.name, &Wall::name);
-    places.push_back(found == others.end() ? -1 : static_cast<std::int32_t>(found - others.begin()));
-  }
-  return places;
-}
-
 /// Places of bodies and walls in the loops of two simulations, one after the other; -1: there is none.
 struct Places {
   std::vector<std::int32_t> bodies_now, bodies_then;  ///< of the bodies of the first, and of those of the second
@@ -32,13 +22,19 @@ struct Places {
   Places(const GrainSystem& old, const GrainSystem& own, const SceneOrigins& origins)
       : bodies_now(old.bodies.grain_of.size(), -1),
         bodies_then(own.bodies.grain_of.size(), -1),
-        walls_now(places_among(old.scene.walls, own.scene.walls)),
-        walls_then(places_among(own.scene.walls, old.scene.walls)) {
+        walls_now(old.scene.walls.size(), -1),
+        walls_then(own.scene.walls.size(), -1) {
     for (std::size_t k = 0; k < bodies_then.size(); ++k) {
       const std::int32_t origin = origins.bodies[own.bodies.grain_of[k]];
       if (origin < 0) continue;
       bodies_then[k] = old.bodies.place_of_grain[static_cast<std::size_t>(origin)];
       bodies_now[static_cast<std::size_t>(bodies_then[k])] = static_cast<std::int32_t>(k);
+    }
+    for (std::size_t w = 0; w < walls_then.size(); ++w) {
+      const std::int32_t origin = origins.walls[own.walls.wall_of[w]];
+      if (origin < 0) continue;
+      walls_then[w] = static_cast<std::int32_t>(old.walls.place_of_wall[static_cast<std::size_t>(origin)]);
+      walls_now[static_cast<std::size_t>(walls_then[w])] = static_cast<std::int32_t>(w);
     }
   }
   /// The number that a body or a wall (negative) of the first has now, as Candidate::j; none: it is gone.

@@ -30,18 +30,50 @@ std::vector<Wall> walls_of(const GrainAnimation& animation, const GrainFrame& fr
   return walls;
 }
 
-bool is_shown(const GrainFrame& frame, std::size_t grain) {
+bool is_there(const GrainFrame& frame, std::size_t grain) {
   return !std::isnan(frame.places[grain].x);
 }
 
-GrainView view_of(const GrainAnimation& animation) {
+/// The walls that are there in a frame.
+std::vector<Wall> present_walls(const GrainAnimation& animation, const GrainFrame& frame) {
+  std::vector<Wall> walls = walls_of(animation, frame);
+  std::erase_if(walls, [](const Wall& w) { return !std::isfinite(w.move_x.value) || !std::isfinite(w.move_y.value); });
+  return walls;
+}
+
+/// Which grains each frame shows.
+struct ShownBodies {
+  std::vector<std::vector<bool>> in;  ///< a row for each frame
+  bool some_fell = false;             ///< grains that are there are not shown, because they fell out of the scene
+
+  explicit ShownBodies(const GrainAnimation& animation) {
+    const auto show = [&](bool all) {
+      in.clear();
+      std::ptrdiff_t shown = 0;
+      for (const GrainFrame& frame : animation.frames) {
+        const std::vector<bool> near =
+            all ? std::vector<bool>()
+                : near_the_scene(frame.places, animation.started, present_walls(animation, frame), frame.time);
+        std::vector<bool>& row = in.emplace_back();
+        for (std::size_t g = 0; g < frame.places.size(); ++g)
+          row.push_back(is_there(frame, g) && (near.empty() || near[g]));
+        shown += std::ranges::count(row, true);
+      }
+      return shown;
+    };
+    const std::ptrdiff_t shown = show(false);
+    some_fell = show(true) > shown && shown > 0;
+    if (some_fell) show(false);
+  }
+};
+
+GrainView view_of(const GrainAnimation& animation, const ShownBodies& shown) {
   GrainView view;
-  for (const GrainFrame& frame : animation.frames) {
+  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
+    const GrainFrame& frame = animation.frames[f];
     for (std::size_t g = 0; g < frame.places.size(); ++g)
-      if (is_shown(frame, g)) view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
-    for (const Wall& wall : walls_of(animation, frame))
-      if (std::isfinite(wall.move_x.value) && std::isfinite(wall.move_y.value))
-        view.include_walls({&wall, 1}, frame.time);
+      if (shown.in[f][g]) view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
+    view.include_walls(present_walls(animation, frame), frame.time);
   }
   view.widen();
   return view;
@@ -71,10 +103,11 @@ std::vector<double> wall_points(Wall wall, const GrainView& view) {
   return values;
 }
 
-Results frame_results(const GrainFrame& frame, const GrainAnimation& animation, const GrainView& view, double unit) {
+Results frame_results(const GrainFrame& frame, const std::vector<bool>& shown, const GrainAnimation& animation,
+                      const GrainView& view, double unit) {
   std::vector<std::int64_t> bodies;
   for (std::size_t g = 0; g < frame.places.size(); ++g) {
-    if (!is_shown(frame, g)) {
+    if (!shown[g]) {
       bodies.insert(bodies.end(), {0, 0, -1});
       continue;
     }
@@ -224,7 +257,8 @@ std::string grain_animation_html(const GrainAnimation& animation) {
 
 std::string grain_animation_player(const GrainAnimation& animation) {
   check(animation);
-  const GrainView view = view_of(animation);
+  const ShownBodies shown(animation);
+  const GrainView view = view_of(animation, shown);
   const Vec2 size = view.size();
   const double unit = std::max(size.x, size.y) / levels;
   std::vector<std::int64_t> groups(animation.groups.begin(), animation.groups.end());
@@ -233,7 +267,8 @@ std::string grain_animation_player(const GrainAnimation& animation) {
   for (const Grain& grain : animation.shapes) bodies.push_back(outlines(grain, animation.clumps));
   for (const Wall& wall : animation.walls) walls.push_back(wall_points(wall, view));
   std::vector<Results> frames;
-  for (const GrainFrame& frame : animation.frames) frames.push_back(frame_results(frame, animation, view, unit));
+  for (std::size_t f = 0; f < animation.frames.size(); ++f)
+    frames.push_back(frame_results(animation.frames[f], shown.in[f], animation, view, unit));
   Results data;
   data.set("low", view.low).set("size", size).set("unit", unit).set("turn", 2 * std::numbers::pi / levels);
   data.set("speed", animation.speed)
@@ -243,8 +278,10 @@ std::string grain_animation_player(const GrainAnimation& animation) {
       .set("walls", walls);
   data.set("frames", frames);
   const double scale = std::min(page_width / size.x, page_height / size.y);
-  return fmt::format(player_elements, escape_xml(animation.title), escape_xml(animation.caption), scale * size.x,
-                     scale * size.y, data.json()) +
+  std::string caption = animation.caption;
+  if (shown.some_fell) caption += (caption.empty() ? "B" : "; b") + std::string("odies far outside are left out");
+  return fmt::format(player_elements, escape_xml(animation.title), escape_xml(caption), scale * size.x, scale * size.y,
+                     data.json()) +
          player_script;
 }
 

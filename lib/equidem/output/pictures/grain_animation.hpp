@@ -29,6 +29,7 @@ struct GrainAnimation {
   std::span<const Clump> clumps = {};
   std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
   std::span<const Wall> walls = {};
+  std::span<const Grain> started = {};  ///< the scene before it moved, by which grains are left out; empty: none is
   std::span<const GrainFrame> frames = {};
   double speed = 1;        ///< of the picture, in seconds of motion per second
   bool by_motion = false;  ///< bodies are the bluer the further they are from their places in the first frame
@@ -38,8 +39,9 @@ struct GrainAnimation {
 /// \throws Error (bad_input) as grain_animation_html
 std::string grain_animation_player(const GrainAnimation& animation);
 
-/// The page. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Places are rounded
-/// to 1/4096 of the view, angles to 1/4096 of a turn.
+/// The page. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Bodies are left out
+/// of the frames in which they have fallen out of the scene (near_the_scene), unless all have in all frames. Places are
+/// rounded to 1/4096 of the view, angles to 1/4096 of a turn.
 /// \throws Error (bad_input) without grains or frames, on frames of another number of bodies, on places that are not
 ///         finite
 std::string grain_animation_html(const GrainAnimation& animation);

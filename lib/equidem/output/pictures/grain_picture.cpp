@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/pictures/canvas.hpp"
@@ -56,19 +57,12 @@ struct ShownGrains {
   }
 };
 
-/// Whether each grain is in the scene or near it; empty: all are shown.
-std::vector<bool> near_the_scene(const GrainPicture& picture) {
-  const auto is_finite = [](const Wall& wall) { return wall.shape != Wall::Shape::line; };
-  if (picture.started.empty() || !picture.paths.empty() || std::ranges::none_of(picture.walls, is_finite)) return {};
-  GrainView scene;
-  for (const Grain& grain : picture.started) scene.include(grain.position, grain.radius);
-  scene.include_walls(picture.walls, picture.time);
-  const double reach = 0.5 * scene.larger_side();
-  std::vector<bool> near;
-  for (const Grain& grain : picture.grains) {
-    const Vec2 above = grain.position - scene.low, below = scene.high - grain.position;
-    near.push_back(!(std::min({above.x, above.y, below.x, below.y}) < -reach));
-  }
+/// Whether each grain is shown; empty: all are.
+std::vector<bool> shown_of(const GrainPicture& picture) {
+  if (!picture.paths.empty()) return {};
+  std::vector<Vec2> places;
+  for (const Grain& grain : picture.grains) places.push_back(grain.position);
+  std::vector<bool> near = near_the_scene(places, picture.started, picture.walls, picture.time);
   return std::ranges::count(near, true) == 0 ? std::vector<bool>{} : near;
 }
 
@@ -143,19 +137,6 @@ std::span<const Clump::Disc> discs_of(const GrainPicture& picture, const Grain& 
   return picture.clumps[static_cast<std::size_t>(grain.clump)].discs;
 }
 
-/// The smallest half-width of a body, m.
-double smallest_radius(const GrainPicture& picture, const Grain& grain) {
-  switch (grain.shape()) {
-    case GrainShape::ellipse:
-      return grain.short_half_axis;
-    case GrainShape::clump:
-      return std::ranges::min(discs_of(picture, grain), {}, &Clump::Disc::radius).radius;
-    case GrainShape::disc:
-      break;
-  }
-  return grain.radius;
-}
-
 /// One outline round all discs: first discs in the colour of the edge, then smaller ones in that of the fill.
 void draw_clump(Canvas& canvas, const PageFrame& frame, const Grain& grain, std::span<const Clump::Disc> discs,
                 const Colour& fill, const Colour& edge, double width) {
@@ -188,7 +169,7 @@ void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
     const double radius = grain.radius * frame.scale;
     const Vec2 centre = frame.to_page(grain.position);
     const Colour &fill = fills[tone(picture, g)], &edge = inks[tone(picture, g)];
-    const bool outlined = smallest_radius(picture, grain) * frame.scale >= smallest_marked;
+    const bool outlined = inscribed_radius(grain, picture.clumps) * frame.scale >= smallest_marked;
     Vec2 mark_from = centre;
     double mark = radius;
     if (grain.shape() == GrainShape::clump) {
@@ -225,7 +206,8 @@ void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   if (picture.paths.empty()) return;
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
-    const double size = grain.shape() == GrainShape::disc ? grain.radius : 0.5 * smallest_radius(picture, grain);
+    const double size =
+        grain.shape() == GrainShape::disc ? grain.radius : 0.5 * inscribed_radius(grain, picture.clumps);
     const auto first = std::ranges::find_if(picture.paths, [&](const auto& places) { return is_there(places[g]); });
     if (first == picture.paths.end()) continue;
     canvas.stroke_circle(frame.to_page((*first)[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
@@ -288,7 +270,7 @@ std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::pa
                                                        const GrainPicture& whole, bool overwrite) {
   GrainPicture picture = whole;
   std::optional<ShownGrains> shown;
-  if (const std::vector<bool> near = near_the_scene(whole); !near.empty()) {
+  if (const std::vector<bool> near = shown_of(whole); !near.empty()) {
     shown.emplace(whole, near);
     picture.grains = shown->grains, picture.groups = shown->groups, picture.bonds = shown->bonds;
   }

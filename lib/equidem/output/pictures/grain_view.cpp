@@ -32,6 +32,22 @@ void GrainView::widen() {
   high += 0.5 * missing;
 }
 
+std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const Grain> started,
+                                 std::span<const Wall> walls, double time) {
+  const auto is_finite = [](const Wall& wall) { return wall.shape != Wall::Shape::line; };
+  if (started.empty() || std::ranges::none_of(walls, is_finite)) return {};
+  GrainView scene;
+  for (const Grain& grain : started) scene.include(grain.position, grain.radius);
+  scene.include_walls(walls, time);
+  const double reach = 0.5 * scene.larger_side();
+  std::vector<bool> near;
+  for (const Vec2 place : places) {
+    const Vec2 above = place - scene.low, below = scene.high - place;
+    near.push_back(!(std::min({above.x, above.y, below.x, below.y}) < -reach));
+  }
+  return near;
+}
+
 std::vector<Vec2> outline(const Wall& wall, double time) {
   const Vec2 moved = wall.displacement(time);
   if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};

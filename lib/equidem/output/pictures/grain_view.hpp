@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/motion/wall.hpp"
 #include "equidem/output/pictures/scene.hpp"
 
@@ -22,6 +23,12 @@ struct GrainView : Bounds {
   void widen();
   [[nodiscard]] Vec2 size() const { return high - low; }
 };
+
+/// Which of the places of grains at a time belong to an open scene: they lie no farther from the box round the
+/// segments, the arcs and the grains that started than half its larger side. Others have fallen out of it. Empty: all
+/// belong, because there are lines alone or no grain is known to have started.
+std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const Grain> started,
+                                 std::span<const Wall> walls, double time);
 
 /// Points along a segment or an arc.
 std::vector<Vec2> outline(const Wall& wall, double time);

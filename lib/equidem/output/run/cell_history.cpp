@@ -65,26 +65,6 @@ Results cell_results(const CellState& cell) {
   out.line("")
       .add("void_ratio", "void ratio", cell.void_ratio, "", {.digits = 4})
       .add("coordination_number", "coordination number", cell.coordination_number, "", {.digits = 4});
-  if (cell.servos.empty()) return out.under("cell");
-  std::vector<Results> rows;
-  std::vector<std::string> missed;
-  for (const CellServoReport& servo : cell.servos) {
-    if (!servo.reached && servo.wanted != 0) missed.push_back(servo.component);
-    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
-    Results& row = rows.emplace_back();
-    row.add("component", "stress", servo.component)
-        .set("reached", servo.reached)
-        .add("wanted", "wanted, Pa", servo.wanted)
-        .add("stress", "in the last step", servo.stress)
-        .add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
-        .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
-  }
-  out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
-  out.table("servos", std::move(rows));
-  if (!missed.empty())
-    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
-                                    "faster (max_rate), or for longer",
-                                    joined(missed)));
   return out.under("cell");
 }
 

@@ -17,7 +17,7 @@ std::vector<std::string> cell_columns();
 /// In the order of cell_columns.
 std::vector<double> cell_cells(const CellState& cell);
 
-/// cell: the same quantities, and servos.
+/// cell: the same quantities.
 Results cell_results(const CellState& cell);
 
 }  // namespace equidem
