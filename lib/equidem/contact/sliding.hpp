@@ -7,6 +7,10 @@
 /// of the work is lost. Without spring and dashpot (kT = c = 0) the contact always slides: mu N against the velocity.
 #pragma once
 
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
 #include "equidem/core/names.hpp"
 
 namespace equidem {
@@ -46,18 +50,74 @@ struct SlidingStep {
   bool slides = false;
 };
 
+/// mu N; a normal force that attracts carries no friction.
+inline double yield_of(const Sliding& law, double normal_force) {
+  return law.coefficient * std::max(normal_force, 0.0);
+}
+
+/// \param resistance of spring and dashpot
+/// \param velocity mean over the step
+inline SlidingStep stick_through(const Sliding& law, double stretch, double resistance, double velocity, double step) {
+  return {.force = -resistance,
+          .stretch = law.stiffness > 0 ? stretch + velocity * step : 0,
+          .dashpot_loss = law.dashpot * velocity * velocity * step};
+}
+
+/// \param friction mu N, with the sign of the force that passed it
+/// \param velocity mean over the step under that friction
+inline SlidingStep slide_through(const Sliding& law, double stretch, double friction, double velocity, double step) {
+  // Held at what friction carries, but never carried further than the bodies moved: so work - energy stored >= 0.
+  const double largest = law.stiffness > 0 ? std::abs(friction) / law.stiffness : 0;
+  const double end = std::clamp(stretch + velocity * step, -largest, largest);
+  const double released = law.stiffness * (stretch - end) * (stretch + end) / 2;
+  const double dashpot = law.cap == FrictionCap::spring_alone ? law.dashpot * velocity : 0;
+  return {.force = -(friction + dashpot),
+          .stretch = end,
+          .slip_loss = friction * velocity * step + released,
+          .dashpot_loss = dashpot * velocity * step,
+          .slides = true};
+}
+
 /// Explicit: force from the stretch at the end of the step with the velocity given (LAMMPS, YADE, Sukegawa
 /// (2.9)-(2.16)). The work of a spring that sticks exceeds the energy it stores by kT (v dt)²/2: the error of the
 /// integrator, counted nowhere. kT = c = 0: mu N even if that reverses the slip within the step; use the midpoint rule.
 /// The losses are those at the velocity given.
-SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step);
+inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
+  const double yield = yield_of(law, normal_force);
+  if (is_rigid(law)) {
+    const double friction = velocity == 0 ? 0 : std::copysign(yield, velocity);
+    return slide_through(law, 0, friction, velocity, step);
+  }
+  const double spring = law.stiffness * (stretch + velocity * step), dashpot = law.dashpot * velocity;
+  const double capped = law.cap == FrictionCap::whole_force ? spring + dashpot : spring;
+  if (std::abs(capped) <= yield) return stick_through(law, stretch, spring + dashpot, velocity, step);
+  return slide_through(law, stretch, std::copysign(yield, capped), velocity, step);
+}
 
 /// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only
 /// loses it. kT = c = 0: at most what stops the slip within the step, so that a slip that stops stays stopped; under a
 /// steady outside acceleration g that friction can hold, a slip of g dt/2 remains.
 /// \param velocity mean over the step as all other forces make it: of constant ones, at the start plus half its change
-/// \param mass effective tangential mass: 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), kg
-SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double mass, double normal_force,
-                                  double step);
+/// \param inverse_mass of the effective tangential mass: 1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j, 1/kg
+inline SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, double velocity, double inverse_mass,
+                                         double normal_force, double step) {
+  assert(inverse_mass > 0 && step > 0);
+  const double yield = yield_of(law, normal_force);
+  const double mobility = 0.5 * step * inverse_mass;  // mean velocity per mean force
+  if (is_rigid(law)) {
+    const double friction = std::clamp(velocity / (2 * mobility), -yield, yield);
+    return slide_through(law, 0, friction, velocity - mobility * friction, step);
+  }
+  // Sticking: spring and dashpot resist with kT (stretch + mean dt/2) + c mean, and mean = velocity - mobility * that.
+  const double rate = law.stiffness * step / 2 + law.dashpot, share = 1 + mobility * rate;
+  const double mean = (velocity - mobility * law.stiffness * stretch) / share;
+  const double resistance = (law.stiffness * stretch + rate * velocity) / share;
+  const bool whole = law.cap == FrictionCap::whole_force;
+  const double capped = whole ? resistance : resistance - law.dashpot * mean;
+  if (std::abs(capped) <= yield) return stick_through(law, stretch, resistance, mean, step);
+  const double friction = std::copysign(yield, capped);
+  const double slipping = (velocity - mobility * friction) / (whole ? 1 : 1 + mobility * law.dashpot);
+  return slide_through(law, stretch, friction, slipping, step);
+}
 
 }  // namespace equidem

@@ -24,8 +24,8 @@
 namespace equidem {
 namespace {
 
-/// A refused step costs at most as many steps more; to keep a state so seldom costs next to nothing.
-constexpr std::int64_t steps_between_kept_states = 256;
+/// A refused step costs at most as many steps more; to keep a state so seldom costs less than a hundredth of them.
+constexpr std::int64_t steps_between_kept_states = 1024;
 
 void begin_loads_of_walls(GrainSystem& system) {
   for (WallLoad& load : system.walls.loads) load.begin_step();

@@ -90,6 +90,10 @@ void take(const double* numbers, Candidate& candidate) {
 SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
   std::vector<double> contacts, losses, counts, impulses, bonds, walls, servos;
+  std::size_t listed = system.contacts.candidates.size();
+  for (const PairBlock& block : system.contacts.near.blocks) listed += block.count;
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) { listed += list.count; });
+  contacts.reserve(listed * ContactColumns(system).count);
   const auto append_imaged = [&](Candidate candidate, PartPair pair) {
     const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
     candidate.j = image.body;
@@ -119,6 +123,7 @@ SavedState GrainSimulation::save() const {
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) losses.push_back(system.lost.*term.value);
   for (const auto counter : counters_saved) counts.push_back(static_cast<double>(system.counters.*counter));
   if (implementation_->keeps_impulses()) {  // the others find all impulses of a step in that step
+    impulses.reserve(numbers_per_impulse * system.bodies.impulses.size());
     for (const BodyImpulse& push : system.bodies.impulses)
       impulses.insert(impulses.end(), {push.impulse.x, push.impulse.y, push.torque});
   }

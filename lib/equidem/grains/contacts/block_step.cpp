@@ -2,6 +2,7 @@
 #include "equidem/grains/contacts/block_step.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 #include "equidem/grains/contacts/move_bodies.hpp"
@@ -12,10 +13,9 @@ namespace {
 void collide_block(GrainSystem& system, std::size_t block, bool clear) {
   const BodyBlocks& blocks = system.bodies.blocks;
   if (clear) {
-    const auto impulse = [&](std::size_t body) {
-      return system.bodies.impulses.begin() + static_cast<std::ptrdiff_t>(body);
-    };
-    std::fill(impulse(blocks.begin(block)), impulse(blocks.end(block)), BodyImpulse{});
+    BodyImpulse* impulses = system.bodies.impulses.data();
+    std::memset(static_cast<void*>(impulses + blocks.begin(block)), 0,
+                (blocks.end(block) - blocks.begin(block)) * sizeof *impulses);
   }
   if (system.contacts.near.active) system.contacts.near.loop(system, block);
   NearParts& parts = system.contacts.near_parts;

@@ -62,15 +62,16 @@ inline double slip_velocity(const GrainSystem& system, const Candidate& candidat
   return dot(relative, perpendicular(geometry.normal)) - turning;
 }
 
-/// Tangential mass 1/(1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j).
-inline double tangential_mass(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
+/// Of the tangential mass: 1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j, 1/kg.
+inline double inverse_tangential_mass(const GrainSystem& system, const Candidate& candidate,
+                                      const ContactGeometry& geometry) {
   const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
   double inverse = bi.inverse_mass + geometry.lever_i * geometry.lever_i * bi.inverse_moment;
   if (candidate.j >= 0) {
     const GrainBody& bj = system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))];
     inverse += bj.inverse_mass + geometry.lever_j * geometry.lever_j * bj.inverse_moment;
   }
-  return 1 / inverse;
+  return inverse;
 }
 
 }  // namespace equidem

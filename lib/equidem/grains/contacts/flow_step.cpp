@@ -138,7 +138,7 @@ double solve(GrainSystem& system, Trial& trial) {
   trial.tangential = 0;
   if (candidate.sliding.coefficient > 0 && trial.impulse != 0) {
     ContactGeometry geometry{trial.overlap, trial.normal, trial.lever_i, trial.lever_j};
-    const double mass = tangential_mass(system, candidate, geometry);
+    const double inverse_mass = inverse_tangential_mass(system, candidate, geometry);
     // The spring follows the way that the bodies go. Half the change of velocity is not that way where other forces
     // change within the step: a load that grows to an acceleration g would leave the stretch wrong by g dt²/12.
     const auto turned = [&](std::int32_t body, double lever) {
@@ -149,7 +149,7 @@ double solve(GrainSystem& system, Trial& trial) {
     if (candidate.j >= 0) turning += turned(candidate.j, trial.lever_j);
     const double velocity = slip_velocity(system, candidate, geometry, relative) +
                             dot(outside.way, perpendicular(trial.normal)) / dt - 0.5 * turning;
-    trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, mass,
+    trial.sliding_step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity, inverse_mass,
                                                std::max(trial.impulse, 0.0) / dt, dt);
     trial.tangential = trial.sliding_step.force * dt;
   }

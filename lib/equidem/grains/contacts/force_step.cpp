@@ -43,8 +43,8 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
 
 /// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
 /// aside.
-double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry,
-                    double mass) {
+[[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const Candidate& candidate,
+                                                  const ContactGeometry& geometry, double inverse_mass) {
   const auto i = static_cast<std::size_t>(candidate.i);
   const GrainBody& bi = system.bodies.constants[i];
   Vec2 gain = -bi.inverse_mass * system.bodies.impulses_before[i].impulse;
@@ -57,21 +57,22 @@ double gain_of_slip(const GrainSystem& system, const Candidate& candidate, const
   } else {
     gain -= system.dt() * system.scene.gravity;
   }
-  return dot(gain, perpendicular(geometry.normal)) - turning - candidate.tangential_impulse / mass;
+  return dot(gain, perpendicular(geometry.normal)) - turning - candidate.tangential_impulse * inverse_mass;
 }
 
 /// Tangential impulse on j over the step.
 ///
 /// By the midpoint rule, with what other forces do to the slip over the step taken from the step before: a contact that
 /// sticks under a steady load does not creep.
-double slide(const GrainSystem& system, Candidate& candidate, const ContactGeometry& geometry, Vec2 relative,
-             double normal_force, EnergyLedger& lost) {
+[[gnu::always_inline]] inline double slide(const GrainSystem& system, Candidate& candidate,
+                                           const ContactGeometry& geometry, Vec2 relative, double normal_force,
+                                           EnergyLedger& lost) {
   const double velocity = slip_velocity(system, candidate, geometry, relative);
   const double dt = system.dt();
-  const double mass = tangential_mass(system, candidate, geometry);
-  const double gain = gain_of_slip(system, candidate, geometry, mass);
-  const SlidingStep step =
-      sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain, mass, normal_force, dt);
+  const double inverse_mass = inverse_tangential_mass(system, candidate, geometry);
+  const double gain = gain_of_slip(system, candidate, geometry, inverse_mass);
+  const SlidingStep step = sliding_step_midpoint(candidate.sliding, candidate.stretch, velocity + 0.5 * gain,
+                                                 inverse_mass, normal_force, dt);
   candidate.stretch = step.stretch;
   lost.lost_slip += step.slip_loss;
   lost.lost_tangential_dashpot += step.dashpot_loss;
@@ -118,8 +119,8 @@ void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, 
     count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
     const auto others = [&] {
-      const double mass = tangential_mass(system, candidate, geometry);
-      return SlipByOthers{gain_of_slip(system, candidate, geometry, mass), mass};
+      const double inverse_mass = inverse_tangential_mass(system, candidate, geometry);
+      return SlipByOthers{gain_of_slip(system, candidate, geometry, inverse_mass), inverse_mass};
     };
     const Vec2 impulse = step_contact<Law, friction>(
         system, candidate, place, -dot(relative, geometry.normal), slip_velocity(system, candidate, geometry, relative),

@@ -43,9 +43,9 @@ struct PartContact {
   return other.velocity + other.spin * perpendicular(contact.geometry.arm_j) - of_i;
 }
 
-/// 1/(1/m_i + 1/m_j + (arm_i x s)²/I_i + (arm_j x s)²/I_j).
+/// 1/m_i + 1/m_j + (arm_i x s)²/I_i + (arm_j x s)²/I_j, 1/kg.
 /// \param share of what the arms lack to the surface that is added
-[[gnu::always_inline]] inline double tangential_mass(const PartContact& contact, double share) {
+[[gnu::always_inline]] inline double inverse_tangential_mass(const PartContact& contact, double share) {
   const PartGeometry& geometry = contact.geometry;
   const double lever_i = cross(geometry.arm_i, contact.tangent()) + share * geometry.sunk_i;
   double inverse = contact.body_i.inverse_mass + lever_i * lever_i * contact.body_i.inverse_moment;
@@ -53,7 +53,7 @@ struct PartContact {
     const double lever_j = cross(geometry.arm_j, contact.tangent()) - share * geometry.sunk_j;
     inverse += contact.body_j->inverse_mass + lever_j * lever_j * contact.body_j->inverse_moment;
   }
-  return 1 / inverse;
+  return inverse;
 }
 
 /// (1/m' of the contact points along the normal)/(1/m of the centres); see part_candidate_loop.
@@ -70,7 +70,8 @@ struct PartContact {
 
 /// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
 /// aside.
-[[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const PartContact& contact, double mass) {
+[[gnu::always_inline]] inline double gain_of_slip(const GrainSystem& system, const PartContact& contact,
+                                                  double inverse_mass) {
   const PartGeometry& geometry = contact.geometry;
   const auto gain_of = [&](const GrainBody& body, const BodyImpulse& push, Vec2 arm) {
     return body.inverse_mass * push.impulse + (body.inverse_moment * push.torque) * perpendicular(arm);
@@ -81,13 +82,14 @@ struct PartContact {
   } else {
     gain -= system.dt() * system.scene.gravity;
   }
-  return dot(gain, contact.tangent()) - contact.candidate.tangential_impulse / mass;
+  return dot(gain, contact.tangent()) - contact.candidate.tangential_impulse * inverse_mass;
 }
 
 [[gnu::always_inline]] inline Sliding sliding_of(const Candidate& candidate, const PartPair& pair,
                                                  const PartContact& contact) {
   Sliding law = candidate.sliding;
-  if (pair.tangential_damping > 0) law.dashpot = pair.tangential_damping * std::sqrt(tangential_mass(contact, 1));
+  if (pair.tangential_damping > 0)
+    law.dashpot = pair.tangential_damping * std::sqrt(1 / inverse_tangential_mass(contact, 1));
   return law;
 }
 
@@ -96,10 +98,10 @@ struct PartContact {
                                            const PartContact& contact, double velocity, double normal_force,
                                            EnergyLedger& lost) {
   const double dt = system.dt();
-  const double mass = tangential_mass(contact, 0);
-  const double gain = gain_of_slip(system, contact, mass);
+  const double inverse_mass = inverse_tangential_mass(contact, 0);
+  const double gain = gain_of_slip(system, contact, inverse_mass);
   const SlidingStep step = sliding_step_midpoint(sliding_of(candidate, pair, contact), candidate.stretch,
-                                                 velocity + 0.5 * gain, mass, normal_force, dt);
+                                                 velocity + 0.5 * gain, inverse_mass, normal_force, dt);
   candidate.stretch = step.stretch;
   lost.lost_slip += step.slip_loss;
   lost.lost_tangential_dashpot += step.dashpot_loss;
@@ -168,8 +170,8 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
       pair.arm_i = geometry.arm_i;
       pair.arm_j = geometry.arm_j;
       const auto others = [&] {
-        const double mass = tangential_mass(contact, 0);
-        return SlipByOthers{gain_of_slip(system, contact, mass), mass};
+        const double inverse_mass = inverse_tangential_mass(contact, 0);
+        return SlipByOthers{gain_of_slip(system, contact, inverse_mass), inverse_mass};
       };
       push(system.bodies.impulses, contact,
            step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),

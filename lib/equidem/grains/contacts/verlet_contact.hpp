@@ -26,9 +26,9 @@ struct ContactDrift {
   double overlap = 0;            ///< m
 };
 
-/// Change of slip velocity in a step by all forces but the contact's own, m/s, and the tangential mass, kg.
+/// Change of slip velocity in a step by all forces but the contact's own, m/s, and 1/tangential mass, 1/kg.
 struct SlipByOthers {
-  double gain = 0, mass = 0;
+  double gain = 0, inverse_mass = 0;
 };
 
 /// Impulse of the spring in a whole kick, N s.
@@ -107,7 +107,7 @@ template <class Law, bool friction, class Others>
       const double normal_force = std::max(impulse, 0.0) / dt;
       if (is_rigid(sliding)) {
         const SlipByOthers by_others = others();
-        slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.mass, normal_force, dt);
+        slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.inverse_mass, normal_force, dt);
       } else {
         slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt);
       }

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
@@ -35,7 +39,8 @@ double move(GrainSystem& system, std::size_t block) {
   GrainMotion* next = system.bodies.next.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   PairBody* pair_bodies = system.contacts.near.bodies.data();
-  double longest = 0, none = 0;
+  // Compared by their bits: numbers that are not negative lie in the same order, and no number behind all of them.
+  std::uint64_t longest = 0;
   for (std::size_t i = system.bodies.blocks.begin(block); i < end; ++i) {
     const GrainBody& body = bodies[i];
     const GrainMotion& before = motions[i];
@@ -43,7 +48,7 @@ double move(GrainSystem& system, std::size_t block) {
     PairBody& seen = pair_bodies[i];
     const Pair gain = body.inverse_mass * load_pair(impulses[i].impulse);
     const Pair velocity = load_pair(before.velocity) + (gain + fall);
-    const Pair position = load_pair(before.position), moved = position + dt * velocity;
+    const Pair way = dt * velocity, moved = load_pair(before.position) + way;
     store_pair(moved, after.position);
     store_pair(velocity, after.velocity);
     store_pair(moved, seen.position);
@@ -60,12 +65,10 @@ double move(GrainSystem& system, std::size_t block) {
       seen.middle_rim_speed = (spin + 0.5 * turn) * body.radius;
     }
     store_pair(Pair{spin, before.angle + dt * spin}, after.spin);
-    const Pair way = moved - position, square = way * way;
-    const double length = square[0] + square[1];
-    longest = longest > length ? longest : length;
-    none += length - length;  // 0, or no number for ever
+    const Pair square = way * way;
+    longest = std::max(longest, std::bit_cast<std::uint64_t>(square[0] + square[1]));
   }
-  return longest + none;
+  return std::bit_cast<double>(longest);
 }
 
 }  // namespace

@@ -65,8 +65,8 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
     candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
     const ContactGeometry geometry{0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[other].radius : 0};
-    candidate.sliding.dashpot = 2 * properties.tangential_damping *
-                                std::sqrt(tangential_mass(system, candidate, geometry) * candidate.sliding.stiffness);
+    const double mass = 1 / inverse_tangential_mass(system, candidate, geometry);
+    candidate.sliding.dashpot = 2 * properties.tangential_damping * std::sqrt(mass * candidate.sliding.stiffness);
   }
 }
 

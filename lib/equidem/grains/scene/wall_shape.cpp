@@ -117,17 +117,8 @@ bool arc_is_passed(const Wall& wall, const Vec2& before, const Vec2& after) {
 
 }  // namespace
 
-WallContact nearest(const Wall& wall, const Vec2& displacement, const Vec2& centre) {
-  const Vec2 relative = centre - displacement;
-  switch (wall.shape) {
-    case Wall::Shape::line:
-      return {dot(wall.normal, relative - wall.point), wall.normal, 0};
-    case Wall::Shape::segment:
-      return nearest_of_segment(wall, relative);
-    case Wall::Shape::arc:
-      return nearest_of_arc(wall, relative);
-  }
-  return {};
+WallContact nearest_of_bounded(const Wall& wall, const Vec2& centre) {
+  return wall.shape == Wall::Shape::arc ? nearest_of_arc(wall, centre) : nearest_of_segment(wall, centre);
 }
 
 bool passes_through(const Wall& wall, const Vec2& before, const Vec2& after) {

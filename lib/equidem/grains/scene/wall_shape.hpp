@@ -15,11 +15,18 @@ struct WallContact {
   int end = 0;          ///< 1, 2: the point is the first or second end of a segment or an arc, or next to it
 };
 
+/// nearest() for a segment or an arc, without displacement.
+WallContact nearest_of_bounded(const Wall& wall, const Vec2& centre);
+
 /// Line: the foot of the perpendicular. Segment or arc: the nearest point, ends included. Never NaN for a wall that
 /// passes `check`: for a centre on a thin wall the normal is the wall's own; at the centre of an arc, equidistant from
 /// all its points, the nearest point is the middle of the arc.
 /// \param displacement present displacement of the wall, m
-WallContact nearest(const Wall& wall, const Vec2& displacement, const Vec2& centre);
+inline WallContact nearest(const Wall& wall, const Vec2& displacement, const Vec2& centre) {
+  const Vec2 relative = centre - displacement;
+  if (wall.shape == Wall::Shape::line) return {dot(wall.normal, relative - wall.point), wall.normal, 0};
+  return nearest_of_bounded(wall, relative);
+}
 
 /// Whether a centre that moves straight from `before` to `after` (both relative to the wall: less its displacement)
 /// passes through the wall: changes side on it, ends included, or crosses an arc and comes back. A path that touches an
