@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Results with ellipses and clumps are bit-identical for every order of the bodies and margin, and after a restore.
+#include "equidem/core/text.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
+
 #include "grains/resuming.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
@@ -88,4 +91,29 @@ TEST_CASE("an_ellipse_slides_over_a_joint_of_segments_as_over_one") {
   CAPTURE(clump, whole.position.y, pieces.position.y, whole.angle, pieces.angle);
   CHECK(norm(whole.position - pieces.position) < 1e-9);
   CHECK(std::abs(whole.angle - pieces.angle) < 1e-9);
+}
+
+TEST_CASE("stages_that_change_nothing_leave_contacts_of_all_shapes_as_they_are") {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    GrainScene scene = mixed_box(NormalLaw::linear_dashpot, 5, 4, seed);
+    for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+    scene.gravity = {0, -2};
+    const GrainOptions options = options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 2e-3);
+    constexpr std::int64_t length = 60, stages = 20;
+    std::vector<GrainStage> same;
+    for (std::int64_t k = 0; k < stages; ++k)
+      same.push_back({.name = fmt::format("{}", k), .scene = scene, .steps = length});
+    StagedSimulation staged(same, options);
+    GrainSimulation whole(scene, options);
+    while (!staged.over()) staged.advance(length);
+    whole.advance(length * stages);
+    const std::vector<Grain> grains = staged.present().grains(), expected = whole.grains();
+    std::size_t moved = 0;
+    for (std::size_t g = 0; g < grains.size(); ++g)
+      if (grains[g].position != expected[g].position || grains[g].angle != expected[g].angle) ++moved;
+    CAPTURE(seed, moved, staged.energy().work_of_stages);
+    CHECK(staged.present().contacts().size() == whole.contacts().size());
+    CHECK(whole.contacts().size() > grains.size());
+    CHECK(moved == 0);
+  }
 }

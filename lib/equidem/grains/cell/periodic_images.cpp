@@ -136,7 +136,6 @@ void list_contacts(GrainSystem& system, const std::vector<ImagedContact>& contac
     }
   }
   std::ranges::sort(discs, {}, [](const Candidate& contact) { return std::pair(contact.i, contact.j); });
-  std::ranges::sort(parts, {}, [](const auto& contact) { return std::pair(contact.second.i, contact.second.j); });
   if (system.contacts.near.active) take_near_pairs(system, discs);
   if (system.contacts.near_parts.active) take_near_parts(system, std::move(parts));
 }

@@ -302,8 +302,7 @@ void refresh_near_parts(GrainSystem& system, double reach) {
 }
 
 void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts) {
-  std::stable_sort(contacts.begin(), contacts.end(),
-                   [](const auto& a, const auto& b) { return a.first.i < b.first.i; });
+  std::ranges::sort(contacts, {}, [](const auto& contact) { return std::pair(contact.second.i, contact.second.j); });
   auto next = contacts.begin();
   for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
     auto& lists = system.contacts.near_parts.blocks[b].lists;

@@ -144,7 +144,7 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
 /// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
-/// Replace the pairs by the contacts of a saved state, in the order of the lists.
+/// Replace the pairs by the contacts of a saved state, which may come in any order.
 void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts);
 
 /// The loop compiled for round parts or for ellipses; it computes the impulses of this step by the
