@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Runs in stages in a periodic cell.
+#include "equidem/core/text.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "grains/cell_scenes.hpp"
@@ -74,6 +75,22 @@ TEST_CASE("a_stage_of_a_cell_that_changes_nothing_leaves_the_motion_as_it_is_to_
   CHECK(staged.cell()->strain.xy == whole.cell()->strain.xy);
   CHECK(staged.energy().work_of_stages == 0);
   CHECK(staged.energy().work_of_cell == whole.energy().work_of_cell);
+}
+
+TEST_CASE("the_ledger_counts_the_fall_of_bodies_that_have_left_the_cell_over_stages") {
+  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 5, 31);
+  scene.gravity = {20, -3};
+  const GrainOptions options = verlet_options(0.001);
+  std::vector<GrainStage> same;
+  for (int k = 0; k < 4; ++k) same.push_back({.name = fmt::format("{}", k), .scene = scene, .steps = 500});
+  StagedSimulation staged(same, options);
+  GrainSimulation whole(scene, options);
+  run_to(staged, 2000);
+  whole.advance(2000);
+  CAPTURE(staged.energy().error(), whole.energy().error(), whole.energy().potential, scene.cell->width);
+  CHECK(whole.energy().potential < -20 * 2 * scene.cell->width * static_cast<double>(scene.grains.size()));
+  CHECK(std::abs(staged.energy().potential - whole.energy().potential) < 1e-12 * whole.energy().largest());
+  CHECK(std::abs(staged.energy().error() - whole.energy().error()) < 1e-12 * whole.energy().largest());
 }
 
 TEST_CASE("a_cell_is_consolidated_sheared_and_stands_in_stages_of_one_run") {

@@ -275,6 +275,8 @@ void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigin
   // what servo walls have gone is in their places
   for (std::size_t at = 0; at < state["servos"].size(); at += columns_of(fresh, "servos")) state["servos"][at] = 0;
   restore(state);
+  // bodies that have left the cell are where they are, not at their images inside
+  implementation_->potential_at_start = implementation_->potential_and_kinetic().first;
   for (ServoState& servo : own.walls.servos) servo.count_anew();
   if (own.cell.active && begin_controls(old, own)) measure_resistance(own);
   if (own.cell.deforms && !old.cell.deforms) begin_cell_stress(own, contacts());
