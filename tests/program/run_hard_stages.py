@@ -124,6 +124,26 @@ quantities = ["position", "velocity"]
                           " ".join(result["report"].split()))
             (out / "run.checkpoint.h5").write_bytes((out / "run.slow.checkpoint.h5").read_bytes())
 
+    def test_a_stress_of_a_cell_that_a_stage_does_not_name_goes_on_in_its_schedule(self):
+        squares = "".join(f"[[grain]]\nposition = [{0.01 + 0.02 * i}, {0.01 + 0.02 * j}]\nradius = 0.0101\n"
+                          for i in range(5) for j in range(5))
+        rising = '[[schedule]]\nname = "rise"\nkind = "table"\ntimes = [0.0, 0.06]\nvalues = [0.5, 1.0]\n'
+        text = TWO[:TWO.index("[[grain]]")] + squares + TWO[TWO.index("[collisions]"):] + rising + \
+            '[cell]\nwidth = 0.1\nheight = 0.1\n[run]\nintegrator = "velocity_verlet"\ntime_step = 2.0e-5\n'
+        stress = '[stage.cell.servo]\nstress_yy = -1000.0\nschedule = "rise"\nmax_rate = 0.1\n'
+        other = '[stage.cell.servo]\nstress_xx = -500.0\nmax_rate = 0.1\n'
+
+        def stage(name, duration, servo=""):
+            return f'[[stage]]\nname = "{name}"\nduration = {duration}\n' + servo
+        wanted = []
+        for stages in (stage("a", 0.05, stress), stage("a", 0.01, stress) + stage("b", 0.02) + stage("c", 0.02),
+                       stage("a", 0.01, stress) + stage("b", 0.02, other) + stage("c", 0.02)):
+            servos = self.run_case(self.write(text + stages), "--out", self.folder / f"out{len(wanted)}", *NO_PICTURE)["cell"]["servos"]
+            wanted.append([servo["wanted"] for servo in servos if servo["component"] == "yy"][-1])
+        self.assertLess(wanted[0], -900)
+        for other in wanted[1:]:
+            self.assertAlmostEqual(other, wanted[0], delta=1e-9)
+
     def test_bonds_stiffer_than_the_step_bears_are_refused_with_the_step_that_they_bear(self):
         run = "[run]\nduration = 0.01\ntime_step = {}\n"
         for text, words in ((TOUCHING + BONDS.replace("1.0e6", "1.0e8") + run.format("7e-4"), ("run.time_step", "the bonds impose")),

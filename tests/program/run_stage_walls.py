@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Walls that get another name in a stage, and keys of stages that do not go together: run_stage_walls.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
 import unittest
 
 import numpy
@@ -92,6 +93,26 @@ duration = 0.004
         losses = [result["energy"]["lost_slip"] for result in (smooth, rough, same)]
         self.assertEqual((losses[0], losses[2]), (0, 0))
         self.assertGreater(losses[1], 0)
+
+    def test_a_force_that_a_stage_does_not_name_goes_on_in_its_schedule(self):
+        rising = '[[schedule]]\nname = "rise"\nkind = "table"\ntimes = [0.0, 0.06]\nvalues = [0.5, 1.0]\n[run]\ntime_step = 2.0e-5\n'
+        first = '[[stage]]\nname = "a"\nduration = {}\n[[stage.wall]]\nname = "lid"\n' \
+            'servo = {{ force = 20.0, schedule = "rise", max_speed = 0.1 }}\n'
+        rest = '[[stage]]\nname = "b"\nduration = 0.01\n[[stage.rename]]\nwall = "lid"\nto = "plate"\n' \
+            '[[stage]]\nname = "c"\nduration = 0.01\n'
+        for scene, command in ((PRESS, ()), (PRESS, VERLET)):
+            whole = self.run_case(self.write(scene + rising + first.format(0.05)), "--out", self.folder / "whole", "--overwrite", *command,
+                                  *NO_PICTURE)
+            case, out = self.write(scene + rising + first.format(0.03) + rest), self.folder / "out"
+            parts = self.run_case(case, "--out", out, *command, "--overwrite", *NO_PICTURE)
+            self.assertAlmostEqual(parts["servos"][-1]["wanted"], whole["servos"][0]["wanted"], delta=1e-12)
+            self.assertGreater(whole["servos"][0]["wanted"], 18)
+            heights = [[float(row["y_m"]) for row in csv.DictReader((folder / "grains.csv").read_text().splitlines())]
+                       for folder in (out, self.folder / "whole")]
+            numpy.testing.assert_allclose(*heights, rtol=1e-12)
+            (out / "run.checkpoint.h5").write_bytes((out / "run.b.checkpoint.h5").read_bytes())
+            again = self.run_case(case, "--out", out, "--resume", *command, *NO_PICTURE)
+            self.assertEqual(again["servos"], parts["servos"])
 
     def test_wrong_names_of_walls_are_refused_with_their_line(self):
         mirrored = NAMED.replace('servo = { force = 20.0, max_speed = 0.1 }\n',

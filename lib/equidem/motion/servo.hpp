@@ -28,6 +28,7 @@ struct Servo {
   double relaxation = 0.5;                  ///< in (0, 1]
   /// Name of a wall that moves by the same way against it; both then follow the mean of their forces. Empty: none.
   std::string mirror = {};
+  bool goes_on = false;    ///< in a stage: the servo of the stage before, in the middle of its schedule
   std::string place = {};  ///< in the user's input, for messages; empty: not known
 };
 

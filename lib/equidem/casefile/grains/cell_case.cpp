@@ -76,7 +76,10 @@ void take_servo(const TomlValue& table, const std::string& path, std::span<const
                 PeriodicCell& cell) {
   CellServoTable read;
   read_table(cell_servo_keys(), table, read);
-  if (cell.servo) read.servo.stress_xx = cell.servo->stress_xx, read.servo.stress_yy = cell.servo->stress_yy;
+  if (cell.servo) {  // stresses that are not named stay as they were
+    read.servo.stress_xx = cell.servo->stress_xx, read.servo.stress_yy = cell.servo->stress_yy;
+    read.servo.goes_on_xx = !read.stress_xx, read.servo.goes_on_yy = !read.stress_yy;
+  }
   if (read.stress_xx) read.servo.stress_xx = scheduled(table, path, *read.stress_xx, schedules);
   if (read.stress_yy) read.servo.stress_yy = scheduled(table, path, *read.stress_yy, schedules);
   cell.servo = read.servo;
@@ -127,6 +130,7 @@ void bind_stage_cell(File<GrainTables>& file) {
 std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
                                           std::optional<PeriodicCell> cell) {
   if (cell) cell->rate_xx = cell->rate_yy = cell->rate_xy = {};
+  if (cell && cell->servo) cell->servo->goes_on_xx = cell->servo->goes_on_yy = true;
   const TomlValue* given = stage.find("cell");
   if (given == nullptr) return cell;
   if (!cell)

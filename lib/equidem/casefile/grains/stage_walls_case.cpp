@@ -178,7 +178,10 @@ void StageWalls::change(const TomlValue& table, std::span<const NamedSchedule> s
 void StageWalls::read(const TomlValue& stage, std::span<const NamedSchedule> schedules) {
   check_names(stage, "wall", "stage.");
   renamed_.clear();
-  for (Wall& wall : walls_) wall.move_x = wall.move_y = {};
+  for (Wall& wall : walls_) {
+    wall.move_x = wall.move_y = {};
+    if (wall.servo) wall.servo->goes_on = true;
+  }
   for (const TomlValue& table : repeated(stage, "rename")) rename(table);
   for (const TomlValue& table : repeated(stage, "wall")) {
     check_name(table);

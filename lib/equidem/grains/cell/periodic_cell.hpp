@@ -23,6 +23,7 @@ struct CellServo {
   std::optional<Schedule> stress_xx = {}, stress_yy = {};  ///< Pa, tension positive
   double max_rate = 0;                                     ///< 1/s, > 0
   double relaxation = 0.1;                                 ///< in (0, 1]
+  bool goes_on_xx = false, goes_on_yy = false;             ///< as Servo::goes_on, of either stress
 };
 
 /// The bodies repeat at all sums of whole multiples of the periods. A period along y shifts with simple shear (Lees and

@@ -127,9 +127,28 @@ const Grain& StagedSimulation::body_of_run(std::size_t number) const {
   return stages_[stage].bodies.added[number - first_added(stage)];
 }
 
-/// The scene of a stage that begins with a step.
-GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, const Start& start,
+/// The stage that gave the servo of a wall its schedule.
+std::size_t StagedSimulation::stage_of_servo(std::size_t stage, std::size_t wall) const {
+  for (; stage > 0 && stages_[stage].scene.walls[wall].servo->goes_on; --stage) {
+    const std::int32_t before = wall_origins(stage)[wall];
+    if (before < 0) break;
+    wall = static_cast<std::size_t>(before);
+  }
+  return stage;
+}
+
+/// Likewise of a stress of the cell.
+std::size_t StagedSimulation::stage_of_stress(std::size_t stage, bool CellServo::*goes_on) const {
+  while (stage > 0 && (*stages_[stage].scene.cell->servo).*goes_on) --stage;
+  return stage;
+}
+
+/// The scene of a stage.
+/// \param firsts steps with which the stages up to this one begin
+GrainScene StagedSimulation::scene_of(std::span<const std::int64_t> firsts, const Start& start,
                                       const Bonds& bonds) const {
+  const std::size_t stage = firsts.size() - 1;
+  const auto time_of = [&](std::size_t k) { return static_cast<double>(firsts[k]) * options_.time_step; };
   GrainScene scene = stages_[stage].scene;
   scene.grains = start.bodies.grains;
   const SceneBonds between = bonds_between(start.bodies.numbers, bonds);
@@ -142,14 +161,14 @@ GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, con
       scene.strengths->shear.push_back(bonds.strengths->shear[bond]);
     }
   }
-  const double time = static_cast<double>(first) * options_.time_step;
+  const double time = time_of(stage);
   for (std::size_t w = 0; w < start.walls.size(); ++w) {
     Wall& wall = scene.walls[w];
     wall.end += start.walls[w] - wall.point;
     wall.point = start.walls[w];
     wall.move_x = delayed(wall.move_x, time);
     wall.move_y = delayed(wall.move_y, time);
-    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time);
+    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time_of(stage_of_servo(stage, w)));
   }
   if (!scene.cell) return scene;
   PeriodicCell& cell = *scene.cell;
@@ -157,8 +176,9 @@ GrainScene StagedSimulation::scene_of(std::size_t stage, std::int64_t first, con
   cell.width = start.cell->width, cell.height = start.cell->height, cell.shift = start.cell->shift;
   for (Schedule* rate : {&cell.rate_xx, &cell.rate_yy, &cell.rate_xy}) *rate = delayed(*rate, time);
   if (cell.servo)
-    for (std::optional<Schedule>* stress : {&cell.servo->stress_xx, &cell.servo->stress_yy})
-      if (*stress) *stress = delayed(**stress, time);
+    for (const auto& [stress, goes_on] : {std::pair{&cell.servo->stress_xx, &CellServo::goes_on_xx},
+                                          std::pair{&cell.servo->stress_yy, &CellServo::goes_on_yy}})
+      if (*stress) *stress = delayed(**stress, time_of(stage_of_stress(stage, goes_on)));
   return scene;
 }
 
@@ -195,12 +215,15 @@ void StagedSimulation::begin_stage() {
   ChangedBodies changed;
   Bonds bonds;
   std::unique_ptr<GrainSimulation> simulation;
+  std::vector<std::int64_t> firsts;
+  for (const StageReport& report : reports_) firsts.push_back(report.first);
+  firsts.push_back(step());
   try {
     changed = change_bodies({numbers(), present_->grains()}, how, first_added(next));
     start.bodies = changed.now;
     const std::vector<GrainContact> contacts = contacts_now(*present_, changed.origins);
     bonds = bonds_of(next, bonds_, start, contacts);
-    simulation = std::make_unique<GrainSimulation>(scene_of(next, step(), start, bonds), options_,
+    simulation = std::make_unique<GrainSimulation>(scene_of(firsts, start, bonds), options_,
                                                    order_now(present_->order(), changed.origins));
     simulation->take_over(*present_, {changed.origins,
                                       bond_origins(bonds_between(numbers(), bonds_).numbers,

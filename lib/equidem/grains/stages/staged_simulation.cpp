@@ -2,6 +2,7 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -118,7 +119,7 @@ StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOp
   }
   start_ = start_of_first();
   bonds_ = bonds_at_start();
-  present_ = std::make_unique<GrainSimulation>(scene_of(0, 0, start_, bonds_), options_);
+  present_ = std::make_unique<GrainSimulation>(scene_of(std::array{std::int64_t{0}}, start_, bonds_), options_);
   effects_ = effects_of(stages_, options_);
   initial_ = present_->energy().initial;
   reports_.push_back(

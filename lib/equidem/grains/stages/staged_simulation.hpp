@@ -180,8 +180,9 @@ class StagedSimulation final : public AnySimulation {
   [[nodiscard]] std::size_t first_added(std::size_t stage) const;
   [[nodiscard]] const Grain& body_of_run(std::size_t number) const;
   [[nodiscard]] static SceneBonds bonds_between(const std::vector<std::size_t>& bodies, const Bonds& bonds);
-  [[nodiscard]] GrainScene scene_of(std::size_t stage, std::int64_t first, const Start& start,
-                                    const Bonds& bonds) const;
+  [[nodiscard]] GrainScene scene_of(std::span<const std::int64_t> firsts, const Start& start, const Bonds& bonds) const;
+  [[nodiscard]] std::size_t stage_of_servo(std::size_t stage, std::size_t wall) const;
+  [[nodiscard]] std::size_t stage_of_stress(std::size_t stage, bool CellServo::*goes_on) const;
   [[nodiscard]] std::vector<std::int32_t> wall_origins(std::size_t stage) const;
   [[nodiscard]] std::vector<Vec2> places_in(std::size_t stage) const;
   [[nodiscard]] Start start_of_first() const;

@@ -280,9 +280,10 @@ void StagedSimulation::restore(const SavedState& state) {
     refuse_state("the saved state has breaks of bonds that are not there", "its file may be damaged");
   std::vector<std::size_t> order;
   Start start = start_in(state, begun, order);
-  const auto first = static_cast<std::int64_t>(stages[numbers_per_stage * (begun - 1)]);
-  auto simulation = std::make_unique<GrainSimulation>(
-      begun == 1 ? scene_of(0, 0, start_of_first(), bonds) : scene_of(begun - 1, first, start, bonds), options_, order);
+  std::vector<std::int64_t> firsts;
+  for (std::size_t k = 0; k < begun; ++k) firsts.push_back(static_cast<std::int64_t>(stages[numbers_per_stage * k]));
+  auto simulation = std::make_unique<GrainSimulation>(scene_of(firsts, begun == 1 ? start_of_first() : start, bonds),
+                                                      options_, order);
   simulation->restore(state);
   std::vector<StageReport> reports;
   for (std::size_t k = 0; k < begun; ++k) {
