@@ -36,7 +36,10 @@ ChangedBodies change_bodies(const PresentBodies& before, const StageBodies& how,
     const Grain& grain = before.grains[k];
     bool goes = false;
     for (std::size_t c = 0; c < how.removed.size(); ++c)
-      if (how.removed[c].holds(grain)) goes = removes[c] = 1;
+      if (how.removed[c].holds(grain)) {
+        goes = true;
+        removes[c] = 1;
+      }
     if (goes) {
       ++changed.removed;
       continue;
