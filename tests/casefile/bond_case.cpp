@@ -4,10 +4,13 @@
 #include <fstream>
 #include <string>
 
+#include "equidem/casefile/assembly/strength_tables.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 
 #include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace equidem;
 
@@ -122,4 +125,36 @@ TEST_CASE("bonds_that_a_case_cannot_mean_are_refused_with_their_line") {
   const GrainCase exact =
       parsed_bonds("[[bond]]\ngrains = [0, 1]\nnormal_dashpot = 1.0\n", {"collisions.law=exact_flow"});
   CHECK_THROWS_WITH(choose_grain_step(exact), Catch::Contains("collisions.law") && Catch::Contains("linear_dashpot"));
+}
+
+TEST_CASE("the_strength_file_of_a_calibration_gives_bonds_the_strengths_of_its_table") {
+  const test::TemporaryFolder folder;
+  const StrengthOptions calibrated{
+      .tension = 5886.9, .shear = 6252.4, .friction = 0.5, .weibull_modulus = 8, .seed = 3};
+  write_file(folder / "cs.toml", strength_file(calibrated, "a rock", "by a calibration"), true);
+  const std::string bonds = "[bonds]\nnormal_spring = 1e5\n[[bond]]\ngrains = [0, 1]\n[[bond]]\ngrains = [1, 2]\n";
+  const std::string table =
+      "[strength]\ntension = 5886.9\nshear = 6252.4\nfriction = 0.5\nweibull_modulus = 8.0\nseed = 3\n";
+  const auto read = [&](std::string start, const std::string& more) {
+    return parse_grain_case(start.insert(start.find('\n') + 1, more), "case.toml", folder.path());
+  };
+  const GrainCase by_file = read(discs + bonds, "strength = \"cs.toml\"\n"), by_table = read(discs + bonds + table, "");
+  REQUIRE(by_file.scene.strengths);
+  CHECK(by_file.scene.strengths->tension == by_table.scene.strengths->tension);
+  CHECK(by_file.scene.strengths->shear == by_table.scene.strengths->shear);
+  CHECK(by_file.scene.strengths->friction == 0.5);
+  CHECK(
+      parse_grain_case(to_toml(by_file.document, folder.path()), "echo.toml", folder.path()).scene.strengths->tension ==
+      by_table.scene.strengths->tension);
+  // Broken bonds of bodies that collide always rub: the key is none of theirs.
+  write_file(folder / "cs.toml",
+             "schema = \"equidem-strength/1\"\n[strength]\ntension = 1.0\nshear = 1.0\n"
+             "after_breaking = \"gone\"\n",
+             true);
+  try {
+    read(discs + bonds, "strength = \"cs.toml\"\n");
+    FAIL("accepted");
+  } catch (const Error& error) {
+    CHECK_THAT(error.what(), Catch::Contains("cs.toml:5") && Catch::Contains("after_breaking"));
+  }
 }

@@ -98,7 +98,7 @@ class Quasistatic(ProgramTest):
         table = part / "events.csv"
         equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--set", "quasistatic.max_events=1")
         text = (part / "case.toml").read_text()
-        refused = equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--resume")
+        refused = equidem("quasistatic", NOTCH, "--out", part, *NO_PICTURE, "--set", "strength.seed=7", "--resume")
         self.check_error(refused, 2, "another case")
         rows = (whole / "events.csv").read_text().splitlines(keepends=True)
         (part / "case.toml").write_text((whole / "case.toml").read_text())

@@ -4,6 +4,7 @@
 [unittest options]."""
 import csv
 import random
+import re
 import signal
 import subprocess
 import time
@@ -81,6 +82,62 @@ class QuasistaticResume(ProgramTest):
         self.check_done(equidem("quasistatic", NOTCH, "--out", part, *stop, "--resume"))
         self.assertEqual(self.cracks_of(whole), self.cracks_of(part))
         self.assertEqual((whole / "frames.pvd").read_text(), (part / "frames.pvd").read_text())
+
+    def test_a_path_that_was_ended_by_max_events_goes_on_to_the_events_of_a_whole_one(self):
+        rubbing = CASES / "rubbing_notch.toml"
+        for case, first, last in ((NOTCH, 13, 40), (rubbing, 10, 200)):
+            with self.subTest(case=case.name):
+                whole, part = self.folder / case.stem / "whole", self.folder / case.stem / "part"
+                command = ("quasistatic", case, *NO_PICTURE, "--threads", 1)
+                until = ("--set", f"quasistatic.max_events={last}")
+                self.check_done(equidem(*command, *until, "--out", whole))
+                self.check_done(equidem(*command, "--set", f"quasistatic.max_events={first}", "--out", part))
+                done = self.cracks_of(part)
+                self.assertLess(len(done), last)
+                self.check_done(equidem(*command, *until, "--out", part, "--resume", "--set", "title=another"))
+                self.assertEqual(self.cracks_of(whole), self.cracks_of(part))
+                self.assertEqual(done, self.cracks_of(whole)[:len(done)])
+                if case == rubbing:
+                    self.assertEqual((whole / "events.csv").read_bytes(), (part / "events.csv").read_bytes())
+                back = equidem(*command, "--set", f"quasistatic.max_events={first}", "--out", part, "--resume")
+                self.check_error(back, 2, f"max_events is {first}, and {len(self.cracks_of(whole))} events are done",
+                                 "goes on, and not back")
+
+    def frames_of(self, out):
+        return [int(step) for step in re.findall(r'timestep="(\d+)"[^>]*name="discs"', (out / "frames.pvd").read_text())]
+
+    def test_a_resumed_path_may_write_other_frames(self):
+        def run(case, events, every, *more):
+            self.check_done(equidem("quasistatic", case, *NO_PICTURE, "--out", self.folder / case.stem, "--set",
+                                    f"quasistatic.max_events={events}", "--set", f"quasistatic.frame_every={every}", *more))
+
+        out = self.folder / NOTCH.stem
+        run(NOTCH, 12, 5)
+        self.assertEqual(self.frames_of(out)[:2], [5, 10])
+        run(NOTCH, 23, 7, "--resume")
+        self.assertEqual(self.frames_of(out)[:4], [5, 10, 14, 21])
+        run(NOTCH, 26, 0, "--resume")
+        self.assertEqual(len(self.cracks_of(out)), 26)
+        run(NOTCH, 34, 10, "--resume")
+        self.assertEqual(self.frames_of(out)[:6], [5, 10, 14, 21, 30, 34])
+        # Where contacts rub, many change at once.
+        rubbing = CASES / "rubbing_notch.toml"
+        out = self.folder / rubbing.stem
+        run(rubbing, 10, 0)
+        before = len(self.cracks_of(out))
+        run(rubbing, 200, 1, "--resume")
+        self.assertGreater(min(self.frames_of(out)), before)
+        many = self.frames_of(out)
+        run(rubbing, 260, 500, "--resume")
+        self.assertEqual(many[:-1], self.frames_of(out)[:len(many) - 1])
+
+    def test_a_key_that_decides_the_path_is_named_where_it_differs(self):
+        out = self.folder / "out"
+        command = ("quasistatic", NOTCH, *NO_PICTURE, "--out", out, "--set", "quasistatic.max_events=5")
+        self.check_done(equidem(*command))
+        for change, told in (("strength.seed=2", "strength.seed is"), ("support.1.uy=2e-6", "support.1.uy is 1e-06 there and 2e-06"),
+                             ("quasistatic.legs=[2.0, 1.0]", "quasistatic.legs is given here alone")):
+            self.check_error(equidem(*command, "--set", change, "--resume"), 2, "of another case", told)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -25,6 +29,43 @@ double sum_of_loads(const std::vector<double>& force, std::size_t per_disc) {
     sum += std::sqrt(square);
   }
   return sum;
+}
+
+/// How far two supports move from each other, m: of the components that both prescribe.
+double length_between(const Support& a, const Support& b) {
+  const auto difference = [](const std::optional<double>& x, const std::optional<double>& y) {
+    return x && y ? *y - *x : 0.0;
+  };
+  return std::hypot(difference(a.ux, b.ux), difference(a.uy, b.uy));
+}
+
+/// S of imposed motions, m: the largest relative motion of two supports; rotations, times a, from rest where all are
+/// alike; motions from rest where no support moves against another.
+/// \param scale a, m
+double size_of_motions(const std::vector<Support>& supports, double scale) {
+  std::map<std::string, Support> of_group;  // several supports of a group prescribe one motion
+  for (const Support& support : supports) {
+    Support& whole = of_group[support.group];
+    if (support.ux) whole.ux = support.ux;
+    if (support.uy) whole.uy = support.uy;
+    if (support.rotation) whole.rotation = support.rotation;
+  }
+  using Translation = std::pair<std::optional<double>, std::optional<double>>;
+  std::set<Translation> translations;
+  std::set<double> rotations;
+  for (const auto& [group, support] : of_group) {
+    translations.insert({support.ux, support.uy});
+    if (support.rotation) rotations.insert(scale * *support.rotation);
+  }
+  double between = 0, from_rest = 0;
+  if (rotations.size() == 1) between = std::abs(*rotations.begin());
+  if (rotations.size() > 1) between = *rotations.rbegin() - *rotations.begin();
+  for (const auto& [ux, uy] : translations) {
+    const Support one{{}, ux, uy, {}};
+    from_rest = std::max(from_rest, length_between({{}, 0.0, 0.0, {}}, one));
+    for (const auto& [vx, vy] : translations) between = std::max(between, length_between(one, {{}, vx, vy, {}}));
+  }
+  return between > 0 ? between : from_rest;
 }
 
 void check_strain(const Assembly& assembly, const Voigt& strain) {
@@ -105,8 +146,7 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
   if (any_nonzero(path.pattern.prescribed)) {
     driving.emplace_back("the motions of supports");
     path.driven_by = DrivenBy::motions;
-    path.size = 0;
-    for (const double u : path.pattern.prescribed) path.size = std::max(path.size, std::abs(u));
+    path.size = size_of_motions(options.supports, unknowns.rotation_scale);
   }
   if (options.strain) {
     const Voigt& e = *options.strain;

@@ -48,7 +48,9 @@ struct LoadPathOptions {
 /// Forces are N0 + lambda N1. The pair (load, motion) works together: per metre of depth the work done by what lambda
 /// drives is d(work) = load d(motion), times the area where a mean strain drives.
 ///   loads    load = lambda S with S = sum of the magnitudes |f_d| of the loads on discs, motion = sum f_d . u_d / S
-///   motions  motion = lambda S with S the largest motion, load = sum of reactions . motions / S
+///   motions  motion = lambda S with S the largest relative motion of two supports (the length of the difference of the
+///            components that both prescribe, or of their rotations times a, from rest where all are alike),
+///            load = sum of reactions . motions / S
 ///   strain   motion = lambda S with S the largest component, load = stress : strain / S, Pa
 struct LoadPath {
   DrivenBy driven_by = DrivenBy::loads;

@@ -27,6 +27,7 @@
 #include "quasistatic/event_table.hpp"
 #include "quasistatic/quasistatic_files.hpp"
 #include "quasistatic/quasistatic_results.hpp"
+#include "quasistatic/resumed_path.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -210,7 +211,8 @@ bool keeps_state(const Case& resolved) {
 class PathCheckpoint {
  public:
   PathCheckpoint(const CommonOptions& options, const Sequence& sequence)
-      : path_(*options.out / path_checkpoint_name), case_text_(to_toml(sequence.problem.resolved, *options.out)) {}
+      : path_(*options.out / path_checkpoint_name),
+        case_text_(deciding_keys_of_path(sequence.problem.resolved, *options.out)) {}
 
   void write(const Sequence& sequence, EventFrames* frames) const {
     Checkpoint checkpoint;
@@ -238,21 +240,16 @@ class PathCheckpoint {
 std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence) {
   const auto table = *options.out / event_table_name, text = *options.out / "case.toml";
   if (!std::filesystem::exists(table) || !std::filesystem::exists(text)) return {};
-  if (read_file(text) != to_toml(sequence.problem.resolved, *options.out)) {
-    bad_input_at(text.string(), "the events there are of another case", "contacts would break in another order",
-                 "Choose another --out, or leave out --resume and pass --overwrite");
-  }
+  const FreeKeysOfPath before = check_same_path(text, sequence.problem.resolved);
   StoredEvents stored = read_events(table, sequence.run(), sequence.scene());
   std::optional<FileMark> frames;
+  const bool with_frames = sequence.problem.resolved.quasistatic.frame_every != 0;
   std::string cut = stored.cut ? "the last line is cut short; " : "";
   const std::int64_t found = std::ssize(stored.events);
-  if (keeps_state(sequence.problem.resolved)) {
-    const std::optional<Checkpoint> kept = PathCheckpoint(options, sequence).read();
-    if (!kept) {
-      say(options, fmt::format("{}: {} that lie there are computed again: no state was kept yet", table.string(),
-                               counted(found, "event")));
-      return {};
-    }
+  check_most_events(before, sequence.problem.resolved, found);
+  std::optional<Checkpoint> kept;
+  if (keeps_state(sequence.problem.resolved)) kept = PathCheckpoint(options, sequence).read();
+  if (kept) {
     if (sequence.unbonded) {
       PathNumbers numbers(kept->state["path"]);
       sequence.unbonded->pass(numbers);
@@ -260,14 +257,20 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence)
     } else {
       stored.events.resize(std::min(stored.events.size(), static_cast<std::size_t>(kept->state.step)));
     }
-    if (sequence.problem.resolved.quasistatic.frame_every != 0) frames = kept->mark_of("frames.pvd");
+    const bool had_frames = std::ranges::find(kept->files, "frames.pvd", &FileMark::name) != kept->files.end();
+    if (with_frames && had_frames) frames = kept->mark_of("frames.pvd");
     const std::int64_t step = sequence.unbonded ? kept->state.step : std::ssize(stored.events);
     const std::string later =
         step < found ? fmt::format(" of the {} that lie there: no later state was kept", found) : "";
     say(options, fmt::format("{}: {}going on behind {}{}", table.string(), cut, counted(step, "event"), later));
+  } else if (sequence.unbonded || (with_frames && before.frame_every != 0)) {
+    say(options, fmt::format("{}: {} that lie there are computed again: no state was kept yet", table.string(),
+                             counted(found, "event")));
+    return {};
   } else if (stored.cut) {
     say(options, fmt::format("{}: {}going on behind {}", table.string(), cut, counted(found, "event")));
   }
+  if (with_frames && !frames) say(options, "frames begin here: none were kept of the path so far");
   if (sequence.brittle) sequence.brittle->resume(std::move(stored.events));
   return frames;
 }
@@ -278,7 +281,7 @@ bool go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   EventPath& run = sequence.run();
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   std::optional<EventFrames> frames;
-  if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every, from);
+  if (options.out && wanted.frame_every > 0) frames.emplace(options, sequence.scene(), wanted.frame_every, from, run);
   std::optional<PathCheckpoint> checkpoint;
   if (options.out && keeps_state(sequence.problem.resolved)) checkpoint.emplace(options, sequence);
   bool between = true;  // two calls of advance()

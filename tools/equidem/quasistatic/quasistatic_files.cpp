@@ -132,14 +132,15 @@ void write_end_state(const CommonOptions& options, const OutputCase& wanted, con
 }
 
 EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every,
-                         const std::optional<FileMark>& from)
+                         const std::optional<FileMark>& from, const EventPath& run)
     : scene_(scene),
       every_(every),
+      begun_(from ? 0 : std::ssize(run.events())),
       writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite, .continue_from = from}) {}
 
 bool EventFrames::due(const EventPath& run) const {
   // Where contacts rub several events may happen at once.
-  return std::ssize(run.events()) / every_ > std::max<std::int64_t>(writer_.last_step(), 0) / every_;
+  return std::ssize(run.events()) / every_ > std::max(writer_.last_step(), begun_) / every_;
 }
 
 void EventFrames::add_end(const EventPath& run, const PathState& state) {

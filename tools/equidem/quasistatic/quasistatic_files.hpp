@@ -49,9 +49,9 @@ void write_end_state(const CommonOptions& options, const OutputCase& wanted, con
 /// event stands for the time; an end at another lambda than that of the last event is one further.
 class EventFrames {
  public:
-  /// \param from frames of the path so far; none: it begins
+  /// \param from frames of the path so far; none: they begin with the next events of the run
   EventFrames(const CommonOptions& options, const BreakageScene& scene, std::int64_t every,
-              const std::optional<FileMark>& from);
+              const std::optional<FileMark>& from, const EventPath& run);
   /// Whether a frame is due behind the last event.
   [[nodiscard]] bool due(const EventPath& run) const;
   void add(const EventPath& run, const PathState& state) { append(std::ssize(run.events()), state, true); }
@@ -67,7 +67,7 @@ class EventFrames {
   void append(std::int64_t step, const PathState& state, bool regular);
 
   const BreakageScene scene_;
-  std::int64_t every_;
+  std::int64_t every_, begun_;
   FrameWriter writer_;
 };
 

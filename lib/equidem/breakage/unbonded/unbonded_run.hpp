@@ -82,6 +82,7 @@ class UnbondedRun : public EventPath {
   void pass(PathNumbers& n) {
     n.pass(events_, points_, breaking_, begun_, rates_, dead_done_, checked_, standstill_, leg_, load_rate_);
     n.pass(motion_rate_, share_, travelled_, end_, why_, counters_, *state_, solver_);
+    if (n.restores() && end_ == PathEnd::most_events) end(PathEnd::none, {});  // this path may have more
   }
 
  private:

@@ -208,8 +208,7 @@ void bind_run(File<CaseTables>& file) {
 }
 
 void bind_breakage(File<CaseTables>& file) {
-  file.table("").keys({unbound_key<CaseTables>(
-      "strength", KeyType::path, "a strength file, as calibrate writes it, in place of the table [strength]")});
+  bind_strength_file(file);
   file.table("strength", &CaseTables::strength, "strengths of the contacts, for the verb quasistatic")
       .keys(strength_keys());
   file.table("strength_target", &CaseTables::strength_target,

@@ -12,14 +12,7 @@ struct StrengthFile : CaseDocument {
   StrengthOptions strength;
 };
 
-const File<StrengthFile>& strength_file_format() {
-  static const File<StrengthFile> file = [] {
-    File<StrengthFile> made("equidem-strength/1", "strength file");
-    made.table("strength", &StrengthFile::strength, required, "strengths of the contacts").keys(strength_keys());
-    return made;
-  }();
-  return file;
-}
+constexpr const char* strength_schema = "equidem-strength/1";
 
 }  // namespace
 
@@ -70,8 +63,11 @@ std::vector<Key<StrengthTargetCase>> strength_target_keys() {
           "a test is over where the load has fallen to this share of its peak")};
 }
 
-void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder) {
-  resolve_table_file(root, "strength", strength_file_format(), folder);
+void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder,
+                           std::vector<Key<StrengthOptions>> keys) {
+  File<StrengthFile> file(strength_schema, "strength file");
+  file.table("strength", &StrengthFile::strength, required, "strengths of the contacts").keys(std::move(keys));
+  resolve_table_file(root, "strength", file, folder);
 }
 
 void check_strength_target(const TomlValue& root) {
@@ -102,7 +98,7 @@ namespace equidem {
 std::string strength_file(const StrengthOptions& strengths, const std::string& title, const std::string& comment) {
   std::string out = casefile::comment_lines(comment);
   out += fmt::format("schema = \"{}\"\ntitle = {}\n\n[strength]\ntension = {}\nshear = {}\nfriction = {}\n",
-                     casefile::strength_file_format().spec().schema, toml_text(title), toml_number(*strengths.tension),
+                     casefile::strength_schema, toml_text(title), toml_number(*strengths.tension),
                      toml_number(*strengths.shear), toml_number(strengths.friction));
   out += fmt::format("bond_length = {}\nseed = {}\n", toml_text(to_string(strengths.bond_length)), strengths.seed);
   if (strengths.weibull_modulus) out += fmt::format("weibull_modulus = {}\n", toml_number(*strengths.weibull_modulus));

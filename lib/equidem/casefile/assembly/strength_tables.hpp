@@ -36,9 +36,18 @@ namespace equidem::casefile {
 std::vector<Key<StrengthOptions>> strength_keys();
 std::vector<Key<StrengthTargetCase>> strength_target_keys();
 
+/// Binds `strength = "FILE"` at the top of a case file.
+template <class F>
+void bind_strength_file(File<F>& file) {
+  file.table("").keys({unbound_key<F>("strength", KeyType::path,
+                                      "a strength file, as calibrate writes it, in place of the table [strength]")});
+}
+
 /// The table of a strength file takes the place of its name.
+/// \param keys that it may have
 /// \throws Error (bad_input) as resolve_table_file
-void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder);
+void resolve_strength_file(TomlValue& root, const std::filesystem::path& folder,
+                           std::vector<Key<StrengthOptions>> keys = strength_keys());
 
 /// \throws Error (bad_input) with the line: strengths of contacts beside [strength_target], which asks for them
 void check_strength_target(const TomlValue& root);

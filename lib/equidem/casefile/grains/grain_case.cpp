@@ -119,6 +119,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
                            std::span<const std::string> overrides) {
   TomlValue root = parse_document(content, name, overrides);
   resolve_springs_file(root, folder);
+  resolve_bond_strengths(root, folder);
   GrainTables tables = grain_file().read(root, folder);
   tables.common.density = one_density(
       root, {{"grains", tables.common.density}, {"springs", tables.springs ? tables.springs->density : std::nullopt}});

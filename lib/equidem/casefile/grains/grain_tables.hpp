@@ -133,6 +133,10 @@ std::vector<std::string> complete_bodies(const TomlValue& root, GrainShapes& sha
 void complete_collisions(const TomlValue& root, const std::vector<std::string>& groups, GrainTables& tables,
                          const TomlValue* stage = nullptr);
 
+/// The table of a strength file takes the place of its name.
+/// \throws Error (bad_input) as resolve_strength_file; with a key that bonds of colliding bodies have not
+void resolve_bond_strengths(TomlValue& root, const std::filesystem::path& folder);
+
 /// The bonds of the file, then those of the case, and their strengths.
 /// \param tables with bodies
 /// \throws Error (bad_input) with line and key: as check_bonds, a file that is not a table of bonds;
