@@ -106,7 +106,9 @@ TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
       std::int64_t steps = 0;
       for (bool more = true; more; ++steps) {
         more = pressed.run().advance();
-        if (!back && pressed.run().lambda() < 2 && !pressed.events().empty() && pressed.events().back().leg == 2) {
+        const bool event_on_the_way_back = !pressed.events().empty() && pressed.events().back().leg == 2;
+        if (!back && pressed.run().lambda() < 2 &&
+            (event_on_the_way_back || pressed.run().end() == PathEnd::legs_done)) {
           way.go_to(pressed_lattice(rows, friction, {1, 2}).all().run().state().motion().high);
           back = true;
         }

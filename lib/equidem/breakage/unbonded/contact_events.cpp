@@ -35,7 +35,7 @@ std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::sp
 }
 
 NextContactEvent next_contact_event(const UnbondedState& state, std::span<const UnbondedLaw> laws,
-                                    const ContactStrengths& strengths, const Rates& rates) {
+                                    const ContactStrengths& strengths, const Rates& rates, double stage) {
   const double none = rates.negligible, tolerance = state.negligible_force();
   std::vector<double> times(laws.size(), never);
   std::vector<std::optional<BreakMode>> modes(laws.size());
@@ -43,7 +43,7 @@ NextContactEvent next_contact_event(const UnbondedState& state, std::span<const 
     double t = never;
     if (a > tolerance && mode) {
       t = 0;
-    } else if (b > none) {
+    } else if (b > none && (mode || a + b * stage > tolerance)) {
       t = std::max(0.0, -a / b);
     }
     if (t < times[c]) times[c] = t, modes[c] = mode;

@@ -30,7 +30,10 @@ struct NextContactEvent {
 std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::span<const UnbondedLaw> laws);
 
 /// The first contact that reaches a limit while all forces go on at these rates; t is infinite where none does.
+/// \param stage t at which the rates end whatever happens. A contact without a bond that is beyond its limit by no more
+///        than round-off there has not reached it: the last forces of a part that comes loose vanish exactly with
+///        those of the bond that held it, and behind the stage such contacts are on their limits either way.
 NextContactEvent next_contact_event(const UnbondedState& state, std::span<const UnbondedLaw> laws,
-                                    const ContactStrengths& strengths, const Rates& rates);
+                                    const ContactStrengths& strengths, const Rates& rates, double stage);
 
 }  // namespace equidem

@@ -364,8 +364,9 @@ bool UnbondedRun::advance() {
       if (!find_rates()) break;
       if (!releasing() && events_.size() > before) return true;
     }
-    const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_);
-    const double stage = stage_end(), t = std::min(stage, next.t);
+    const double stage = stage_end();
+    const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_, stage);
+    const double t = std::min(stage, next.t);
     if (t == infinite) {
       end(PathEnd::never_breaks, "no contact changes any more at any lambda");
       break;
