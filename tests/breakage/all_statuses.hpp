@@ -66,7 +66,7 @@ class AllStatuses {
     return std::array{stuck, open, slips_forward, slips_backward}[digit];
   }
 
-  /// What must not be negative of a contact on a limit with this status, as rows of a motion.
+  /// Quantities of a contact on a limit that must not be negative in this status, as rows of a motion.
   [[nodiscard]] std::vector<std::vector<double>> rows_to_hold(const LimitContact& at, ContactStatus now) const {
     const UnbondedLaw& law = network_.laws()[at.contact];
     const auto& [g, h] = rows_[at.contact];

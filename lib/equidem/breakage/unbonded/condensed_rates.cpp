@@ -34,7 +34,7 @@ double inner_product_of(std::span<const double> a, std::span<const double> b) {
 
 }  // namespace
 
-/// Of one combination: M x = b for the components that are not zero, and what must not be negative.
+/// One combination: M x = b for the components that are not zero, and what must not be negative.
 struct CondensedRates::Equations {
   std::vector<std::size_t> components{};
   std::vector<Line> vanish{}, hold{};
@@ -191,7 +191,7 @@ void CondensedRates::add_conditions(std::size_t place, ContactStatus status, Equ
     if (apex || side == limit.direction) hold(limit_line(place, side), -1);
 }
 
-/// What is round-off in the units of forces.
+/// The round-off of forces, in their units.
 double CondensedRates::round_off(std::span<const double> e) const {
   return of_forces * size_ + of_slips * largest_component(e);
 }

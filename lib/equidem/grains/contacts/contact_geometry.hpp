@@ -62,7 +62,7 @@ inline double slip_velocity(const GrainSystem& system, const Candidate& candidat
   return dot(relative, perpendicular(geometry.normal)) - turning;
 }
 
-/// Of the tangential mass: 1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j, 1/kg.
+/// The inverse of the tangential mass: 1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j, 1/kg.
 inline double inverse_tangential_mass(const GrainSystem& system, const Candidate& candidate,
                                       const ContactGeometry& geometry) {
   const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
