@@ -131,7 +131,8 @@ TEST_CASE("the_motion_is_how_far_two_supports_move_from_each_other") {
   CHECK(size({{"left", 0, 0, free}, {"right", 3e-3, 4e-3, free}}) == Approx(5e-3).epsilon(1e-15));
   CHECK(size({{"left", 0, 0, free}, {"right", 3e-3, free, free}, {"right", free, 4e-3, free}}) ==
         Approx(5e-3).epsilon(1e-15));
-  // What only one of two supports prescribes is not held against the other: plates that press from four sides.
+  // A component that only one of two supports prescribes is not held against the other: plates that press from four
+  // sides.
   CHECK(size({{"left", 1e-3, free, free},
               {"right", -2e-3, free, free},
               {"bottom", free, 1e-3, free},

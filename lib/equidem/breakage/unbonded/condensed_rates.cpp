@@ -272,7 +272,8 @@ Combination CondensedRates::decide(std::span<const ContactStatus> of_tried, std:
     g.push_back(line.constant + inner_product_of(line.by, e));
     for (std::size_t k = 0; k < d; ++k) h.push_back(along(line, k));
   }
-  // What rests, or slips without a normal force whatever the others do, satisfies its status as long as they do.
+  // A contact that rests, or slips without a normal force whatever the others do, satisfies its status as long as they
+  // do.
   const auto rests = [&](std::size_t place, std::span<const double> at_e) {
     const Felt& felt = felt_[place];
     const auto part = [&](std::size_t q) { return q < all ? std::abs(at_e[q]) : 0; };
