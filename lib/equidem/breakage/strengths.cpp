@@ -90,7 +90,8 @@ ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptio
   }
   if (!options.tension || !options.shear) {
     bad_input(given ? "one of two strengths is missing" : "the strengths are missing",
-              "a contact breaks in tension and in shear", "Give tension and shear in [strength]");
+              "a contact breaks in tension and in shear",
+              "Give tension and shear in [strength], both 0 where no contact is a bond");
   }
   if (options.bond_length == BondLength::facet && assembly.facet_lengths.size() != assembly.contacts.size()) {
     bad_input("the strengths are stresses on facets", "the facets of this assembly are not known",

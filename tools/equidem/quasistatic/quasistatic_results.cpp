@@ -32,11 +32,10 @@ std::string named(const Assembly& assembly, const std::vector<std::int32_t>& dis
   return discs.size() == 1 ? first : fmt::format("{} and {}", first, counted(std::ssize(discs) - 1, "other"));
 }
 
-void add_events(Results& out, const BreakageScene& scene, const EventPath& run) {
+void add_events(Results& out, const BreakageScene& scene, const EventPath& run, bool brittle) {
   const std::vector<BreakEvent>& events = run.events();
   const auto in = [&](BreakMode mode) { return std::ranges::count(events, mode, &BreakEvent::mode); };
   const std::int64_t pulled = in(BreakMode::tension), sheared = in(BreakMode::shear);
-  const bool brittle = pulled + sheared == std::ssize(events);
   out.line("events").add("event_count", "", std::ssize(events), brittle ? "contact" : "event", {Shown::count});
   out.note(
       brittle
@@ -44,7 +43,10 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run) 
           : fmt::format(": {} broken in tension, {} in shear, {} opened, {} closed, {} slipped, {} stuck", pulled,
                         sheared, in(BreakMode::open), in(BreakMode::close), in(BreakMode::slip), in(BreakMode::stick)));
   out.set("broken_in_tension", pulled).set("broken_in_shear", sheared);
-  out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended: " + run.why());
+  const bool cut_short = run.end() == PathEnd::no_answer || run.end() == PathEnd::not_balanced ||
+                         run.end() == PathEnd::load_moves_part;
+  const std::string where = cut_short ? fmt::format(" at lambda {:.9g}", run.lambda()) : "";
+  out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended" + where + ": " + run.why());
   out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
   if (events.empty()) return;
   const auto ties = std::ranges::count_if(events, [](const BreakEvent& event) { return event.ties > 0; });
@@ -226,7 +228,7 @@ Results curve_results(const LoadCurve& curve) {
 Results first_results(const QuasistaticOutcome& outcome, const EventPath& run) {
   Results out = problem_results(outcome.problem, outcome.effects);
   out.append(path_results(outcome.scene, outcome.cut, outcome.residual_friction));
-  add_events(out, outcome.scene, run);
+  add_events(out, outcome.scene, run, !outcome.residual_friction);
   add_loads(out, outcome.scene, run);
   return out;
 }
