@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 
+#include "breakage/tied_disc.hpp"
 #include "breakage/unbonded_scenes.hpp"
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
@@ -284,30 +285,19 @@ TEST_CASE("a_contact_that_is_pulled_opens") {
 }
 
 TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
-  // A disc on the ground that a spring at 45 degrees ties to a held disc: its slip away from the spring takes it off
-  // the ground, so that beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the
-  // oblique spring) the stiffness against slip is negative. At the limit there is no answer onward, and two on the way
-  // back.
-  Assembly scene = chain_of_discs(2, 1);
-  const double r = std::sqrt(2.0);
-  scene.centres.push_back(scene.centres[1] + Vec2{r, r});
-  scene.radii.push_back(1);
-  scene.contacts.push_back({1, 2, 0, 0, 1, 1});
-  scene.groups["held"] = {{0, 2}, {}};
-  scene.groups["disc"] = {{1}, {}};
-  const ContactSprings springs(std::vector<SpringConstants>{{normal_spring, tangential_spring}, {normal_spring, 0}});
+  // The tied disc slips on the other as on the ground: its slip away from the spring takes it off the ground, so that
+  // beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the oblique spring) the
+  // stiffness against slip is negative. At the limit there is no answer onward, and two on the way back.
   for (const double friction : {0.5, 2.0}) {
     for (const double side : {1.0, -1.0}) {
       CAPTURE(friction, side);
-      ContactStrengths strengths = equal_strengths(scene, 0, 0);
-      strengths.tension[1] = strengths.shear[1] = 1e9;
       LoadPathOptions options;
-      options.supports = {{"held", 0, 0, 0}, {"disc", {}, {}, 0}};
+      options.supports = TiedDisc::supports();
       options.dead_loads = {{"disc", LoadKind::per_disc, {-1, 0}, 0}};
       options.loads = {{"disc", LoadKind::per_disc, {0, side}, 0}};
       options.control = LoadControl::load;
       options.legs = {100};
-      Unbonded onward(scene, springs, strengths, options, {friction, {}});
+      Unbonded onward(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::strengths(), options, {friction, {}});
       onward.all();
       if (friction < 1 || side > 0) {
         for (const BreakEvent& event : onward.events()) CHECK(event.other_answers == 0);
@@ -317,7 +307,7 @@ TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
       CHECK(onward.run().counters().no_answer == 1);
       CHECK_THAT(onward.run().why(), Catch::Contains("the increment has no answer"));
       options.legs = {onward.run().lambda(), 0};
-      Unbonded back(scene, springs, strengths, options, {friction, {}});
+      Unbonded back(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::strengths(), options, {friction, {}});
       back.all();
       CHECK(back.run().counters().not_unique > 0);
       CHECK(back.run().counters().largest_motion_difference > 0.01);
