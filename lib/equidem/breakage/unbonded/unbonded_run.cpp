@@ -120,6 +120,7 @@ bool UnbondedRun::find_rates() {
   begun_ = events_.size();
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
+  state_->settle(*rates_, !dead_done_, by_motion(), solver_);
   return true;
 }
 

@@ -39,7 +39,7 @@ void ContactLedger::take(double elastic_now) {
 }
 
 double ContactLedger::error() const {
-  return largest > negligible ? std::abs(work - elastic - friction - released) / largest : 0;
+  return largest > negligible ? std::abs(missing()) / largest : 0;
 }
 
 UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
@@ -192,11 +192,6 @@ double UnbondedState::negligible_force() const {
   return on_limit * force_scale_ + 4 * round_off_force();
 }
 
-double UnbondedState::overlap_of_round_off() const {
-  constexpr double share = 1e-6;
-  return share * force_scale_;
-}
-
 double UnbondedState::farthest() const {
   double far = 0, strained = 0;
   for (const double u : motion_.high) far = std::max(far, std::abs(u));
@@ -206,11 +201,23 @@ double UnbondedState::farthest() const {
 }
 
 void UnbondedState::set_status(std::size_t c, ContactStatus status) {
-  const ContactStatus before = std::exchange(status_[c], status);
-  if (before == status) return;
+  if (status_[c] == status) return;
+  const ContactForce before = law_force(c);
+  const ContactStatus was = std::exchange(status_[c], status);
+  const UnbondedLaw& law = laws_[c];
   const PreciseDeformation& d = deformation_[c];
   // A contact that closes has no tangential force; where it lets go of a limit it keeps that of the limit.
-  if (before == ContactStatus::open) slip_[c] = laws_[c].slip_at(d, 0);
+  if (was == ContactStatus::open) slip_[c] = law.slip_at(d, 0);
+  const ContactForce after = law_force(c);
+  const double jump = std::max(std::abs(after.normal - before.normal), std::abs(after.tangential - before.tangential));
+  if (jump <= negligible_force()) return;
+  if (is_slipping(status)) slip_[c] = law.slip_at(d, after.tangential);
+  forces_[c] = after + scaled(kept_[c], share_);
+  unsettled_ = true;
+}
+
+void UnbondedState::settle(const Rates& rates, bool dead, bool by_motion, TangentSolver& solver) {
+  if (std::exchange(unsettled_, false)) move(0, rates, dead, by_motion, solver);
 }
 
 void UnbondedState::break_bond(std::size_t c, ContactStatus status) {
