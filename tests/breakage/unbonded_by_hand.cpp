@@ -284,6 +284,30 @@ TEST_CASE("a_contact_that_is_pulled_opens") {
   CHECK(pair.run().end() == PathEnd::legs_done);
 }
 
+TEST_CASE("a_disc_between_two_bonds_almost_in_line_is_held_by_what_they_lack_to_the_line") {
+  // Across the bonds, which have no tangential spring, the disc at the height h has the stiffness 2 kN h², of about
+  // what numerical methods hold loose discs with.
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 0, 0, 0}};
+  options.loads = {{"middle", LoadKind::per_disc, {0, -1e-9}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {1};
+  for (const double share : {1e-6, 1e-8, 1e-9, 5.5e-10, 3e-10}) {
+    Assembly scene = chain_of_discs(3, 0.5);
+    const double h = std::sqrt(share / 2);
+    scene.centres[1].y = h;
+    scene.groups["middle"] = {{1}, {}};
+    Unbonded path(scene, ContactSprings(SpringConstants{normal_spring, 0}), equal_strengths(scene, 1e9, 1e9), options,
+                  {0.3, {}});
+    path.all();
+    CAPTURE(share, path.run().why(), path.run().state().relative_residual());
+    CHECK(path.run().end() == PathEnd::legs_done);
+    CHECK(path.run().state().relative_residual() < 1e-12);
+    const double along = 1e-9 / (2 * h / std::sqrt(1 + h * h));  // N of each bond balances half of the load
+    for (const ContactForce& f : path.run().state().forces()) CHECK(f.normal == Approx(-along).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
   // The tied disc slips on the other as on the ground: its slip away from the spring takes it off the ground, so that
   // beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the oblique spring) the

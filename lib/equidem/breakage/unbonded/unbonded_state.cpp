@@ -109,7 +109,8 @@ bool UnbondedState::carries() const {
 
 void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   constexpr double good = 4e-15;
-  constexpr int most = 6;
+  constexpr int most = 40;
+  constexpr double slowest = 0.8;  // the ground leaves as much of a residual where motions are four times as soft
   const std::vector<double>& load = path_.pattern.force;
   std::vector<double> residual(contacts_.components()), along;
   const auto dot = [&](std::span<const double> x) {
@@ -138,7 +139,7 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
     motion_.add(residual);
     evaluate();
     measure_residual(residual);
-    if (residual_ < 0.5 * before) continue;
+    if (residual_ < slowest * before) continue;
     if (residual_ >= before) {
       motion_ = kept.first;
       lambda_ = kept.second;
