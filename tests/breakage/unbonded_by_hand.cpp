@@ -284,6 +284,30 @@ TEST_CASE("a_contact_that_is_pulled_opens") {
   CHECK(pair.run().end() == PathEnd::legs_done);
 }
 
+TEST_CASE("a_disc_has_come_loose_on_contacts_without_a_force_unless_they_carried_one_on_the_last_way") {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 1e-3, 0, 0}};
+  options.control = LoadControl::motion;
+  const Assembly chain = chain_of_discs(3, 1);
+  struct Way {
+    std::vector<double> legs;
+    bool bonded;  // the first contact
+    std::vector<std::int32_t> loose;
+  };
+  for (const Way& way : {Way{{-1}, false, {}}, Way{{-1, 0}, false, {}}, Way{{-1, 1}, false, {1}},
+                         Way{{-1, 1, -1}, false, {}}, Way{{-1, 0}, true, {}}, Way{{-1, 1}, true, {1}}}) {
+    options.legs = way.legs;
+    ContactStrengths strengths = equal_strengths(chain, 0, 0);
+    if (way.bonded) strengths.tension[0] = strengths.shear[0] = 1e9;
+    Unbonded path(chain, stiff_and_soft, strengths, options, {0.3, {}});
+    path.all();
+    CAPTURE(way.legs, way.bonded, path.run().why());
+    CHECK(path.run().end() == PathEnd::legs_done);
+    CHECK(path.run().loose() == way.loose);
+    if (way.bonded) CHECK(path.run().untouched().empty());
+  }
+}
+
 TEST_CASE("a_disc_between_two_bonds_almost_in_line_is_held_by_what_they_lack_to_the_line") {
   // Across the bonds, which have no tangential spring, the disc at the height h has the stiffness 2 kN h², of about
   // what numerical methods hold loose discs with.

@@ -164,6 +164,7 @@ TEST_CASE("a_disc_that_is_left_on_one_bond_ends_no_path_however_the_scene_lies")
     CHECK(path.run().end() == PathEnd::legs_done);
     for (const ContactForce& f : path.run().state().forces())
       CHECK(std::max(std::abs(f.normal), std::abs(f.tangential)) < 1e-13);
+    CHECK(path.run().loose() == std::vector<std::int32_t>{0});
   }
   CHECK(pressed > 0.09);
 }

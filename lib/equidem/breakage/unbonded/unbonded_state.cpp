@@ -20,6 +20,10 @@ ContactForce operator+(const ContactForce& a, const ContactForce& b) {
   return {a.normal + b.normal, a.tangential + b.tangential};
 }
 
+double largest_of(const ContactForce& f) {
+  return std::max(std::abs(f.normal), std::abs(f.tangential));
+}
+
 ContactForce scaled(const ContactForce& f, double by) {
   return {by * f.normal, by * f.tangential};
 }
@@ -61,6 +65,7 @@ UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& spr
       released_by_(laws.size(), 0.0),
       deformation_(laws.size()),
       forces_(laws.size()),
+      carried_(laws.size(), 1),
       internal_(contacts.components(), 0.0) {
   evaluate();
   for (std::size_t k = 0; k < internal_.size(); ++k) rest_load_[k] = unknowns_.held[k] != 0 ? 0 : internal_[k];
@@ -91,7 +96,7 @@ double UnbondedState::outside(std::size_t k) const {
 
 void UnbondedState::measure_residual(std::vector<double>& residual) {
   double largest = 0, force = 0;
-  for (const ContactForce& f : forces_) force = std::max({force, std::abs(f.normal), std::abs(f.tangential)});
+  for (const ContactForce& f : forces_) force = std::max(force, largest_of(f));
   for (std::size_t k = 0; k < residual.size(); ++k) {
     const double from_outside = outside(k);
     force = std::max(force, std::abs(from_outside));
@@ -185,6 +190,11 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
     ledger_.released += by;
   }
   kept_share_ = share_;
+  const double none = negligible_force();
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    const double before = releasing_.empty() && t > 0 ? largest_of(forces[c]) : 0;
+    carried_[c] = std::max(before, largest_of(forces_[c])) > none ? 1 : 0;
+  }
   if (works) ledger_.take(elastic_energy() - rest_energy_);
   ledger_.negligible = std::max(ledger_.negligible, no_force * round_off_force() * farthest());
 }

@@ -62,7 +62,7 @@ class UnbondedState {
   /// All that the constructor does not find.
   void pass(PathNumbers& n) {
     n.pass(status_, slip_, motion_.high, motion_.low, lambda_, dead_, releasing_, kept_, share_, kept_share_);
-    n.pass(released_by_, deformation_, forces_, internal_, ledger_, residual_, force_scale_,
+    n.pass(released_by_, deformation_, forces_, carried_, internal_, ledger_, residual_, force_scale_,
            round_off_force_);
   }
 
@@ -73,6 +73,8 @@ class UnbondedState {
   [[nodiscard]] ContactForce law_force(std::size_t contact) const {
     return laws_[contact].force(status_[contact], deformation_[contact], slip_[contact]);
   }
+  /// Per contact: 1, whether it carries a force, or did where lambda began to move last.
+  [[nodiscard]] const std::vector<std::uint8_t>& carried() const { return carried_; }
   /// N_r + kN dn of a contact: its normal force where it is closed, kN times its gap where it is open.
   [[nodiscard]] double normal_coordinate(std::size_t contact) const;
   /// Forces that broken bonds have yet to give up, per component, N/m, and the contacts that they belong to.
@@ -128,6 +130,7 @@ class UnbondedState {
   std::vector<double> released_by_;    // N, per contact
   std::vector<PreciseDeformation> deformation_;
   std::vector<ContactForce> forces_;
+  std::vector<std::uint8_t> carried_;
   std::vector<double> internal_;
   ContactLedger ledger_;
   double rest_energy_ = 0, residual_ = 0, force_scale_ = 0, round_off_force_ = 0;
