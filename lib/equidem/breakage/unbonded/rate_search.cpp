@@ -8,7 +8,6 @@
 #include "equidem/breakage/unbonded/rate_path.hpp"
 
 namespace equidem {
-
 namespace {
 
 /// Where loads drive what nothing resists, rates of that motion are forces over the ground, and round-off is a small
