@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "breakage/all_statuses.hpp"
+#include "breakage/tied_disc.hpp"
 #include "breakage/unbonded_scenes.hpp"
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
@@ -18,7 +19,7 @@ using namespace equidem::test;
 
 namespace {
 
-constexpr double normal_stiffness = 1000, tangential_stiffness = 300;
+constexpr double normal_stiffness = TiedDisc::kN, tangential_stiffness = TiedDisc::kT;
 
 /// A disc of radius 1 at the origin between two held ones. \param angles of the directions to them, rad
 Assembly groove(double first, double second) {
@@ -42,30 +43,17 @@ Unbonded pressed_into(double slope, double friction, bool turns) {
           options, friction};
 }
 
-/// A disc that does not turn, bonded along a direction of 45 degrees and touching another without a force: its
-/// openings and slips are its motion, and every status gives the load as a linear function of it.
-struct TiedDisc {
+/// The tied disc, whose contact with the other one carries no force: every status gives the load as a linear function
+/// of the motion.
+struct TiedRates {
   /// \param spring_across spring of the bond at right angles to it
-  explicit TiedDisc(double mu, double spring_across = 0)
-      : friction(mu), across(spring_across), network(scene(), springs(spring_across), supports(), mu) {
+  explicit TiedRates(double mu, double spring_across = 0)
+      : friction(mu),
+        across(spring_across),
+        network(TiedDisc::assembly(), TiedDisc::springs(spring_across), TiedDisc::supports(), mu) {
     network.bond(1);
     network.limit({0, OnLimit::apex, 1});
   }
-  static Assembly scene() {
-    Assembly scene = chain_of_discs(2, 1);
-    const double r = std::sqrt(2.0);
-    scene.centres.push_back(scene.centres[1] + Vec2{r, r});
-    scene.radii.push_back(1);
-    scene.contacts.push_back({1, 2, 0, 0, 1, 1});
-    scene.groups["held"] = {{0, 2}, {}};
-    scene.groups["disc"] = {{1}, {}};
-    return scene;
-  }
-  static ContactSprings springs(double spring_across) {
-    return ContactSprings(
-        std::vector<SpringConstants>{{normal_stiffness, tangential_stiffness}, {normal_stiffness, spring_across}});
-  }
-  static std::vector<Support> supports() { return {{"held", 0, 0, 0}, {"disc", {}, {}, 0}}; }
 
   /// The load of the motion (n, t) with a status; K of the oblique bond has the entries (kN + kT)/2, (kN - kT)/2.
   [[nodiscard]] Vec2 load(ContactStatus status, Vec2 u) const {
@@ -182,7 +170,7 @@ TEST_CASE("a_wedge_pressed_between_two_planes_slips_on_those_whose_friction_it_e
 TEST_CASE("a_contact_without_force_opens_sticks_or_slips_as_the_load_is_directed_and_all_answers_are_told") {
   std::array<int, 5> with_answers{};
   for (const double friction : {0.2, 0.8, 1.5, 4.0}) {
-    TiedDisc disc(friction);
+    TiedRates disc(friction);
     for (int k = 0; k < 180; ++k) {
       const Vec2 f = direction(0.01 + std::numbers::pi * k / 90);
       const std::vector<ContactStatus> expected = disc.answers(f);
@@ -209,7 +197,7 @@ TEST_CASE("a_contact_without_force_opens_sticks_or_slips_as_the_load_is_directed
 TEST_CASE("statuses_change_at_the_loads_at_which_theory_says_so") {
   using enum ContactStatus;
   for (const double friction : {0.2, 0.8}) {
-    TiedDisc disc(friction);
+    TiedRates disc(friction);
     for (const double side : {1.0, -1.0}) {
       const Vec2 sliding = disc.load(stuck, {-tangential_stiffness, side * friction * normal_stiffness});
       const double at = std::atan2(sliding.y, sliding.x);
@@ -239,7 +227,7 @@ TEST_CASE("statuses_change_at_the_loads_at_which_theory_says_so") {
 // motion (0, -1), and sticks alone on the other: at the load itself round-off decides.
 TEST_CASE("round_off_decides_where_another_answer_begins_and_this_is_said") {
   const double friction = 4, across = 100;
-  TiedDisc disc(friction, across);
+  TiedRates disc(friction, across);
   const Vec2 border = disc.load(ContactStatus::open, {0, -1});
   const double at = std::atan2(border.y, border.x);
   std::vector<std::size_t> answers;
@@ -263,9 +251,7 @@ TEST_CASE("round_off_decides_where_another_answer_begins_and_this_is_said") {
   options.loads = {{"disc", LoadKind::per_disc, direction(at), 0}};
   options.control = LoadControl::load;
   options.legs = {1};
-  ContactStrengths strengths = equal_strengths(TiedDisc::scene(), 0, 0);
-  strengths.tension[1] = strengths.shear[1] = 1e9;
-  Unbonded path(TiedDisc::scene(), TiedDisc::springs(across), strengths, options, {friction, {}});
+  Unbonded path(TiedDisc::assembly(), TiedDisc::springs(across), TiedDisc::strengths(), options, {friction, {}});
   path.all();
   CHECK(path.run().counters().unchecked == 1);
   CHECK(path.run().counters().ties == 1);

@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 
+#include "breakage/tied_disc.hpp"
 #include "breakage/unbonded_scenes.hpp"
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
@@ -283,31 +284,68 @@ TEST_CASE("a_contact_that_is_pulled_opens") {
   CHECK(pair.run().end() == PathEnd::legs_done);
 }
 
+TEST_CASE("a_disc_has_come_loose_on_contacts_without_a_force_unless_they_carried_one_on_the_last_way") {
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 1e-3, 0, 0}};
+  options.control = LoadControl::motion;
+  const Assembly chain = chain_of_discs(3, 1);
+  struct Way {
+    std::vector<double> legs;
+    bool bonded;  // the first contact
+    std::vector<std::int32_t> loose;
+  };
+  for (const Way& way : {Way{{-1}, false, {}}, Way{{-1, 0}, false, {}}, Way{{-1, 1}, false, {1}},
+                         Way{{-1, 1, -1}, false, {}}, Way{{-1, 0}, true, {}}, Way{{-1, 1}, true, {1}}}) {
+    options.legs = way.legs;
+    ContactStrengths strengths = equal_strengths(chain, 0, 0);
+    if (way.bonded) strengths.tension[0] = strengths.shear[0] = 1e9;
+    Unbonded path(chain, stiff_and_soft, strengths, options, {0.3, {}});
+    path.all();
+    CAPTURE(way.legs, way.bonded, path.run().why());
+    CHECK(path.run().end() == PathEnd::legs_done);
+    CHECK(path.run().loose() == way.loose);
+    if (way.bonded) CHECK(path.run().untouched().empty());
+  }
+}
+
+TEST_CASE("a_disc_between_two_bonds_almost_in_line_is_held_by_what_they_lack_to_the_line") {
+  // Across the bonds, which have no tangential spring, the disc at the height h has the stiffness 2 kN h², of about
+  // what numerical methods hold loose discs with.
+  LoadPathOptions options;
+  options.supports = {{"first", 0, 0, 0}, {"last", 0, 0, 0}};
+  options.loads = {{"middle", LoadKind::per_disc, {0, -1e-9}, 0}};
+  options.control = LoadControl::load;
+  options.legs = {1};
+  for (const double share : {1e-6, 1e-8, 1e-9, 5.5e-10, 3e-10}) {
+    Assembly scene = chain_of_discs(3, 0.5);
+    const double h = std::sqrt(share / 2);
+    scene.centres[1].y = h;
+    scene.groups["middle"] = {{1}, {}};
+    Unbonded path(scene, ContactSprings(SpringConstants{normal_spring, 0}), equal_strengths(scene, 1e9, 1e9), options,
+                  {0.3, {}});
+    path.all();
+    CAPTURE(share, path.run().why(), path.run().state().relative_residual());
+    CHECK(path.run().end() == PathEnd::legs_done);
+    CHECK(path.run().state().relative_residual() < 1e-12);
+    const double along = 1e-9 / (2 * h / std::sqrt(1 + h * h));  // N of each bond balances half of the load
+    for (const ContactForce& f : path.run().state().forces()) CHECK(f.normal == Approx(-along).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
-  // A disc on the ground that a spring at 45 degrees ties to a held disc: its slip away from the spring takes it off
-  // the ground, so that beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the
-  // oblique spring) the stiffness against slip is negative. At the limit there is no answer onward, and two on the way
-  // back.
-  Assembly scene = chain_of_discs(2, 1);
-  const double r = std::sqrt(2.0);
-  scene.centres.push_back(scene.centres[1] + Vec2{r, r});
-  scene.radii.push_back(1);
-  scene.contacts.push_back({1, 2, 0, 0, 1, 1});
-  scene.groups["held"] = {{0, 2}, {}};
-  scene.groups["disc"] = {{1}, {}};
-  const ContactSprings springs(std::vector<SpringConstants>{{normal_spring, tangential_spring}, {normal_spring, 0}});
+  // The tied disc slips on the other as on the ground: its slip away from the spring takes it off the ground, so that
+  // beyond mu = 1 (Klarbring's condition mu kN |c| > b (kN + a) - c², a = b = c = k/2 of the oblique spring) the
+  // stiffness against slip is negative. At the limit there is no answer onward, and two on the way back.
   for (const double friction : {0.5, 2.0}) {
     for (const double side : {1.0, -1.0}) {
       CAPTURE(friction, side);
-      ContactStrengths strengths = equal_strengths(scene, 0, 0);
-      strengths.tension[1] = strengths.shear[1] = 1e9;
       LoadPathOptions options;
-      options.supports = {{"held", 0, 0, 0}, {"disc", {}, {}, 0}};
+      options.supports = TiedDisc::supports();
       options.dead_loads = {{"disc", LoadKind::per_disc, {-1, 0}, 0}};
       options.loads = {{"disc", LoadKind::per_disc, {0, side}, 0}};
       options.control = LoadControl::load;
       options.legs = {100};
-      Unbonded onward(scene, springs, strengths, options, {friction, {}});
+      Unbonded onward(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::strengths(), options, {friction, {}});
       onward.all();
       if (friction < 1 || side > 0) {
         for (const BreakEvent& event : onward.events()) CHECK(event.other_answers == 0);
@@ -317,7 +355,7 @@ TEST_CASE("where_friction_leaves_two_answers_both_are_told") {
       CHECK(onward.run().counters().no_answer == 1);
       CHECK_THAT(onward.run().why(), Catch::Contains("the increment has no answer"));
       options.legs = {onward.run().lambda(), 0};
-      Unbonded back(scene, springs, strengths, options, {friction, {}});
+      Unbonded back(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::strengths(), options, {friction, {}});
       back.all();
       CHECK(back.run().counters().not_unique > 0);
       CHECK(back.run().counters().largest_motion_difference > 0.01);

@@ -71,19 +71,36 @@ TEST_CASE("an_increment_behind_a_break_that_has_two_answers_is_told_with_the_bre
   for (auto event = path.events().begin(); event != broken; ++event) CHECK(event->other_answers == 0);
 }
 
-TEST_CASE("contacts_that_change_without_end_at_one_state_end_the_path_with_a_sentence") {
-  // Cells in which every contact slips: whatever the rates choose, another contact reaches its limit at once.
-  for (const std::uint64_t seed : {801, 3817, 4505}) {
+// Loose discs leave closed contacts pulled by round-off, and open ones overlapped; or they rattle between two gaps that
+// close in turn, in ever shorter steps. Dense matrices decide on no state of these: some disc is loose from the start.
+TEST_CASE("contacts_that_round_off_pulls_or_overlaps_open_and_close_and_the_path_goes_on") {
+  std::size_t states = 0, events = 0;
+  for (const std::uint64_t seed : {801, 3817, 4505, 24, 456, 1659, 2184, 3129, 3384, 3459}) {
     const DrawnPacking d = draw_packing(seed);
-    CAPTURE(d.name);
-    Unbonded ours(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
-    std::int64_t steps = 0;
-    while (steps < 3000 && ours.run().advance()) ++steps;
-    CAPTURE(steps, ours.run().why(), ours.run().lambda(), ours.run().state().relative_residual());
-    CHECK(steps < 3000);
-    const bool sentence = ours.run().end() == PathEnd::no_answer || ours.run().end() == PathEnd::not_balanced;
-    CHECK(sentence);
-    CHECK_FALSE(ours.run().why().empty());
-    for (const BreakEvent& event : ours.events()) CHECK(event.relative_residual < 1e-9);
+    Unbonded path(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
+    const UnbondedState& state = path.run().state();
+    while (path.run().advance()) {
+      const double none = 10 * state.negligible_force();
+      if (none > 4e-4 * state.largest_force()) continue;  // all forces are round-off
+      ++states;
+      for (std::size_t c = 0; c < state.status().size(); ++c) {
+        const ContactStatus status = state.status()[c];
+        if (status == ContactStatus::bonded) continue;
+        const double n = state.normal_coordinate(c), t = state.law_force(c).tangential;
+        CAPTURE(d.name, path.events().size(), c, n, t, none);
+        // Round-off of forces moves loose discs far, and overlaps are no forces of open contacts.
+        CHECK((status == ContactStatus::open ? n >= -1e-6 * state.largest_force() : n <= none));
+        CHECK(std::abs(t) <= d.unbonded.friction * std::max(-n, 0.0) + none);
+      }
+    }
+    const ContactLedger& ledger = state.ledger();
+    CAPTURE(d.name, path.run().why(), path.events().size(), ledger.missing(), ledger.largest, ledger.negligible);
+    CHECK(path.run().end() == PathEnd::legs_done);
+    CHECK(path.run().lambda() == Approx(2).epsilon(1e-15));
+    CHECK(path.run().counters().largest_residual < 1e-12);
+    CHECK(std::abs(ledger.missing()) <= 1e-12 * ledger.largest + 1e-5 * ledger.negligible);
+    events += path.events().size();
   }
+  CAPTURE(states, events);
+  CHECK(states > events / 10);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "breakage/limit_network.hpp"
-#include "support/assemblies.hpp"
+#include "breakage/tied_disc.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -55,18 +55,10 @@ TEST_CASE("rates_that_are_proved_unique_have_no_other_combination_of_statuses") 
 TEST_CASE("one_contact_at_the_limit_of_friction_is_proved_unique_up_to_klarbrings_friction") {
   // The disc of where_friction_leaves_two_answers_both_are_told: the limit is mu = 1 in one direction, none in the
   // other.
-  Assembly scene = chain_of_discs(2, 1);
-  const double r = std::sqrt(2.0);
-  scene.centres.push_back(scene.centres[1] + Vec2{r, r});
-  scene.radii.push_back(1);
-  scene.contacts.push_back({1, 2, 0, 0, 1, 1});
-  scene.groups["held"] = {{0, 2}, {}};
-  scene.groups["disc"] = {{1}, {}};
-  const ContactSprings springs(std::vector<SpringConstants>{{1000, 300}, {1000, 0}});
   for (const double friction : {0.0, 0.5, 0.999, 1.001, 5.0}) {
     for (const double direction : {-1.0, 1.0}) {
       CAPTURE(friction, direction);
-      LimitNetwork network(scene, springs, {{"held", 0, 0, 0}, {"disc", {}, {}, 0}}, friction);
+      LimitNetwork network(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::supports(), friction);
       network.bond(1);
       network.limit({0, OnLimit::friction, direction});
       std::vector<double> force(network.components());

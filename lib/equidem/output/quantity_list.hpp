@@ -234,7 +234,7 @@ inline constexpr ResultQuantity quantities[] = {
     {"energies/error", "", "work less elastic and released energy, and that lost by slip, relative"},
     {"idle_discs", "",
      "number of discs that can carry nothing from the start; where contacts rub, that touch nothing then"},
-    {"loosened_discs", "", "number of discs that came loose; where contacts rub, that touch nothing at the end"},
+    {"loosened_discs", "", "number of discs that came loose; where contacts rub, that can carry nothing at the end"},
     {"unstable_states", "", "number of states with unstable modes"},
     {"increments/unique", "", "increments behind events of which no other answer exists"},
     {"increments/not_unique", "", "those of which another answer was found"},

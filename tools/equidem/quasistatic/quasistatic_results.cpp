@@ -127,14 +127,22 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
 }
 
 /// Discs that rubbing contacts have let go: they may be met again.
-void add_untouched(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
+void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
   const std::vector<std::int32_t>& at_first = run.idle();
-  std::vector<std::int32_t> loosened;
-  std::ranges::set_difference(run.untouched(), at_first, std::back_inserter(loosened));
+  const auto without = [](const std::vector<std::int32_t>& discs, const std::vector<std::int32_t>& others) {
+    std::vector<std::int32_t> left;
+    std::ranges::set_difference(discs, others, std::back_inserter(left));
+    return left;
+  };
+  const std::vector<std::int32_t> untouched = run.untouched(), now = without(untouched, at_first),
+                                  on_contacts = without(without(run.loose(), untouched), at_first);
   if (!at_first.empty()) out.line("idle", fmt::format("{}: nothing touched at first", named(scene.assembly, at_first)));
-  if (!loosened.empty())
-    out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, loosened)));
-  out.set("idle_discs", std::ssize(at_first)).set("loosened_discs", std::ssize(loosened));
+  if (!now.empty()) out.line("came loose", fmt::format("{}: nothing touched at the end", named(scene.assembly, now)));
+  if (!on_contacts.empty()) {
+    out.line(now.empty() ? "came loose" : "",
+             fmt::format("{}: on contacts that carry nothing at the end", named(scene.assembly, on_contacts)));
+  }
+  out.set("idle_discs", std::ssize(at_first)).set("loosened_discs", std::ssize(now) + std::ssize(on_contacts));
 }
 
 void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& system) {
@@ -281,7 +289,7 @@ Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun
   Results out = first_results(outcome, run);
   add_energies(out, run);
   out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
-  add_untouched(out, outcome.scene, run);
+  add_let_go(out, outcome.scene, run);
   add_trust(out, run);
   return out.append(events_and_curves(outcome, run));
 }

@@ -19,11 +19,10 @@ std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::sp
     const ContactStatus status = state.status()[c];
     if (status == ContactStatus::bonded) continue;
     const double n = state.normal_coordinate(c);
-    if (n > none || (status != ContactStatus::open && n < -none && !laws[c].rough())) continue;
+    if (status == ContactStatus::open ? n > none : n < -none && !laws[c].rough()) continue;
     // The force that a broken bond has yet to give up is no part of the law.
     const ContactForce f = state.law_force(c);
-    const bool touches = status == ContactStatus::open && n >= -state.overlap_of_round_off();
-    if (std::abs(n) <= none || touches) {
+    if (n >= -none || status == ContactStatus::open) {
       limits.push_back({c, OnLimit::apex, 1});
     } else if (is_slipping(status)) {
       limits.push_back({c, OnLimit::friction, direction_of(status)});

@@ -26,7 +26,9 @@ struct NextContactEvent {
   double gap = std::numeric_limits<double>::infinity();  ///< of t, relative, to the next contact that does not tie
 };
 
-/// The contacts on a limit of their law, in the order of their numbers; bonds are on none.
+/// The contacts on a limit of their law, in the order of their numbers; bonds are on none. At the apex are also open
+/// contacts of discs that nothing else holds where the round-off of forces has moved these far to an overlap, and
+/// closed ones that are pulled: rates that are round-off are no events, and add up on a long way.
 std::vector<LimitContact> contacts_on_limits(const UnbondedState& state, std::span<const UnbondedLaw> laws);
 
 /// The first contact that reaches a limit while all forces go on at these rates; t is infinite where none does.

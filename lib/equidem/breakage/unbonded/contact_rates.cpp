@@ -167,7 +167,7 @@ void set_negligible(const RateProblem& problem, Rates& rates) {
     const SpringConstants& k = problem.laws[c].k;
     largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
   }
-  rates.negligible = 1e-9 * rates.force_scale + 1e-11 * largest;
+  rates.negligible = 1e-9 * rates.force_scale + problem.rounded * largest;
 }
 
 bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {

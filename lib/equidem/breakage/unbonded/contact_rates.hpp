@@ -47,6 +47,7 @@ struct RateProblem {
   std::span<const UnbondedLaw> laws;
   std::span<const LimitContact> limits;
   Driving driving;
+  double rounded = 1e-11;  ///< rates of force below this share of the largest spring times its rate are round-off
 };
 
 struct RateAnswer {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/breakage/unbonded/loose_discs.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/breakage/unbonded/unique_rates.hpp"
@@ -26,6 +27,8 @@ constexpr double balances_to = 1e-12;
 UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
                          UnbondedOptions options)
     : scene_(scene),
+      effects_(effects),
+      supports_(supports.begin(), supports.end()),
       options_(std::move(options)),
       unknowns_(number_unknowns(scene.assembly, scene.springs, effects, supports)),
       contacts_(scene.assembly, unknowns_),
@@ -56,6 +59,10 @@ std::vector<std::int32_t> UnbondedRun::untouched() const {
   for (std::size_t d = 0; d < touched.size(); ++d)
     if (touched[d] == 0) discs.push_back(static_cast<std::int32_t>(d));
   return discs;
+}
+
+std::vector<std::int32_t> UnbondedRun::loose() const {
+  return loose_discs(breakable_network(scene_, effects_, supports_), laws_, state_->status(), state_->carried());
 }
 
 double UnbondedRun::direction(std::int64_t leg) const {
@@ -120,6 +127,7 @@ bool UnbondedRun::find_rates() {
   begun_ = events_.size();
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
+  state_->settle(*rates_, !dead_done_, by_motion(), solver_);
   return true;
 }
 

@@ -68,6 +68,9 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
   /// Discs without a support of which every contact is open as it is now, ascending.
   [[nodiscard]] std::vector<std::int32_t> untouched() const;
+  /// Discs that have come loose, as in a network whose contacts do not rub (loose_discs.hpp), those untouched among
+  /// them: contacts that have carried nothing since lambda last moved hold no disc.
+  [[nodiscard]] std::vector<std::int32_t> loose() const;
   [[nodiscard]] double lambda() const override { return state_->lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }
   /// At motions since the last event.
@@ -105,6 +108,8 @@ class UnbondedRun : public EventPath {
   void end(PathEnd why, std::string sentence);
 
   BreakageScene scene_;
+  Effects effects_;
+  std::vector<Support> supports_;
   UnbondedOptions options_;
   DegreesOfFreedom unknowns_;
   ContactOperator contacts_;

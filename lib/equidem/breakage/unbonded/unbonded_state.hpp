@@ -33,7 +33,9 @@ struct ContactLedger {
   /// All works of a step are in. \param elastic_now behind it
   void take(double elastic_now);
   void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
-  /// The sum that should vanish, over the largest of its terms so far.
+  /// The sum that should vanish, N.
+  [[nodiscard]] double missing() const { return work - elastic - friction - released; }
+  /// That over the largest of its terms so far.
   [[nodiscard]] double error() const;
 };
 
@@ -50,6 +52,9 @@ class UnbondedState {
   /// The share of what broken bonds still carry falls from 1 to this.
   void release_to(double share) { share_ = share; }
   void set_status(std::size_t contact, ContactStatus status);
+  /// Forces balance again where that of a contact has jumped with its status, since round-off had left it overlapped or
+  /// pulled, while the control is held. The energy that its spring takes or gives is missing in the ledger.
+  void settle(const Rates& rates, bool dead, bool by_motion, TangentSolver& solver);
   /// A bond breaks: it keeps its force beside the law of an unbonded contact until it is released.
   void break_bond(std::size_t contact, ContactStatus status);
   /// Nothing is left of the forces of broken bonds.
@@ -57,7 +62,8 @@ class UnbondedState {
   /// All that the constructor does not find.
   void pass(PathNumbers& n) {
     n.pass(status_, slip_, motion_.high, motion_.low, lambda_, dead_, releasing_, kept_, share_, kept_share_);
-    n.pass(released_by_, deformation_, forces_, internal_, ledger_, residual_, force_scale_, round_off_force_);
+    n.pass(released_by_, deformation_, forces_, carried_, internal_, ledger_, residual_, force_scale_,
+           round_off_force_);
   }
 
   [[nodiscard]] const std::vector<ContactStatus>& status() const { return status_; }
@@ -67,6 +73,8 @@ class UnbondedState {
   [[nodiscard]] ContactForce law_force(std::size_t contact) const {
     return laws_[contact].force(status_[contact], deformation_[contact], slip_[contact]);
   }
+  /// Per contact: 1, whether it carries a force, or did where lambda began to move last.
+  [[nodiscard]] const std::vector<std::uint8_t>& carried() const { return carried_; }
   /// N_r + kN dn of a contact: its normal force where it is closed, kN times its gap where it is open.
   [[nodiscard]] double normal_coordinate(std::size_t contact) const;
   /// Forces that broken bonds have yet to give up, per component, N/m, and the contacts that they belong to.
@@ -88,9 +96,6 @@ class UnbondedState {
   [[nodiscard]] double largest_force() const { return force_scale_; }
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
-  /// N/m: by as much, over kN, open contacts of discs that nothing else holds may overlap at the place where they
-  /// touch, since the round-off of forces moves such discs far.
-  [[nodiscard]] double overlap_of_round_off() const;
 
  private:
   void evaluate();
@@ -125,9 +130,11 @@ class UnbondedState {
   std::vector<double> released_by_;    // N, per contact
   std::vector<PreciseDeformation> deformation_;
   std::vector<ContactForce> forces_;
+  std::vector<std::uint8_t> carried_;
   std::vector<double> internal_;
   ContactLedger ledger_;
   double rest_energy_ = 0, residual_ = 0, force_scale_ = 0, round_off_force_ = 0;
+  bool unsettled_ = false;
 };
 
 }  // namespace equidem
