@@ -73,6 +73,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
+  if (const CandidateLoop loop = wall_loop(system)) self.collide = loop;
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =
