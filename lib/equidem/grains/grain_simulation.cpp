@@ -67,13 +67,16 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
                                              : part_candidate_loop(options.law, system.friction);
   self.flow = flow_function(options.law);
-  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
-  if (const CandidateLoop loop = wall_loop(system)) self.collide = loop;
+  if (const CandidateLoop loop = wall_loop(system)) {
+    self.collide = loop;
+  } else if (self.collide && system.friction) {
+    system.bodies.impulses_before.resize(system.bodies.impulses.size());
+  }
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =

@@ -73,8 +73,11 @@ bool touches_walls_alone(const GrainSystem& system) {
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   if (!system.cell.images.empty()) place_images(system);
-  if (system.friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = system.friction || !system.free_flight;
+  const bool keeps = !system.bodies.impulses_before.empty();
+  if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
+  const bool clear = keeps || (!system.free_flight && !system.bodies.cleared);
+  system.bodies.cleared = move && system.contacts.near.active && !system.contacts.near.record &&
+                          !system.contacts.near_parts.active && !keeps && !system.options.verlet();
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   system.free_flight = true;
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();

@@ -157,8 +157,8 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
           law_lanes(zero, zero, coefficient, tangential_stiffness, compliance, load<Lanes>(beyond_cap), dt);
       const Lanes mobility = 0.5 * (inverse_mass + radius * radius * inverse_moment);
       // at the middle of the step as other forces make it: half of what the last step did
-      const Lanes middle_u = wall_u - body[5] - half_fall.x, middle_v = wall_v - body[6] - half_fall.y;
-      const Lanes velocity = middle_v * nx - middle_u * ny - body[7] - mobility * tangential_before;
+      const Lanes middle_u = wall_u - body[4] - half_fall.x, middle_v = wall_v - body[5] - half_fall.y;
+      const Lanes velocity = middle_v * nx - middle_u * ny - body[6] - mobility * tangential_before;
       tangent = slide<false, false>(law, dashpot * dt, stretch, velocity, zero, mobility, zero,
                                     coefficient * larger(impulse, zero), dt);
       const Lanes tangential = -only(touch, tangent.impulse);
