@@ -171,11 +171,13 @@ void GrainSimulation::Implementation::update_candidates() {
   refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
   refuse_ellipses_in_bowls(system);
-  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
+  if (system.bodies.in_place) find_places_before(system);
+  refuse_crossings(system);
 }
 
 void GrainSimulation::Implementation::start_next_step() {
-  system.bodies.motions.swap(system.bodies.next);
+  if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
   if (system.cell.deforms) advance_cell(system);
   ++system.step;
   if (!system.walls.servos.empty()) steer_walls(system);

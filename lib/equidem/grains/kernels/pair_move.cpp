@@ -56,7 +56,7 @@ void MoveBlock<turning, clears>::run(GrainSystem& system, std::size_t block) {
   const std::size_t end = system.bodies.blocks.end(block);
   const GrainBody* bodies = system.bodies.constants.data();
   const GrainMotion* motions = system.bodies.motions.data();
-  GrainMotion* next = system.bodies.next.data();
+  GrainMotion* next = system.bodies.in_place ? system.bodies.motions.data() : system.bodies.next.data();
   BodyImpulse* impulses = system.bodies.impulses.data();
   PairBody* pair_bodies = system.contacts.near.bodies.data();
   // Compared by their bits: numbers that are not negative lie in the same order, and no number behind all of them.

@@ -96,7 +96,8 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
     columns_of(places, moved_x, moved_y, wall_u, wall_v);
     const Lanes from_x = body[0] - moved_x - x, from_y = body[1] - moved_y - y;
     Lanes overlap = radius - (nx * from_x + ny * from_y);
-    if (!near.flat) [[unlikely]] meet_walls(system, near, overlap, nx, ny);
+    if (!near.flat) [[unlikely]]
+      meet_walls(system, near, overlap, nx, ny);
     // lanes behind the last contact are apart
     constexpr double largest[2 * lanes_of_pairs] = {none, none, none, none, none, none, none, none,
                                                     -1,   -1,   -1,   -1,   -1,   -1,   -1,   -1};
@@ -151,8 +152,7 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
       PairLanes beyond_cap;
       for (std::size_t k = 0; k < lanes_of_pairs; ++k)
         beyond_cap[k] = near.contact[k]->sliding.cap == FrictionCap::spring_alone ? 1 : 0;
-      const Lanes compliance =
-          1 / choose(negative(zero - tangential_stiffness), tangential_stiffness, all<Lanes>(1));
+      const Lanes compliance = 1 / choose(negative(zero - tangential_stiffness), tangential_stiffness, all<Lanes>(1));
       const LawLanes<Lanes> law =
           law_lanes(zero, zero, coefficient, tangential_stiffness, compliance, load<Lanes>(beyond_cap), dt);
       const Lanes mobility = 0.5 * (inverse_mass + radius * radius * inverse_moment);
