@@ -133,8 +133,8 @@ void load_pair_bodies(GrainSystem& system);
 /// Mark the bodies that overlap as touching.
 void touch_near_pairs(GrainSystem& system);
 
-/// As move_by_euler() for a block, with the body data of the loop for the next step; sets the impulses to zero if
-/// GrainBodies::cleared.
+/// As move_by_euler() for a block, with the body data of the loop for the next step. GrainBodies::in_place and
+/// GrainBodies::cleared say where motions go and what is left of the impulses.
 void move_pair_bodies(GrainSystem& system, std::size_t block);
 
 /// A pair with the state of its contact, without its constants; j may be an image.
