@@ -67,12 +67,16 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
                                              : part_candidate_loop(options.law, system.friction);
   self.flow = flow_function(options.law);
-  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
+  if (const CandidateLoop loop = wall_loop(system)) {
+    self.collide = loop;
+  } else if (self.collide && system.friction) {
+    system.bodies.impulses_before.resize(system.bodies.impulses.size());
+  }
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =
@@ -167,11 +171,13 @@ void GrainSimulation::Implementation::update_candidates() {
   refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
   refuse_ellipses_in_bowls(system);
-  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
+  if (system.bodies.in_place) find_places_before(system);
+  refuse_crossings(system);
 }
 
 void GrainSimulation::Implementation::start_next_step() {
-  system.bodies.motions.swap(system.bodies.next);
+  if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
   if (system.cell.deforms) advance_cell(system);
   ++system.step;
   if (!system.walls.servos.empty()) steer_walls(system);

@@ -228,6 +228,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     const double* push = state["impulses"].data() + numbers_per_impulse * k;
     system.bodies.impulses[k] = {{push[0], push[1]}, push[2]};
   }
+  system.bodies.cleared = false;
   for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
     const double* impulse = state["bonds"].data() + numbers_per_bond * b;
     take_last_impulse(system, system.bonds.tied[b], {impulse[0], impulse[1], impulse[2]});

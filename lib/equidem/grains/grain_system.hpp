@@ -117,8 +117,10 @@ struct GrainBodies {
   std::vector<GrainBody> constants;
   std::vector<GrainMotion> motions;
   std::vector<GrainMotion> next;  ///< motions after the present step
+  bool in_place = false;          ///< they are in `motions` instead: nobody has asked for those before
   std::vector<BodyImpulse> impulses;
-  std::vector<BodyImpulse> impulses_before;  ///< of the previous step; stored if friction needs them
+  bool cleared = false;                      ///< the motion of the step sets them to zero: nobody asks for them later
+  std::vector<BodyImpulse> impulses_before;  ///< of the previous step; stored if candidate_loop() needs them
   /// Maps: mass times shift of the position, kg m. exact_flow: integral of (dt - t) force dt, N s². Other laws: empty.
   std::vector<Vec2> moments;
   std::vector<std::size_t> grain_of;         ///< caller's number of the k-th

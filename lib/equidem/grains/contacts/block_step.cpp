@@ -73,8 +73,12 @@ bool touches_walls_alone(const GrainSystem& system) {
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   if (!system.cell.images.empty()) place_images(system);
-  if (system.friction) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = system.friction || !system.free_flight;
+  const bool keeps = !system.bodies.impulses_before.empty();
+  if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
+  const bool clear = keeps || (!system.free_flight && !system.bodies.cleared);
+  system.bodies.in_place = move && system.contacts.near.active && !keeps && !system.options.verlet() &&
+                           system.shapes.parts.empty() && !system.cell.active;
+  system.bodies.cleared = system.bodies.in_place && !system.contacts.near.record;
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   system.free_flight = true;
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();

@@ -97,9 +97,23 @@ void refuse_long_ways_in_cell(const GrainSystem& system, double reach) {
                   0.5 * system.dt() * system.smallest_radius / reach));
 }
 
-void refuse_crossings(const GrainSystem& system, double reach) {
+bool may_cross(const GrainSystem& system, double reach) {
   // two bodies come nearer by twice the reach at most
-  if (reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius) return;
+  return !(reach <= slow_way * system.smallest_radius && system.deepest + 2 * reach < system.smallest_radius);
+}
+
+void find_places_before(GrainSystem& system) {
+  GrainBodies& bodies = system.bodies;
+  bodies.motions.swap(bodies.next);
+  bodies.in_place = false;
+  for (std::size_t i = 0; i < bodies.next.size(); ++i) {
+    GrainMotion& before = bodies.motions[i] = bodies.next[i];
+    before.position -= system.dt() * before.velocity;
+    before.angle -= system.dt() * before.spin;
+  }
+}
+
+void refuse_crossings(const GrainSystem& system) {
   for (const PairBlock& block : system.contacts.near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
       Candidate pair;

@@ -362,7 +362,7 @@ void flow(GrainSystem& system) {
     refuse_long_ways_in_cell(system, reach);
     if (!refresh_candidates(system, reach)) break;
   }
-  if (system.options.refuse_crossing) refuse_crossings(system, reach);
+  if (system.options.refuse_crossing && may_cross(system, reach)) refuse_crossings(system);
   count_doubtful(system, trials);
   remember(system, trials);
 }

@@ -202,7 +202,7 @@ void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
   if (system.contacts.near.active) {
-    system.bodies.ways[block] = move_pair_bodies(system, block);
+    move_pair_bodies(system, block);
   } else if (free_flight) {
     system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
       GrainMotion motion = system.bodies.motions[i];

@@ -14,6 +14,10 @@ namespace equidem {
 /// velocities. Null for a simultaneous law.
 CandidateLoop candidate_loop(NormalLaw law, bool friction);
 
+/// The loop over contacts with walls of discs whose pairs are near pairs, eight at a time; null where candidate_loop()
+/// is needed.
+CandidateLoop wall_loop(const GrainSystem& system);
+
 /// Count a contact that acts in this step.
 inline void count_contact(const Candidate& candidate, double overlap, BlockSums& sums) {
   if (!candidate.touching) ++sums.contacts;

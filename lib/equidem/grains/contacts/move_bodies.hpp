@@ -12,8 +12,8 @@ namespace equidem {
 
 /// \param gain,turn change of velocity and of spin by the contacts in the last step
 inline PairBody pair_body(const GrainBody& body, const GrainMotion& motion, Vec2 gain, double turn) {
-  return {motion.position, motion.velocity, motion.spin * body.radius, motion.velocity + 0.5 * gain,
-          (motion.spin + 0.5 * turn) * body.radius};
+  return {motion.position, motion.velocity, motion.velocity + 0.5 * gain, (motion.spin + 0.5 * turn) * body.radius,
+          motion.spin * body.radius};
 }
 
 /// Add the torque of the tangential impulses of near pairs.

@@ -71,7 +71,7 @@ template <PairLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, Geometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
-  alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, 0, minus, minus, 0};
+  alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, minus, minus, 0, 0};
   const auto turned = load<Bits<Lanes>>(difference);
   Lanes m[lanes_of_pairs];
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
@@ -97,13 +97,13 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
     found.distance = distance;
     found.inverse = inverse;
     found.along = v * nx - u * ny;
-    if constexpr (kind.friction) found.rims = m[4];
+    if constexpr (kind.friction) found.rims = m[7];
   } else {
-    found.middle_opening = m[5] * nx + m[6] * ny;
+    found.middle_opening = m[4] * nx + m[5] * ny;
   }
   if constexpr (kind.friction && (kind.rigid || !kind.verlet)) {
-    found.middle_slip = m[6] * nx - m[5] * ny;
-    found.middle_rims = m[7];
+    found.middle_slip = m[5] * nx - m[4] * ny;
+    found.middle_rims = m[6];
   }
 }
 

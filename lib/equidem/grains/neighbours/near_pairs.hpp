@@ -30,10 +30,10 @@ using PairLanes = double[lanes_of_pairs];
 /// Data of a body for the loop over pairs, in loading order.
 struct alignas(64) PairBody {
   Vec2 position, velocity;
-  double rim_speed = 0;  ///< spin times radius
   /// Velocity plus half the change by the contacts in the last step: predicts the mean over the step.
   Vec2 middle_velocity;
   double middle_rim_speed = 0;
+  double rim_speed = 0;  ///< spin times radius
 };
 
 /// Eight pairs i < j.
@@ -133,9 +133,9 @@ void load_pair_bodies(GrainSystem& system);
 /// Mark the bodies that overlap as touching.
 void touch_near_pairs(GrainSystem& system);
 
-/// Set system.bodies.next of a block as move_by_euler(), and the body data of the loop for the next step.
-/// \return square of the longest displacement, m²
-double move_pair_bodies(GrainSystem& system, std::size_t block);
+/// As move_by_euler() for a block, with the body data of the loop for the next step. GrainBodies::in_place and
+/// GrainBodies::cleared say where motions go and what is left of the impulses.
+void move_pair_bodies(GrainSystem& system, std::size_t block);
 
 /// A pair with the state of its contact, without its constants; j may be an image.
 Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
