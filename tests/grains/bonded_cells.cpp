@@ -59,6 +59,52 @@ GrainBond sprung() {
   return {.normal_spring = 300, .tangential_spring = 150, .bending_spring = 12};
 }
 
+/// As a mirror at the y-axis shows it.
+GrainScene mirrored(GrainScene scene) {
+  for (Grain& grain : scene.grains) {
+    grain.position.x *= -1, grain.velocity.x *= -1;
+    grain.angle *= -1, grain.spin *= -1;
+  }
+  PeriodicCell& cell = *scene.cell;
+  cell.corner.x = -cell.corner.x - cell.width;
+  cell.shift *= -1;
+  cell.rate_xy.value *= -1;
+  return scene;
+}
+
+/// How far a scene and its mirror image are from being mirror images after some steps, in velocity.
+double mirror_error(const GrainScene& scene, const GrainOptions& options, int steps) {
+  GrainSimulation simulation(scene, options), image(mirrored(scene), options);
+  simulation.advance(steps);
+  image.advance(steps);
+  double error = 0;
+  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+    const Grain grain = simulation.grains()[g], other = image.grains()[g];
+    error = std::max({error, std::abs(grain.velocity.x + other.velocity.x),
+                      std::abs(grain.velocity.y - other.velocity.y), std::abs(grain.spin + other.spin)});
+  }
+  return error;
+}
+
+/// Small discs of a sheared cell, each bonded to its four neighbours.
+GrainScene sheared_net(double dashpot) {
+  const std::size_t side = 6;
+  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, side, side, 24, 0.1);
+  for (Grain& grain : scene.grains) grain.radius *= 0.5;
+  scene.cell->rate_xy = {.value = 1};
+  for (std::size_t i = 0; i < side; ++i)
+    for (std::size_t j = 0; j < side; ++j)
+      for (const std::size_t other : {i * side + (j + 1) % side, (i + 1) % side * side + j})
+        scene.bonds.push_back({.i = i * side + j,
+                               .j = other,
+                               .normal_dashpot = dashpot,
+                               .tangential_dashpot = 0.4 * dashpot,
+                               .normal_spring = 500,
+                               .tangential_spring = 200,
+                               .bending_spring = 5});
+  return scene;
+}
+
 }  // namespace
 
 TEST_CASE("bonded_discs_move_across_the_sides_of_a_cell_as_they_do_inside") {
@@ -256,4 +302,27 @@ TEST_CASE("a_cell_of_bonds_that_break_goes_on_with_its_bits_over_threads_blocks_
       CHECK(bits_of(other) == end);
     }
   set_thread_count(before);
+}
+
+TEST_CASE("a_sheared_cell_and_its_mirror_image_move_as_mirror_images") {
+  GrainScene dense = busy_cell(NormalLaw::linear_dashpot, 6, 6, 24);
+  for (Grain& grain : dense.grains) grain.radius *= 1.3;
+  dense.cell->rate_xy = {.value = 1};
+  GrainOptions options = verlet_options(0.002);
+  CHECK(mirror_error(dense, options, 100) < 1e-11);
+  CHECK(mirror_error(sheared_net(0), options, 100) < 1e-11);
+  options.bond_step = GrainOptions::BondStep::explicit_euler;
+  CHECK(mirror_error(sheared_net(5), options, 100) < 1e-11);
+}
+
+TEST_CASE("bonds_whose_dashpots_decay_one_after_the_other_differ_in_a_mirror_by_the_square_of_the_step") {
+  const GrainScene scene = sheared_net(5);
+  double before = mirror_error(scene, verlet_options(0.001), 1);
+  CHECK(before > 1e-6);
+  for (const double step : {5e-4, 2.5e-4, 1.25e-4}) {
+    const double error = mirror_error(scene, verlet_options(step), 1);
+    CAPTURE(step, error, before / error);
+    CHECK(before / error == Approx(4).epsilon(0.1));
+    before = error;
+  }
 }

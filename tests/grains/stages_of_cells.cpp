@@ -3,6 +3,7 @@
 /// Runs in stages in a periodic cell.
 #include "equidem/core/text.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
+#include "equidem/grains/stages/unbalance.hpp"
 
 #include "grains/cell_scenes.hpp"
 #include "support/catch.hpp"
@@ -17,8 +18,8 @@ void run_to(StagedSimulation& simulation, std::int64_t step) {
 }
 
 /// Consolidate, shear at constant height pressure, and stand.
-std::vector<GrainStage> shear_test(std::int64_t length) {
-  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 6, 26);
+std::vector<GrainStage> shear_test(std::int64_t length, std::uint64_t seed = 26) {
+  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 6, seed);
   for (PairProperties& pair : scene.pairs) pair.stiffness *= 20;
   const double pressure = scene.pairs[0].stiffness * 1e-3;
   scene.cell->servo =
@@ -96,24 +97,40 @@ TEST_CASE("the_ledger_counts_the_fall_of_bodies_that_have_left_the_cell_over_sta
   CHECK(std::abs(staged.energy().error() - whole.energy().error()) < 1e-12 * whole.energy().largest());
 }
 
+TEST_CASE("the_stress_of_a_cell_misses_the_wanted_one_by_less_than_its_discs_are_out_of_balance") {
+  // What is missing pushes discs; while they rearrange it is some per cent, which depends on the last digits.
+  const std::uint64_t seed = GENERATE(24, 25, 26, 27, 28, 29, 30, 31);
+  StagedSimulation staged(shear_test(12000, seed), verlet_options(0.001));
+  for (const std::int64_t step : {6000, 12000}) {
+    run_to(staged, step);
+    const CellState cell = *staged.cell();
+    const Unbalance unbalance = unbalance_of(staged.present(), {}, {});
+    const double pressure = -cell.servos[0].wanted;
+    CAPTURE(seed, step, cell.stress.xx, cell.stress.yy, pressure, unbalance.mean, unbalance.largest);
+    CHECK(std::abs(cell.stress.xx + pressure) < unbalance.largest * pressure);
+    CHECK(std::abs(cell.stress.yy + pressure) < unbalance.largest * pressure);
+    if (step == 12000) CHECK(unbalance.largest < 0.01);
+  }
+}
+
 TEST_CASE("a_cell_is_consolidated_sheared_and_stands_in_stages_of_one_run") {
-  StagedSimulation staged(shear_test(6000), verlet_options(0.001));
-  run_to(staged, 6000);
+  StagedSimulation staged(shear_test(12000), verlet_options(0.001));
+  run_to(staged, 12000);
   const CellState dense = *staged.cell();
   const double pressure = -dense.servos[0].wanted;
   CAPTURE(dense.stress.xx, dense.stress.yy, pressure, dense.width, dense.height);
-  CHECK(dense.stress.xx == Approx(-pressure).epsilon(0.02));
-  CHECK(dense.stress.yy == Approx(-pressure).epsilon(0.02));
-  run_to(staged, 12000);
+  CHECK(dense.stress.xx == Approx(-pressure).epsilon(0.01));
+  CHECK(dense.stress.yy == Approx(-pressure).epsilon(0.01));
+  run_to(staged, 24000);
   const CellState sheared = *staged.cell();
   CAPTURE(sheared.strain.xx, sheared.strain.xy, sheared.servos.front().mean_error);
   CHECK(sheared.strain.xx == dense.strain.xx);  // its width stays
   CHECK(sheared.width == dense.width);
-  CHECK(sheared.strain.xy == Approx(0.3 * (6 - 0.025)).epsilon(1e-3));
+  CHECK(sheared.strain.xy == Approx(0.3 * (12 - 0.025)).epsilon(1e-3));
   REQUIRE(sheared.servos.size() == 1);
   CHECK(sheared.servos.front().component == "yy");
   CHECK(sheared.servos.front().mean_error < 0.3);
-  run_to(staged, 18000);
+  run_to(staged, 36000);
   const CellState still = *staged.cell();
   CHECK(still.height == sheared.height);
   CHECK(still.shift == sheared.shift);

@@ -8,7 +8,7 @@ import unittest
 import numpy
 
 from motion import RunTest
-from program import CASES, SOURCE, equidem, parse_json
+from program import CASES, PROGRAM, SOURCE, equidem, parse_json
 
 sys.path.insert(0, str(SOURCE / "tools" / "bench" / "laboratory"))
 import at_rest  # noqa: E402
@@ -142,6 +142,16 @@ class Heaps(Laboratory):
 
 
 class Sand(Laboratory):
+    def test_sand_is_consolidated_without_running_past_its_stress_by_a_twentieth(self):
+        """The walls choose their speed so that a disc pushes them by 1/20 of their force, and come in so slowly that waves do not exceed it."""
+        result, _ = self.run_test("biaxial", "--set", "stage.2.until.strain=1e-8")
+        servos = [servo for servo in result["servos"] if servo["stage"] == "consolidate"]
+        with self.subTest(servos=servos):
+            self.assertEqual([servo["reached"] for servo in servos], [True, True])
+            for servo in servos:
+                self.assertLess(servo["overshoot"], 0.05)
+                self.assertLessEqual(servo["overshoot"], servo["peak"])
+
     def test_the_stiffness_at_small_strain_is_that_of_the_packing_at_rest(self):
         """Statics of the consolidated packing between the same plates, with the forces that it carries. Contacts part and slip from the start
         on, those first that carry least: up to a strain of 3e-5, a thirtieth of that of the mean overlap, by less than 1 %."""
@@ -163,15 +173,20 @@ class Sand(Laboratory):
             self.assertGreater(stiffer, young)  # its boundary moves as a whole
 
     def test_the_shear_box_dilates_as_taylor_says(self):
-        """T/N - dy/dx is the same over the first 5 mm, where the sand dilates most, and the last 8 mm. Of eight samples of 445 discs the
-        two differ by 0.06 (standard deviation, data/laboratory.md), thrice which is allowed; it is T/N alone that falls by more."""
-        result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12")
-        self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
-        (first, rise), (last, late_rise) = readings.taylor(out)
-        with self.subTest(first=first, rise=rise, last=last, late_rise=late_rise):
-            self.assertGreater(rise, late_rise)
-            self.assertLess(abs((first - rise) - (last - late_rise)), 0.18)
-            self.assertLess(abs((first - rise) - (last - late_rise)), abs(first - last))
+        """T/N - dy/dx is the same over the first 5 mm, where the sand dilates most, and the last 8 mm, in the mean of samples. Of samples of 445
+        discs the two differ by 0.1 (standard deviation of eight, data/laboratory.md), the mean of eight by a third of it, thrice which is
+        allowed; it is T/N alone that falls by more."""
+        fall, fall_of_ratio, samples_taken = 0, 0, 8
+        for seed in range(1, 1 + samples_taken):
+            samples.write(self.folder, f"sand{seed}", samples.sand(PROGRAM, seed))
+            result, out = self.run_test("shear_box", "--set", "run.steps_per_contact=12", "--set", f'grains.path="{self.folder}/sand{seed}.csv"')
+            self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["met its end"] * 3)
+            (first, rise), (last, late_rise) = readings.taylor(out)
+            fall += ((first - rise) - (last - late_rise)) / samples_taken
+            fall_of_ratio += (first - last) / samples_taken
+        with self.subTest(fall=fall, fall_of_ratio=fall_of_ratio):
+            self.assertLess(abs(fall), 3 * 0.1 / math.sqrt(samples_taken))
+            self.assertLess(abs(fall), fall_of_ratio)
         # what moves the lower half acts on the upper half and on nothing else
         whole = readings.history(out, "shear")
         upper = sum(readings.mean_force(whole, wall, "x") for wall in ("lid", "upper_left", "upper_right", "roof"))

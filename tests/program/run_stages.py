@@ -124,7 +124,6 @@ class Servos(StageTest):
         for keys, words in (("force = -1.0, max_speed = 0.1", ("wall.servo.force", "-1")),
                             ("force = 1.0, stress = 1.0, max_speed = 0.1", ("both given",)),
                             ("max_speed = 0.1", ("neither force nor stress",)),
-                            ("force = 1.0", ("wall.servo.max_speed", "missing")),
                             ("force = 1.0, max_speed = 0.0", ("wall.servo.max_speed",)),
                             ("force = 1.0, max_speed = 0.1, relaxation = 1.5", ("wall.servo.relaxation",)),
                             ("force = 1.0, max_speed = 0.1, gain = 1.0", ("gain", "unknown key")),

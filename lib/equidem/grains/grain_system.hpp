@@ -92,19 +92,22 @@ struct BlockSums {
 
 /// The control of a servo wall at the start of a step.
 struct ServoState {
-  std::size_t wall = 0, mirror = 0;          ///< places of the walls; equal: no mirror
-  std::size_t between[2] = {};               ///< places of the walls between which the length is measured
-  double way = 0;                            ///< m
-  double speed = 0, passed_speed = 0;        ///< in the present step and in the one before, m/s
-  double pace = 0;                           ///< mean speed of the last steps, m/s
-  double free_way = 0;                       ///< m, since the wall last touched a body
-  double wanted = 0, force = 0;              ///< of the last step, N
-  double largest_wanted = 0, overshoot = 0;  ///< N; largest F - W over largest_wanted
-  double errors = 0, steps = 0;              ///< sum of |F - W| over largest_wanted, number of its steps
-  double touched = 0, reached = 0;           ///< 0 or 1
-  double side = 0;                           ///< 1, -1: the force began above or below the wanted one; 0: not known yet
+  std::size_t wall = 0, mirror = 0;    ///< places of the walls; equal: no mirror
+  std::size_t between[2] = {};         ///< places of the walls between which the length is measured
+  double way = 0;                      ///< m
+  double speed = 0, passed_speed = 0;  ///< in the present step and in the one before, m/s
+  double pace = 0;                     ///< mean speed of the last steps, m/s
+  double free_way = 0;                 ///< m, since the wall last touched a body
+  double wanted = 0, force = 0;        ///< of the last step, N
+  double largest_wanted = 0;           ///< N
+  double excess = 0;                   ///< mean F - W over the time 1/sqrt(k/m) or so, over largest_wanted
+  double overshoot = 0, peak = 0;      ///< largest excess, largest F - W of a step over largest_wanted
+  double speed_of_push = 0;            ///< m/s, if the speed is not given: at which a body pushes by 1 N
+  double errors = 0, steps = 0;        ///< sum of |F - W| over largest_wanted, number of its steps
+  double touched = 0, reached = 0;     ///< 0 or 1
+  double side = 0;                     ///< 1, -1: the force began above or below the wanted one; 0: not known yet
 
-  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
+  void count_anew() { excess = overshoot = peak = errors = steps = largest_wanted = reached = side = 0; }
 };
 
 /// The bodies sorted by position.

@@ -15,8 +15,14 @@ namespace {
 /// speed u, a step changes e by -c (r e + k dt u) and u by s r e/(k dt): modes that fall by the factor 1 + z, z² + c r
 /// z + c s r = 0, damped by the ratio sqrt(c r/s)/2. It must not fall with r: s is share_of_pace times r. As u sums up
 /// e, the force runs past W after a step of W, by some tenth of that step. Thus u follows freely only where e is below
-/// near_share of W, beyond it by the square of near_share W/e; at max_speed it waits.
-constexpr double share_of_pace = 0.04, near_share = 0.1;
+/// near_share of W, beyond it by the square of near_share W/e; at a limit of the speed it waits.
+///
+/// Before W is reached waves decide. A wall that moves at v sends a wave into the bodies and pushes them by Z v more;
+/// the impedance Z is the sum of sqrt(k m) over its contacts, that of a chain of masses m and springs k for long waves.
+/// The wave doubles where another wall, or the middle between two mirrors, throws it back. Nowhere are bodies pushed
+/// beyond W if the wall comes in at (W - F)/(2 Z) at most. Afterwards it follows bodies that give way as fast as they
+/// do: to come in so slowly then would leave them without their stress while they rearrange.
+constexpr double share_of_pace = 0.04, near_share = 0.1, largest_push = 0.05;
 
 std::size_t place_of_name(const GrainScene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.walls, name, &Wall::name);
@@ -61,8 +67,9 @@ double wanted_force(const GrainSystem& system, const ServoState& state) {
 
 /// Resistance of the contacts on a wall against a motion along a direction.
 struct Resistance {
-  double spring = 0;   ///< sum of k dt, N s/m
-  double dashpot = 0;  ///< sum of c, N s/m
+  double spring = 0;     ///< sum of k dt, N s/m
+  double dashpot = 0;    ///< sum of c, N s/m
+  double impedance = 0;  ///< sum of sqrt(k m), N s/m
 
   [[nodiscard]] double sum() const { return spring + dashpot; }
 };
@@ -76,22 +83,57 @@ Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direc
     const double overlap = std::max(candidate.overlap, 0.0), c = dashpot_of(system, candidate);
     const double k = law.spring_power * candidate.stiffness * std::pow(overlap, law.spring_power - 1);
     resistance.spring += system.dt() * (k * along * along + candidate.sliding.stiffness * across * across);
+    resistance.impedance += std::sqrt(k * candidate.reduced_mass) * along * along;
     resistance.dashpot += (law.dashpot != nullptr ? law.dashpot(c, overlap) : c) * along * along +
                           candidate.sliding.dashpot * across * across;
   }
   return resistance;
 }
 
-void count_error(ServoState& state) {
+/// A spring k d^p stores F^((p + 1)/p) k^(-1/p)/(p + 1) at the force F. A body of mass m that comes at the speed
+/// sqrt(2/((p + 1) m)) k^(-1/(2 p)) F^((p + 1)/(2 p)) has that energy: F/sqrt(k m) for p = 1. \return the power of F
+double exponent_of_push(const GrainSystem& system) {
+  const double p = system.law().spring_power;
+  return (p + 1) / (2 * p);
+}
+
+/// The least speed at which one of the bodies pushes a wall by 1 N, m/s.
+double speed_of_push(const GrainSystem& system, std::size_t wall) {
+  const double p = system.law().spring_power;
+  double least = INFINITY;
+  for (std::size_t body = 0; body < system.bodies.constants.size(); ++body) {
+    Candidate candidate;
+    candidate.i = static_cast<std::int32_t>(body);
+    candidate.j = ~static_cast<std::int32_t>(wall);
+    set_constants(system, candidate);
+    least =
+        std::min(least, std::sqrt(2 / ((p + 1) * candidate.reduced_mass)) * std::pow(candidate.stiffness, -0.5 / p));
+  }
+  return least;
+}
+
+/// The speed that the wall does not exceed, m/s: a given one, or that at which a body pushes it by largest_push of W,
+/// or of F where that is larger.
+double limit_of(const GrainSystem& system, const ServoState& state) {
+  const Servo& servo = servo_of(system, state);
+  if (servo.max_speed) return *servo.max_speed;
+  const double push = largest_push * std::max(state.wanted, state.force);
+  return state.speed_of_push * std::pow(push, exponent_of_push(system));
+}
+
+/// \param share that a step adds to the mean of the force over 1/sqrt(k/m)
+void count_error(ServoState& state, double share) {
   state.largest_wanted = std::max(state.largest_wanted, state.wanted);
   if (state.touched != 0 && state.reached == 0) {
     const double missing = state.wanted - state.force;
     if (state.side == 0) state.side = missing > 0 ? -1 : 1;
-    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = 1;
+    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = 1, state.touched = 2;
   }
   if (state.reached == 0 || state.largest_wanted == 0) return;
   const double error = (state.force - state.wanted) / state.largest_wanted;
-  state.overshoot = std::max(state.overshoot, error);
+  state.excess += (state.steps > 0 ? share : 1) * (error - state.excess);
+  state.overshoot = std::max(state.overshoot, state.excess);
+  state.peak = std::max(state.peak, error);
   state.errors += std::abs(error);
   state.steps += 1;
 }
@@ -106,25 +148,31 @@ void steer(GrainSystem& system, ServoState& state) {
   state.force = -per_step * dot(system.walls.loads[state.wall].step_impulse, servo.direction);
   if (state.mirror != state.wall) {
     const Resistance other = resistance_of(system, state.mirror, servo.direction);
-    resistance = {0.5 * (resistance.spring + other.spring), 0.5 * (resistance.dashpot + other.dashpot)};
+    resistance = {0.5 * (resistance.spring + other.spring), 0.5 * (resistance.dashpot + other.dashpot),
+                  0.5 * (resistance.impedance + other.impedance)};
     state.force = 0.5 * (state.force + per_step * dot(system.walls.loads[state.mirror].step_impulse, servo.direction));
   }
   state.wanted = wanted_force(system, state);
+  const double most = limit_of(system, state), impedance = resistance.impedance;
   if (resistance.sum() > 0) {
-    state.touched = 1;
+    state.touched = std::max(state.touched, 1.0);
     state.free_way = 0;
-    const double missing = state.wanted - state.force, near = near_share * state.wanted;
+    const double missing = state.wanted - state.force;
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
     const double asked = (servo.relaxation * missing + going_on) / resistance.sum();
-    state.speed = std::clamp(asked, -servo.max_speed, servo.max_speed);
-    const double approach = std::abs(missing) <= near ? 1 : near / missing;
+    // touched is 2 where W has been reached since the wall met bodies, in this stage or before
+    const double by_waves =
+        state.reached == 0 && state.touched < 2 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
+    state.speed = std::clamp(asked, -most, std::min(most, by_waves));
+    const double near = near_share * state.wanted, approach = std::abs(missing) <= near ? 1 : near / missing;
     if (state.speed == asked)
       state.pace += share_of_pace * servo.relaxation * approach * approach * (state.speed - state.pace);
   } else {
-    state.speed = state.wanted > 0 ? servo.max_speed : 0;
+    state.speed = state.wanted > 0 ? most : 0;
     state.pace = 0;
+    state.touched = std::min(state.touched, 1.0);
   }
-  count_error(state);
+  count_error(state, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
   if (state.free_way <= system.walls.longest_free_way) return;
   throw Error(
       ErrorKind::computation_failed,
@@ -224,6 +272,7 @@ void find_servos(GrainSystem& system) {
     ServoState state;
     state.wall = w;
     state.mirror = place(wall.servo->mirror);
+    if (!wall.servo->max_speed) state.speed_of_push = speed_of_push(system, w);
     for (std::size_t k = 0; k < 2; ++k) state.between[k] = place(wall.servo->between[k]);
     system.walls.servos.push_back(state);
   }
@@ -279,7 +328,9 @@ std::vector<ServoReport> reports_of(const GrainSystem& system) {
                                    .reached = state.reached != 0,
                                    .wanted = state.wanted,
                                    .force = state.force,
+                                   .max_speed = limit_of(system, state),
                                    .overshoot = state.overshoot,
+                                   .peak = state.peak,
                                    .mean_error = state.steps > 0 ? state.errors / state.steps : 0});
   }
   std::ranges::sort(found, {}, [](const auto& entry) { return entry.first; });

@@ -43,9 +43,9 @@ void check(const Servo& servo, const std::string& name) {
     refuse_servo(name, fmt::format("pushes along ({}, {})", servo.direction.x, servo.direction.y),
                  "that is no unit vector", "Divide it by its length");
   }
-  if (!(servo.max_speed > 0) || !std::isfinite(servo.max_speed)) {
-    refuse_servo(name, fmt::format("has max_speed = {} m/s", servo.max_speed), "it must be > 0 and finite",
-                 "Give a positive one");
+  if (servo.max_speed && (!(*servo.max_speed > 0) || !std::isfinite(*servo.max_speed))) {
+    refuse_servo(name, fmt::format("has max_speed = {} m/s", *servo.max_speed), "it must be > 0 and finite",
+                 "Give a positive one, or leave it out");
   }
   if (!(servo.relaxation > 0) || !(servo.relaxation <= 1)) {
     refuse_servo(name, fmt::format("has relaxation = {}", servo.relaxation),

@@ -14,6 +14,23 @@ SPRINGS = (1e8, 5e7)  # Pa, of the cases of sand
 SIDES = {"left": (-1, 0), "right": (1, 0), "bottom": (0, -1), "top": (0, 1)}
 
 
+def largest_piece(discs, contacts):
+    """The discs of the largest set that contacts hold together."""
+    leader = list(range(discs))
+
+    def of(disc):
+        while leader[disc] != disc:
+            leader[disc] = disc = leader[leader[disc]]
+        return disc
+
+    for i, j in contacts:
+        leader[of(i)] = of(j)
+    pieces = {}
+    for disc in range(discs):
+        pieces.setdefault(of(disc), set()).add(disc)
+    return max(pieces.values(), key=len)
+
+
 class Packing:
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -24,7 +41,9 @@ class Packing:
         self.discs = [[float(row[name]) for name in ("x_m", "y_m", "radius_m")] for row in tables["grains"]]
         self.touching = [(int(row["i"]), int(row["j"]), float(row["overlap_m"]), -float(row["normal_force_N_per_m"]),
                           -float(row["tangential_force_N_per_m"])) for row in tables["contacts"] if not row["wall"]]
-        bearing = {disc for i, j, *_ in self.touching for disc in (i, j)}  # a disc that leans on a plate alone bears nothing
+        # a disc that leans on a plate alone bears nothing, nor do some that touch one another only
+        bearing = largest_piece(len(self.discs), [contact[:2] for contact in self.touching])
+        self.touching = [contact for contact in self.touching if contact[0] in bearing]
         self.on_plates = [(int(row["i"]), row["wall"], float(row["overlap_m"]), -float(row["normal_force_N_per_m"]))
                           for row in tables["contacts"] if row["wall"] and int(row["i"]) in bearing]
         read = readings.history(self.folder)

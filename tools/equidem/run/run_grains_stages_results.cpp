@@ -148,14 +148,19 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
         .set("reached", servo.reached);
     row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
     const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
-    row.add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+    row.add("max_speed", "limit, m/s", servo.max_speed, "", {.digits = 3})
+        .add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
+        .set("peak", share(servo.peak), "", "the same of the force in single steps, in which bodies knock")
+        .add("", "in a step", share(servo.peak), "", {.digits = 3})
         .add("mean_error", "mean error", share(servo.mean_error), "", {.digits = 3});
   };
   for (const StageReport& stage : stages)
     for (const ServoReport& servo : &stage == &stages.back() ? present : stage.servos) add(stage.name, servo);
   Results out;
   if (rows.empty()) return out;
-  out.line("servo walls", "overshoot and mean error since the force came within 1 % of the wanted one in its stage:");
+  out.line("servo walls",
+           "limit of their speed; overshoot, in the mean over a contact and in a step, and mean error since the force "
+           "came within 1 % of the wanted one in its stage:");
   out.table("servos", std::move(rows));
   if (!missed.empty())
     out.line("WARNING",

@@ -11,7 +11,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t numbers_per_stage = 11, numbers_of_made_bond = 9, numbers_of_servo_report = 7,
+constexpr std::size_t numbers_per_stage = 11, numbers_of_made_bond = 9, numbers_of_servo_report = 9,
                       numbers_of_cell_start = 8, numbers_of_idle_choice = 3, numbers_of_cell_servo_report = 7;
 
 /// \param effects all that there are, in the order of their bits
@@ -41,8 +41,9 @@ std::vector<double> numbers_of_servos(const std::vector<StageReport>& reports) {
   std::vector<double> numbers;
   for (std::size_t k = 0; k < reports.size(); ++k)
     for (const ServoReport& servo : reports[k].servos)
-      numbers.insert(numbers.end(), {static_cast<double>(k), servo.touched ? 1.0 : 0.0, servo.reached ? 1.0 : 0.0,
-                                     servo.wanted, servo.force, servo.overshoot, servo.mean_error});
+      numbers.insert(numbers.end(),
+                     {static_cast<double>(k), servo.touched ? 1.0 : 0.0, servo.reached ? 1.0 : 0.0, servo.wanted,
+                      servo.force, servo.max_speed, servo.overshoot, servo.peak, servo.mean_error});
   return numbers;
 }
 
@@ -140,8 +141,10 @@ void take_servos(const std::vector<double>& numbers, const std::vector<GrainStag
                         .reached = n[2] != 0,
                         .wanted = n[3],
                         .force = n[4],
-                        .overshoot = n[5],
-                        .mean_error = n[6]});
+                        .max_speed = n[5],
+                        .overshoot = n[6],
+                        .peak = n[7],
+                        .mean_error = n[8]});
       break;
     }
   }
