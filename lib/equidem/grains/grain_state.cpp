@@ -24,7 +24,8 @@ constexpr double ServoState::*servo_saved[] = {
     &ServoState::way,     &ServoState::speed,  &ServoState::passed_speed,   &ServoState::free_way,
     &ServoState::wanted,  &ServoState::force,  &ServoState::largest_wanted, &ServoState::overshoot,
     &ServoState::pace,    &ServoState::errors, &ServoState::steps,          &ServoState::touched,
-    &ServoState::reached, &ServoState::side,   &ServoState::excess,         &ServoState::peak};
+    &ServoState::reached, &ServoState::side,   &ServoState::excess,         &ServoState::peak,
+    &ServoState::arrived};
 
 constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
                                                            &GrainCounters::rebuilds, &GrainCounters::sweeps,

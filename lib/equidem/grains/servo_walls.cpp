@@ -127,7 +127,7 @@ void count_error(ServoState& state, double share) {
   if (state.touched != 0 && state.reached == 0) {
     const double missing = state.wanted - state.force;
     if (state.side == 0) state.side = missing > 0 ? -1 : 1;
-    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = 1, state.touched = 2;
+    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = state.arrived = 1;
   }
   if (state.reached == 0 || state.largest_wanted == 0) return;
   const double error = (state.force - state.wanted) / state.largest_wanted;
@@ -155,14 +155,13 @@ void steer(GrainSystem& system, ServoState& state) {
   state.wanted = wanted_force(system, state);
   const double most = limit_of(system, state), impedance = resistance.impedance;
   if (resistance.sum() > 0) {
-    state.touched = std::max(state.touched, 1.0);
+    state.touched = 1;
     state.free_way = 0;
     const double missing = state.wanted - state.force;
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
     const double asked = (servo.relaxation * missing + going_on) / resistance.sum();
-    // touched is 2 where W has been reached since the wall met bodies, in this stage or before
     const double by_waves =
-        state.reached == 0 && state.touched < 2 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
+        state.reached == 0 && state.arrived == 0 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
     state.speed = std::clamp(asked, -most, std::min(most, by_waves));
     const double near = near_share * state.wanted, approach = std::abs(missing) <= near ? 1 : near / missing;
     if (state.speed == asked)
@@ -170,7 +169,7 @@ void steer(GrainSystem& system, ServoState& state) {
   } else {
     state.speed = state.wanted > 0 ? most : 0;
     state.pace = 0;
-    state.touched = std::min(state.touched, 1.0);
+    state.arrived = 0;
   }
   count_error(state, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
   if (state.free_way <= system.walls.longest_free_way) return;
