@@ -219,8 +219,9 @@ std::string UnbondedRun::sentence_on(const RateSearch& search, std::size_t limit
     return fmt::format("none of {} balances what acts on them: with friction the increment has no answer", tried());
   }
   if (!answer.agrees) {
-    return "no statuses of the contacts on their limits were found that balance what acts on them: with friction "
-           "the increment may have no answer";
+    return std::string("no statuses of the contacts on their limits were found that balance what acts on them: ") +
+           (std::ranges::any_of(laws_, &UnbondedLaw::rough) ? "with friction the increment may have no answer"
+                                                            : "without friction some do, unless loads move a part");
   }
   std::size_t fastest = 0;
   for (std::size_t k = 0; k < answer.rates.motion.size(); ++k) {
