@@ -105,7 +105,7 @@ struct ServoState {
   double speed_of_push = 0;            ///< m/s, if the speed is not given: at which a body pushes by 1 N
   double errors = 0, steps = 0;        ///< sum of |F - W| over largest_wanted, number of its steps
   double touched = 0, reached = 0;     ///< 0 or 1
-  double arrived = 0;                  ///< 1: W was reached since the wall met bodies, in this stage or before
+  double arrived = 0;                  ///< 1: W was reached in this stage or before
   double side = 0;                     ///< 1, -1: the force began above or below the wanted one; 0: not known yet
 
   void count_anew() { excess = overshoot = peak = errors = steps = largest_wanted = reached = side = 0; }

@@ -160,8 +160,7 @@ void steer(GrainSystem& system, ServoState& state) {
     const double missing = state.wanted - state.force;
     const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
     const double asked = (servo.relaxation * missing + going_on) / resistance.sum();
-    const double by_waves =
-        state.reached == 0 && state.arrived == 0 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
+    const double by_waves = state.arrived == 0 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
     state.speed = std::clamp(asked, -most, std::min(most, by_waves));
     const double near = near_share * state.wanted, approach = std::abs(missing) <= near ? 1 : near / missing;
     if (state.speed == asked)
@@ -169,7 +168,6 @@ void steer(GrainSystem& system, ServoState& state) {
   } else {
     state.speed = state.wanted > 0 ? most : 0;
     state.pace = 0;
-    state.arrived = 0;
   }
   count_error(state, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
   if (state.free_way <= system.walls.longest_free_way) return;
