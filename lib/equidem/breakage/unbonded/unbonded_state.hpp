@@ -35,7 +35,7 @@ struct ContactLedger {
   void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
   /// The sum that should vanish, N.
   [[nodiscard]] double missing() const { return work - elastic - friction - released; }
-  /// That over the largest of its terms so far.
+  /// missing() over the largest of its terms so far.
   [[nodiscard]] double error() const;
 };
 

@@ -20,7 +20,7 @@ using namespace eight;
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
-// What is loaded as one row, and stored.
+// These members are loaded and stored as one row.
 static_assert(offsetof(Candidate, steps) - offsetof(Candidate, reduced_mass) == 3 * sizeof(double));
 static_assert(offsetof(Candidate, stretch) - offsetof(Candidate, overlap) == 7 * sizeof(double));
 static_assert(offsetof(Candidate, sliding) - offsetof(Candidate, stiffness) == sizeof(double));
