@@ -98,7 +98,7 @@ TEST_CASE("the_ledger_counts_the_fall_of_bodies_that_have_left_the_cell_over_sta
 }
 
 TEST_CASE("the_stress_of_a_cell_misses_the_wanted_one_by_less_than_its_discs_are_out_of_balance") {
-  // What is missing pushes discs; while they rearrange it is some per cent, which depends on the last digits.
+  // A stress that is missing pushes discs. While they rearrange it is some per cent, which depends on the last digits.
   const std::uint64_t seed = GENERATE(24, 25, 26, 27, 28, 29, 30, 31);
   StagedSimulation staged(shear_test(12000, seed), verlet_options(0.001));
   for (const std::int64_t step : {6000, 12000}) {
