@@ -238,7 +238,7 @@ void UpdatedState::follow(const FactorPath& path, std::span<const std::int32_t> 
     offset += static_cast<std::int32_t>(symbolic_->pivots(t) * cases.size());
   }
   // The column of a pivot of which little is left has lost digits, which this motion meets, and others after it.
-  constexpr double share_that_doubles = 1.0 / 64, shares_that_double = 1024;
+  constexpr double share_that_doubles = 1.0 / 64, shares_that_double = 64;
   const double left = std::min(path.share, 1.0), lost = 1 + squared(share_that_doubles / left);
   growth_ += 1 / (shares_that_double * left);
   for (auto block = blocks.rbegin(); block != blocks.rend(); ++block) {
