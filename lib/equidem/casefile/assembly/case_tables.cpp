@@ -217,7 +217,11 @@ void bind_breakage(File<CaseTables>& file) {
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
       .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
              key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
-  file.table("dead_load", &CaseTables::dead_loads, "forces that stay while lambda grows, for the verb quasistatic")
+  file.table("dead_load", &CaseTables::dead_loads,
+             "forces that stay while lambda grows, for the verb quasistatic; where contacts rub they are put on first, "
+             "from none "
+             "to all of them, beside what forces at rest balance already, such as the weight under which a packing "
+             "came to rest")
       .keys({key("group", &Load::group, required, "as in [[support]]"), key("kind", &Load::kind, "as in [[load]]"),
              key("force", &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
              key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")});

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "equidem/breakage/unbonded/giving_way/growing_motion.hpp"
 #include "equidem/breakage/unbonded/giving_way/unborne_loads.hpp"
+#include "equidem/breakage/unbonded/giving_way/unresisted_motion.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
 
@@ -50,13 +50,13 @@ std::string unborne_sentence(const PathStage& stage, bool rough, const std::stri
   if (stage.releasing) {
     what = fmt::format("the contacts cannot take over the force of the bond that breaks: {} balance it", forces);
   } else if (!stage.dead) {
-    what = fmt::format("the contacts can carry no more of the load: {} balance it beyond lambda = {:g}", forces,
-                       stage.lambda);
+    what = fmt::format("the contacts can carry no more of the load: beyond lambda = {:g} {} balance it", stage.lambda,
+                       forces);
   } else if (stage.share == 0) {
-    what = fmt::format("the contacts can carry no part of the dead loads: {} balance it", forces);
+    what = fmt::format("the contacts can carry no part of the dead loads: {} balance them", forces);
   } else {
-    what =
-        fmt::format("the contacts can carry {} and no more: {} balance it", percent_of_dead_loads(stage.share), forces);
+    what = fmt::format("the contacts can carry {} and no more: {} balance a larger part of them",
+                       percent_of_dead_loads(stage.share), forces);
   }
   return what + ", and nothing resists " + motion;
 }
@@ -112,10 +112,14 @@ PathEnding ending_of(const Assembly& assembly, const RateProblem& problem, const
             fmt::format("{}nothing resists the motion of the part around {} any more: its contacts are open or slip",
                         at_dead_loads(stage), part_that_moves(assembly, unknowns, search.answer.rates.motion))};
   }
-  if (search.ties == 0) {
-    if (const auto growing = growing_motion(problem, {status.begin(), status.end()}))
-      return {PathEnd::no_answer,
-              unstable_sentence(problem, search, stage, words_of(assembly, unknowns, growing->motion))};
+  const auto motion = search.ties == 0 ? unresisted_motion(problem, {status.begin(), status.end()}) : std::nullopt;
+  if (motion && motion->growth > 0) {
+    return {PathEnd::no_answer,
+            unstable_sentence(problem, search, stage, words_of(assembly, unknowns, motion->motion))};
+  }
+  if (motion) {
+    return {PathEnd::load_moves_part, fmt::format("{}nothing resists {} any more: its contacts are open or slip",
+                                                  at_dead_loads(stage), words_of(assembly, unknowns, motion->motion))};
   }
   return {PathEnd::no_answer, undecided_sentence(problem, search, stage)};
 }
