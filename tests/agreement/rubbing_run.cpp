@@ -12,12 +12,7 @@
 #include "equidem/assembly/lattices/hexagonal.hpp"
 #include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
-#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/grain_simulation.hpp"
-#include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
-#include "equidem/packing/size_distribution.hpp"
 
 #include "agreement/slow_grains.hpp"
 #include "breakage/unbonded_scenes.hpp"

@@ -141,22 +141,17 @@ TEST_CASE("a_dead_load_ends_where_slip_that_relieves_its_own_contact_makes_the_s
   CHECK(disc.run().end() == PathEnd::no_answer);
   CHECK_THAT(disc.run().why(),
              Catch::Contains(fmt::format("at {:.4g} % of the dead loads the equilibrium is unstable", 100 * limit)));
-  // The root c > 0 of det(K_slip + c) = 0 with the rows (kN + half, half) and (half - mu kN, half).
-  const double trace = kN + half + half, det_slip = (kN + half) * half - half * (half - friction * kN * -1);
-  const double det_low = (kN + half) * half - half * (half + friction * kN);
-  const double c = -trace / 2 + std::sqrt(trace * trace / 4 - det_low);
-  REQUIRE(det_low < 0);
-  CHECK(det_slip == det_low);
-  LimitNetwork network(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::supports(), friction);
-  network.bond(1);
-  std::vector<double> force(network.components(), 0.0);
-  const std::size_t along = force.size() / 3 + 1;
-  force[along] = -1;
+  // The root c > 0 of det(K_slip + c) = 0 with the rows (kN + half, half) and (half + mu kN, half).
+  const double trace = kN + half + half, slipping_det = (kN + half) * half - half * (half + friction * kN);
+  REQUIRE(slipping_det < 0);
+  const double c = -trace / 2 + std::sqrt(trace * trace / 4 - slipping_det);
   double found = 0;
   for (const double direction : {1.0, -1.0}) {
     LimitNetwork one(TiedDisc::assembly(), TiedDisc::springs(), TiedDisc::supports(), friction);
     one.bond(1);
     one.limit({0, OnLimit::friction, direction});
+    std::vector<double> force(one.components(), 0.0);
+    force[force.size() / 3 + 1] = -1;  // the disc, along -y
     const RightHandSide pattern{.force = force, .prescribed = std::vector<double>(force.size(), 0.0)};
     if (const auto growing = unresisted_motion(one.problem_of(pattern), one.status())) found = growing->growth;
   }

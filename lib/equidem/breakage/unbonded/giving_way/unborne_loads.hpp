@@ -5,8 +5,8 @@
 /// The forces that a contact can add to those that it has form a convex cone: every direction where it sticks or is
 /// bonded, N <= 0 with |T| <= -mu N where it just touches, and s T + mu N <= 0 on the limit of its friction in the
 /// direction s; an open contact adds none. Loads outside of the sum of these cones are balanced by no forces, whatever
-/// moves. Because the law itself is a convex cone, the contacts that are closed now balance no larger load of the kind
-/// from any other state either. That contacts which slip open does not weaken the proof: it takes nothing from motions.
+/// moves. The law itself is a convex cone, too: the contacts that are closed now balance no larger load of the kind in
+/// any other state either. How contacts slip does not count, so that loads inside of the sum may not be borne either.
 #pragma once
 
 #include <optional>
