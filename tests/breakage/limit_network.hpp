@@ -57,7 +57,7 @@ class LimitNetwork {
   };
   Answers load(std::vector<double> force) {
     const RightHandSide pattern{.force = std::move(force), .prescribed = std::vector<double>(components(), 0.0)};
-    const RateProblem problem{contacts_, laws_, limits_, {.pattern = &pattern, .rate = 1}};
+    const RateProblem problem = problem_of(pattern);
     const RateSearch search = search_rates(problem, solver_, status_);
     if (!search.found) return {.tried = search.tried, .ties = search.ties};
     const RateAnswer& answer = search.answer;
@@ -67,6 +67,9 @@ class LimitNetwork {
             .branches = find_branches(problem, solver_, answer, {}),
             .status = answer.status,
             .force = forces_of(answer)};
+  }
+  [[nodiscard]] RateProblem problem_of(const RightHandSide& pattern) const {
+    return {contacts_, laws_, limits_, {.pattern = &pattern, .rate = 1}};
   }
   /// Rates of force, per contact on a limit.
   [[nodiscard]] std::vector<ContactForce> forces_of(const RateAnswer& answer) const {

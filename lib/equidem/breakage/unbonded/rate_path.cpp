@@ -64,6 +64,12 @@ class RatePath {
     return false;
   }
   [[nodiscard]] std::vector<ContactStatus> take_status() { return std::move(status_); }
+  /// Where the path has come to tau = 0, per component, with the ground; no motion is prescribed.
+  [[nodiscard]] std::vector<double> motion() {
+    std::vector<double> motion;
+    response_to(problem_.driving.rate, true, 0, &motion);
+    return motion;
+  }
 
  private:
   struct Step {
@@ -93,7 +99,9 @@ class RatePath {
   }
 
   /// The response to lambda times the pattern, to the forces beside it where `others`, and to tau.
-  [[nodiscard]] Response response_to(double lambda, bool others, double tau) const {
+  /// \param moved where the motion goes; null: nowhere
+  [[nodiscard]] Response response_to(double lambda, bool others, double tau,
+                                     std::vector<double>* moved = nullptr) const {
     const ContactOperator& contacts = problem_.contacts;
     const Driving& driving = problem_.driving;
     const auto& held = contacts.unknowns().held;
@@ -124,6 +132,7 @@ class RatePath {
       if (held[k] == 0) motion[k] = residual[k];
     Response response{{}, load.empty() ? 0 : sum_of_products(load, motion)};
     for (const LimitContact& at : problem_.limits) response.deformation.push_back(deformation(at.contact));
+    if (moved != nullptr) *moved = std::move(motion);
     return response;
   }
   void respond() {
@@ -292,6 +301,12 @@ std::optional<RateAnswer> follow_rates(const RateProblem& problem, TangentSolver
     if (answer.agrees && answer.rates.balanced) return answer;
   }
   return {};
+}
+
+std::vector<double> motion_on_ground(const RateProblem& problem, const std::vector<ContactStatus>& status,
+                                     double ground) {
+  RatePath path(problem, status, ground);
+  return path.follow() ? path.motion() : std::vector<double>{};
 }
 
 }  // namespace equidem

@@ -24,4 +24,10 @@ namespace equidem {
 std::optional<RateAnswer> follow_rates(const RateProblem& problem, TangentSolver& solver,
                                        std::vector<ContactStatus> status);
 
+/// The motion at the end of that path with the springs of `ground`, per component; empty: the path goes back.
+/// \param problem by no prescribed motion of loads
+/// \param ground over the stiffest spring
+std::vector<double> motion_on_ground(const RateProblem& problem, const std::vector<ContactStatus>& status,
+                                     double ground);
+
 }  // namespace equidem

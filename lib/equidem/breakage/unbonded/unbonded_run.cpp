@@ -6,12 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/breakage/unbonded/giving_way/end_sentence.hpp"
 #include "equidem/breakage/unbonded/loose_discs.hpp"
 #include "equidem/breakage/unbonded/rate_branches.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/breakage/unbonded/unique_rates.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
@@ -111,14 +111,17 @@ bool UnbondedRun::find_rates() {
   RateSearch search = search_rates(problem, solver_, state_->status());
   RateAnswer& answer = search.answer;
   if (!search.found) {
-    if (answer.agrees) {
-      record_changes(answer.status);
-    } else if (search.tried > 0 && search.ties == 0) {
-      ++counters_.no_answer;
-    } else {
-      count_unchecked(limits.size(), search.ties > 0);
+    if (answer.agrees) record_changes(answer.status);
+    PathEnding ending = ending_of(scene_.assembly, problem, search, state_->status(),
+                                  {!dead_done_, releasing(), state_->dead(), state_->lambda()});
+    if (ending.end == PathEnd::no_answer) {
+      if (search.tried > 0 && search.ties == 0) {
+        ++counters_.no_answer;
+      } else {
+        count_unchecked(limits.size(), search.ties > 0);
+      }
     }
-    end(answer.agrees ? PathEnd::load_moves_part : PathEnd::no_answer, sentence_on(search, limits.size()));
+    end(ending.end, std::move(ending.sentence));
     return false;
   }
   const std::size_t first = begun_;  // breaks at this state begin the increment too
@@ -200,36 +203,6 @@ double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStat
   if (path.driven_by == DrivenBy::strain) return sum / (path.size * scene_.assembly.area());
   for (std::size_t k = 0; k < internal.size(); ++k) sum += path.pattern.prescribed[k] * internal[k];
   return sum / path.size;
-}
-
-std::string UnbondedRun::sentence_on(const RateSearch& search, std::size_t limits) const {
-  const RateAnswer& answer = search.answer;
-  const auto tried = [&] {
-    return fmt::format("the {} of {} on limits",
-                       counted(search.tried, "combination of the states", "combinations of the states"),
-                       counted(static_cast<std::int64_t>(limits), "contact"));
-  };
-  if (!answer.agrees && search.ties > 0) {
-    return fmt::format(
-        "of {} none balances what acts on them beyond doubt, and {} within round-off: whether the "
-        "increment has an answer is not decided",
-        tried(), search.ties);
-  }
-  if (!answer.agrees && search.tried > 0) {
-    return fmt::format("none of {} balances what acts on them: with friction the increment has no answer", tried());
-  }
-  if (!answer.agrees) {
-    return std::string("no statuses of the contacts on their limits were found that balance what acts on them: ") +
-           (std::ranges::any_of(laws_, &UnbondedLaw::rough) ? "with friction the increment may have no answer"
-                                                            : "without friction some do, unless loads move a part");
-  }
-  std::size_t fastest = 0;
-  for (std::size_t k = 0; k < answer.rates.motion.size(); ++k) {
-    if (std::abs(answer.rates.motion[k]) > std::abs(answer.rates.motion[fastest])) fastest = k;
-  }
-  const auto disc = fastest / static_cast<std::size_t>(unknowns_.per_disc);
-  return fmt::format("nothing resists the motion of the part around {} any more: its contacts are open or slip",
-                     describe_disc(scene_.assembly, disc));
 }
 
 double UnbondedRun::stage_end() const {

@@ -95,7 +95,6 @@ class UnbondedRun : public EventPath {
   bool find_rates();
   void look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first);
   [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
-  [[nodiscard]] std::string sentence_on(const RateSearch& search, std::size_t limits) const;
   [[nodiscard]] double stage_end() const;
   /// \return false where the path ends
   bool move(double t);

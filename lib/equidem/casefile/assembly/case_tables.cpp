@@ -217,9 +217,13 @@ void bind_breakage(File<CaseTables>& file) {
   file.table("strain", &CaseTables::strain, "mean strain of a periodic cell times lambda, for the verb quasistatic")
       .keys({key("xx", &Voigt::xx, "positive: the cell grows longer along x"), key("yy", &Voigt::yy),
              key("xy", &Voigt::xy, "engineering shear strain, 2 e_xy")});
-  file.table("dead_load", &CaseTables::dead_loads, "forces that stay while lambda grows, for the verb quasistatic")
+  file.table("dead_load", &CaseTables::dead_loads,
+             "forces put on first, which stay while lambda grows, for the verb quasistatic")
       .keys({key("group", &Load::group, required, "as in [[support]]"), key("kind", &Load::kind, "as in [[load]]"),
-             key("force", &Load::force, optional, unit("N/m (traction: Pa)"), "[f_x, f_y]"),
+             key("force", &Load::force, optional, unit("N/m (traction: Pa)"),
+                 "[f_x, f_y]; where contacts rub it grows from none to this, event by event, before lambda does, "
+                 "beside the "
+                 "loads that forces at rest balance: the weight under which a packing fell is not given again"),
              key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")});
   file.table("notch", &CaseTables::notches, "a straight cut through contacts from the start, for the verb quasistatic")
       .keys({key("from", &Notch::from, required, unit("m"), "[x, y] of one end"),
