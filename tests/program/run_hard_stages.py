@@ -70,6 +70,51 @@ quantities = ["position", "velocity"]
         self.refused(text.replace("removed = true", 'removed = true\ndisplacement = 0.1\nschedule = "down"'), "case.toml:",
                      "'lid' is removed, and displacement is given")
 
+    def test_contacts_that_lose_their_friction_carry_no_tangential_force_and_no_spring_that_comes_back(self):
+        bodies = {"disc": TOUCHING, "ellipse": TOUCHING.replace("radius = 0.01", "half_axes = [0.01, 0.01]")}
+        stages = """[run]
+gravity = [-2.0, -9.81]
+[[stage]]
+name = "rough"
+duration = 0.1
+[[stage]]
+name = "smooth"
+steps = 2
+[stage.collisions]
+friction = 0.0
+[[stage]]
+name = "again"
+steps = 1
+[stage.collisions]
+friction = 0.5
+[output]
+probe_interval = 1.0
+"""
+        walls = WALLS.replace("point = [0.0, 0.0]\nnormal = [1.0", "point = [0.01, 0.0]\nnormal = [1.0")
+        for shape, scene in bodies.items():
+            for integrator in ("semi_implicit_euler", "velocity_verlet", "corrected_verlet"):
+                with self.subTest(shape=shape, integrator=integrator):
+                    rough = scene.replace("[collisions]", "[collisions]\nfriction = 0.5\ntangential_ratio = 0.5\ntangential_damping = 0.3")
+                    text = (rough + walls + stages).replace("[run]", f'[run]\nintegrator = "{integrator}"')
+                    out = self.folder / f"{shape}_{integrator}"
+                    short = self.write(text[:text.index('[[stage]]\nname = "again"')] + "[output]\nprobe_interval = 1.0\n")
+                    self.run_case(short, "--out", out, *NO_PICTURE)
+                    contacts = rows_of(out / "contacts.csv")
+                    self.assertTrue(contacts)
+                    for contact in contacts:
+                        self.assertEqual(float(contact["tangential_force_N_per_m"]), 0, contact)
+                    whole = self.folder / f"whole_{shape}_{integrator}"
+                    step = self.run_case(self.write(text), "--out", whole, *NO_PICTURE)["time_step"]
+                    # each contact slips for one step, no faster than the rims of its bodies
+                    rims = sorted(math.hypot(float(row["vx_m_per_s"]), float(row["vy_m_per_s"])) + 0.01 * abs(float(row["spin_rad_per_s"]))
+                                  for row in rows_of(whole / "grains.csv"))
+                    slipped = 0.5 * 5.0e5 * len(contacts) * (rims[-1] * step) ** 2
+                    stored = table(whole / "history.csv")["elastic_tangential_J_per_m"]
+                    self.assertGreater(stored[1], 0)      # at the end of the first stage
+                    self.assertEqual(stored[2], 0)
+                    self.assertGreater(stored[1], 5 * slipped)
+                    self.assertLessEqual(stored[3], slipped)
+
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)
