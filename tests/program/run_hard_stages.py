@@ -115,6 +115,14 @@ probe_interval = 1.0
                     self.assertGreater(stored[1], 5 * slipped)
                     self.assertLessEqual(stored[3], slipped)
 
+    def test_a_servo_wall_that_wants_no_force_and_has_one_is_told(self):
+        pressed = PRESS.replace("[0.0, 0.021]", "[0.0, 0.0199]") + 'servo = { force = 0.0 }\n[run]\nduration = 1.0e-3\n'
+        result = self.run_case(self.write(pressed), *NO_PICTURE)
+        servo, = result["servos"]
+        self.assertGreater(servo["force"], 0)
+        self.assertFalse(servo["reached"])
+        self.assertIn("'lid'", " ".join(result["report"].split()).split("WARNING")[1])
+
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)

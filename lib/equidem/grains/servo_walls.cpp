@@ -326,9 +326,9 @@ std::vector<ServoReport> reports_of(const GrainSystem& system) {
                                    .wanted = state.wanted,
                                    .force = state.force,
                                    .max_speed = limit_of(system, state),
-                                   .overshoot = state.overshoot,
-                                   .peak = state.peak,
-                                   .mean_error = state.steps > 0 ? state.errors / state.steps : 0});
+                                   .overshoot = state.largest_wanted > 0 ? state.overshoot : NAN,
+                                   .peak = state.largest_wanted > 0 ? state.peak : NAN,
+                                   .mean_error = state.steps > 0 ? state.errors / state.steps : NAN});
   }
   std::ranges::sort(found, {}, [](const auto& entry) { return entry.first; });
   std::vector<ServoReport> reports;
