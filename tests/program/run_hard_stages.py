@@ -123,6 +123,22 @@ probe_interval = 1.0
         self.assertFalse(servo["reached"])
         self.assertIn("'lid'", " ".join(result["report"].split()).split("WARNING")[1])
 
+    def test_the_force_on_a_wall_is_that_of_its_contacts(self):
+        pressed = PRESS.replace("[0.0, 0.021]", "[0.0, 0.0199]") + "[run]\ntime_step = 2.0e-5\n[[stage]]\nname = 'push'\nsteps = 100\n"
+        for integrator in ("semi_implicit_euler", "velocity_verlet", "corrected_verlet"):
+            with self.subTest(integrator=integrator):
+                by_contacts = []
+                for steps in (100, 101):
+                    out = self.folder / f"{integrator}_{steps}"
+                    result = self.run_case(self.write(pressed), "--out", out, "--set", f"stage.0.steps={steps}",
+                                           "--set", f"run.integrator={integrator}", *NO_PICTURE)
+                    by_contacts.append(sum(float(row["normal_force_N_per_m"]) for row in rows_of(out / "contacts.csv")
+                                           if row["wall"] == "lid"))
+                lid, = (wall for wall in result["forces_on_walls"] if wall["name"] == "lid")
+                of_step = by_contacts[1] if integrator == "semi_implicit_euler" else sum(by_contacts) / 2
+                self.assertGreater(abs(by_contacts[1] - by_contacts[0]), 1e-3)
+                self.assertAlmostEqual(lid["force"][1], of_step, delta=1e-10 * of_step)
+
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)
