@@ -139,6 +139,10 @@ probe_interval = 1.0
                 self.assertGreater(abs(by_contacts[1] - by_contacts[0]), 1e-3)
                 self.assertAlmostEqual(lid["force"][1], of_step, delta=1e-10 * of_step)
 
+    def test_a_stress_between_a_wall_and_itself_is_refused(self):
+        twice = PRESS + 'servo = { stress = 100.0, from = "left", to = "left" }\n[run]\nduration = 0.1\n'
+        self.refused(twice, "case.toml:", "wall.servo.to", "between 'left' and itself", "Name another wall")
+
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)
