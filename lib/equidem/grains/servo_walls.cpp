@@ -230,10 +230,6 @@ void check_along(const Wall& wall, Vec2 direction, const Wall& owner) {
 void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
   const Servo& servo = *wall.servo;
   if (!servo.is_stress || servo.length > 0) return;
-  if (servo.between[0] == servo.between[1])
-    refuse_servo_wall(wall, fmt::format("is a stress between '{}' and itself", servo.between[0]),
-                      "the length on which it acts is that between two walls", "Name another wall, or give the length",
-                      "to");
   for (const std::string& name : servo.between) {
     const std::string key = &name == servo.between.data() ? "from" : "to";
     const std::size_t found = place_of_name(scene, name);
@@ -246,6 +242,10 @@ void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
       refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
                         "Name walls at an angle to it, or give the length", key);
   }
+  if (servo.between[0] == servo.between[1])
+    refuse_servo_wall(wall, fmt::format("is a stress between '{}' and itself", servo.between[0]),
+                      "the length on which it acts is that between two walls", "Name another wall, or give the length",
+                      "to");
 }
 
 }  // namespace
