@@ -69,6 +69,17 @@ class CellTest(RunTest):
         self.assertAlmostEqual(work / (told[-1] - told[0]), 1, delta=0.03)
         self.assertAlmostEqual(result["cell"]["stress_xy"], history["cell_stress_xy_Pa"][-1], delta=1e-6 * 1e5)
 
+    def test_errors_of_a_stress_of_zero_are_no_shares_and_the_stress_told_is_that_of_the_cell(self):
+        result = self.run_case(self.small_case(), "--set", "run.duration=0.2", "--set", "cell.servo.stress_xx=0.0",
+                               *NO_PICTURE)
+        cell = result["cell"]
+        self.assertNotEqual(cell["stress_xx"], 0)
+        for servo in cell["servos"]:
+            self.assertEqual(servo["stress"], cell[f"stress_{servo['component']}"])
+            self.assertTrue(servo["reached"])
+            for key in ("overshoot", "mean_error"):
+                self.assertEqual(servo[key] is None, servo["wanted"] == 0, (servo, key))
+
     def test_a_run_that_was_cut_off_ends_with_the_same_rows(self):
         case, whole, parts = self.small_case(), self.folder / "whole", self.folder / "parts"
         short = ("--set", "run.steps_per_contact=none", "--set", "run.time_step=4e-6", *NO_PICTURE)

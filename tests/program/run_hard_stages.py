@@ -70,6 +70,79 @@ quantities = ["position", "velocity"]
         self.refused(text.replace("removed = true", 'removed = true\ndisplacement = 0.1\nschedule = "down"'), "case.toml:",
                      "'lid' is removed, and displacement is given")
 
+    def test_contacts_that_lose_their_friction_carry_no_tangential_force_and_no_spring_that_comes_back(self):
+        bodies = {"disc": TOUCHING, "ellipse": TOUCHING.replace("radius = 0.01", "half_axes = [0.01, 0.01]")}
+        stages = """[run]
+gravity = [-2.0, -9.81]
+[[stage]]
+name = "rough"
+duration = 0.1
+[[stage]]
+name = "smooth"
+steps = 2
+[stage.collisions]
+friction = 0.0
+[[stage]]
+name = "again"
+steps = 1
+[stage.collisions]
+friction = 0.5
+[output]
+probe_interval = 1.0
+"""
+        walls = WALLS.replace("point = [0.0, 0.0]\nnormal = [1.0", "point = [0.01, 0.0]\nnormal = [1.0")
+        for shape, scene in bodies.items():
+            for integrator in ("semi_implicit_euler", "velocity_verlet", "corrected_verlet"):
+                with self.subTest(shape=shape, integrator=integrator):
+                    rough = scene.replace("[collisions]", "[collisions]\nfriction = 0.5\ntangential_ratio = 0.5\ntangential_damping = 0.3")
+                    text = (rough + walls + stages).replace("[run]", f'[run]\nintegrator = "{integrator}"')
+                    out = self.folder / f"{shape}_{integrator}"
+                    short = self.write(text[:text.index('[[stage]]\nname = "again"')] + "[output]\nprobe_interval = 1.0\n")
+                    self.run_case(short, "--out", out, *NO_PICTURE)
+                    contacts = rows_of(out / "contacts.csv")
+                    self.assertTrue(contacts)
+                    for contact in contacts:
+                        self.assertEqual(float(contact["tangential_force_N_per_m"]), 0, contact)
+                    whole = self.folder / f"whole_{shape}_{integrator}"
+                    step = self.run_case(self.write(text), "--out", whole, *NO_PICTURE)["time_step"]
+                    # each contact slips for one step, no faster than the rims of its bodies
+                    rims = sorted(math.hypot(float(row["vx_m_per_s"]), float(row["vy_m_per_s"])) + 0.01 * abs(float(row["spin_rad_per_s"]))
+                                  for row in rows_of(whole / "grains.csv"))
+                    slipped = 0.5 * 5.0e5 * len(contacts) * (rims[-1] * step) ** 2
+                    stored = table(whole / "history.csv")["elastic_tangential_J_per_m"]
+                    self.assertGreater(stored[1], 0)      # at the end of the first stage
+                    self.assertEqual(stored[2], 0)
+                    self.assertGreater(stored[1], 5 * slipped)
+                    self.assertLessEqual(stored[3], slipped)
+
+    def test_a_servo_wall_that_wants_no_force_and_has_one_is_told(self):
+        pressed = PRESS.replace("[0.0, 0.021]", "[0.0, 0.0199]") + 'servo = { force = 0.0 }\n[run]\nduration = 1.0e-3\n'
+        result = self.run_case(self.write(pressed), *NO_PICTURE)
+        servo, = result["servos"]
+        self.assertGreater(servo["force"], 0)
+        self.assertFalse(servo["reached"])
+        self.assertIn("'lid'", " ".join(result["report"].split()).split("WARNING")[1])
+
+    def test_the_force_on_a_wall_is_that_of_its_contacts(self):
+        pressed = PRESS.replace("[0.0, 0.021]", "[0.0, 0.0199]") + "[run]\ntime_step = 2.0e-5\n[[stage]]\nname = 'push'\nsteps = 100\n"
+        for integrator in ("semi_implicit_euler", "velocity_verlet", "corrected_verlet"):
+            with self.subTest(integrator=integrator):
+                by_contacts = []
+                for steps in (100, 101):
+                    out = self.folder / f"{integrator}_{steps}"
+                    result = self.run_case(self.write(pressed), "--out", out, "--set", f"stage.0.steps={steps}",
+                                           "--set", f"run.integrator={integrator}", *NO_PICTURE)
+                    by_contacts.append(sum(float(row["normal_force_N_per_m"]) for row in rows_of(out / "contacts.csv")
+                                           if row["wall"] == "lid"))
+                lid, = (wall for wall in result["forces_on_walls"] if wall["name"] == "lid")
+                of_step = by_contacts[1] if integrator == "semi_implicit_euler" else sum(by_contacts) / 2
+                self.assertGreater(abs(by_contacts[1] - by_contacts[0]), 1e-3)
+                self.assertAlmostEqual(lid["force"][1], of_step, delta=1e-10 * of_step)
+
+    def test_a_stress_between_a_wall_and_itself_is_refused(self):
+        twice = PRESS + 'servo = { stress = 100.0, from = "left", to = "left" }\n[run]\nduration = 0.1\n'
+        self.refused(twice, "case.toml:", "wall.servo.to", "between 'left' and itself", "Name another wall")
+
     def test_a_servo_wall_with_nothing_to_push_says_so(self):
         lone = TWO + '[[wall]]\nname = "lid"\npoint = [0.0, 0.5]\nnormal = [0.0, -1.0]\n' + SERVO
         self.refused(lone + "[run]\nduration = 0.2\n", "case.toml:", "'lid' met no body", "nothing pushes back", code=1)

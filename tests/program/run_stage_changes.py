@@ -201,6 +201,20 @@ to = "far"
         whole = self.run_case(self.write(STAGES), *NO_PICTURE)
         self.assertNotIn("WARNING", whole["report"])
 
+    def test_a_group_and_a_box_together_choose_those_of_the_group_in_the_box(self):
+        box = "box = [0.05, 0.0, 0.07, 0.06]\n"  # one of the two on top, and one of the two below
+        out = self.folder / "out"
+        text = STAGES.replace('[[stage.remove]]\ngroup = "top"\n' + box, "")
+        both = text.replace('[[stage.rename]]\ngroup = "top"\n', '[[stage.rename]]\ngroup = "top"\n' + box)
+        self.run_case(self.write(text), "--out", self.folder / "all", *NO_PICTURE)
+        self.run_case(self.write(both), "--out", out, *NO_PICTURE)
+        self.assertEqual([row["group"] for row in rows_of(self.folder / "all" / "grains.csv")],
+                         ["grains", "grains", "smooth", "smooth"])
+        self.assertEqual([row["group"] for row in rows_of(out / "grains.csv")], ["grains", "grains", "top", "smooth"])
+        for key in ('group = "top"\n', box):
+            self.refused(text.replace('[[stage.rename]]\ngroup = "top"\n', '[[stage.rename]]\nwall = "floor"\n' + key),
+                         "case.toml:", "stage.rename", "both given")
+
 
 class Branches(StageTest):
     def test_a_case_begins_with_the_state_at_the_end_of_a_stage_of_another_run(self):

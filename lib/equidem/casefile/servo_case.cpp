@@ -18,7 +18,7 @@ std::vector<Key<ServoTable>> servo_keys() {
       key("schedule", &ServoTable::schedule, "factor of force or stress; without one it is constant"),
       key("max_speed", &ServoTable::servo, &Servo::max_speed, optional, unit("m/s"), positive,
           "the wall is never faster, and approaches bodies with it where it touches none; left out: the speed at which "
-          "a body that it meets pushes it by 5 % of the wanted force"),
+          "the heaviest body pushes it by 5 % of the wanted force, or of the present one where that is larger"),
       key("direction", &ServoTable::direction, "in which it pushes, of any length; left out: the normal of a line"),
       key("length", &ServoTable::length, unit("m"), positive, of_stress, not_beside({"from"}, over_length),
           "on which the stress acts"),

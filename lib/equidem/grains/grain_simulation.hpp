@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// State of a contact in the last step.
+/// State of a contact in the last step. In Verlet schemes overlap and forces are those at its end.
 struct GrainContact {
   std::int32_t i = 0;                             ///< grain; two clumps may have several contacts
   std::int32_t j = 0;                             ///< grain; negative: wall ~j

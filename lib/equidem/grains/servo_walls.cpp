@@ -242,6 +242,10 @@ void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
       refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
                         "Name walls at an angle to it, or give the length", key);
   }
+  if (servo.between[0] == servo.between[1])
+    refuse_servo_wall(wall, fmt::format("is a stress between '{}' and itself", servo.between[0]),
+                      "the length on which it acts is that between two walls", "Name another wall, or give the length",
+                      "to");
 }
 
 }  // namespace
@@ -326,9 +330,9 @@ std::vector<ServoReport> reports_of(const GrainSystem& system) {
                                    .wanted = state.wanted,
                                    .force = state.force,
                                    .max_speed = limit_of(system, state),
-                                   .overshoot = state.overshoot,
-                                   .peak = state.peak,
-                                   .mean_error = state.steps > 0 ? state.errors / state.steps : 0});
+                                   .overshoot = state.largest_wanted > 0 ? state.overshoot : NAN,
+                                   .peak = state.largest_wanted > 0 ? state.peak : NAN,
+                                   .mean_error = state.steps > 0 ? state.errors / state.steps : NAN});
   }
   std::ranges::sort(found, {}, [](const auto& entry) { return entry.first; });
   std::vector<ServoReport> reports;

@@ -13,10 +13,10 @@ namespace equidem {
 /// How well a periodic cell has kept a stress.
 struct CellServoReport {
   std::string component;  ///< "xx" or "yy"
-  bool reached = false;   ///< the stress has come within 1 % of the wanted one; before, the last two are 0
+  bool reached = false;   ///< the stress has come within 1 % of the wanted one; before, the last two mean nothing
   double wanted = 0;      ///< Pa, in the last step
   double stress = 0;      ///< likewise
-  double overshoot = 0;   ///< largest excess of the stress since then, over the largest wanted so far
+  double overshoot = 0;   ///< largest excess of the stress since then, over the largest wanted so far; NaN: it was 0
   double mean_error = 0;  ///< mean of the absolute difference since then, over the same
 };
 

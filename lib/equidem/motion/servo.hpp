@@ -38,13 +38,14 @@ struct Servo {
 struct ServoReport {
   std::string wall, mirror;  ///< names; the second may be empty
   bool touched = false;      ///< the wall has met a body
-  bool reached = false;      ///< the force has come within 1 % of the wanted one; before, the last two are 0
+  bool reached = false;      ///< the force has come within 1 % of the wanted one; before, the last three mean nothing
   double wanted = 0;         ///< force in the last step, N (discs: N/m)
   double force = 0;          ///< likewise
   double max_speed = 0;      ///< limit of its speed then, given or chosen, m/s
-  double overshoot = 0;      ///< largest F - W since then, F the mean over 1/sqrt(k/m), over the largest W so far
-  double peak = 0;           ///< the same of F in single steps, in which discs knock
-  double mean_error = 0;     ///< mean |F - W| since then, over the same
+  double overshoot =
+      0;            ///< largest F - W since then, F the mean over 1/sqrt(k/m), over the largest W so far; NaN: W was 0
+  double peak = 0;  ///< the same of F in single steps, in which discs knock
+  double mean_error = 0;  ///< mean |F - W| since then, over the same
 };
 
 /// \param name of the wall, for messages

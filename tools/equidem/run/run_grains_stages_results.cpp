@@ -138,7 +138,7 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   std::vector<Results> rows;
   std::vector<std::string> missed;
   const auto add = [&](const std::string& stage, const ServoReport& servo) {
-    if (!servo.reached && servo.wanted > 0)
+    if (!servo.reached && (servo.wanted > 0 || servo.force > 0))
       missed.push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
@@ -147,7 +147,9 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
         .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
         .set("reached", servo.reached);
     row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
-    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    const auto share = [&](double value) {
+      return servo.reached && std::isfinite(value) ? ResultValue(value) : ResultValue(nullptr);
+    };
     row.add("max_speed", "limit, m/s", servo.max_speed, "", {.digits = 3})
         .add("overshoot", "overshoot", share(servo.overshoot), "", {.digits = 3})
         .set("peak", share(servo.peak), "", "the same of the force in single steps, in which bodies knock")
@@ -176,7 +178,9 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
   std::vector<std::string> missed;
   const auto add = [&](const std::string& stage, const CellServoReport& servo) {
     if (!servo.reached && servo.wanted != 0) missed.push_back(in_stage(resolved, servo.component, stage));
-    const auto share = [&](double value) { return servo.reached ? ResultValue(value) : ResultValue(nullptr); };
+    const auto share = [&](double value) {
+      return servo.reached && std::isfinite(value) ? ResultValue(value) : ResultValue(nullptr);
+    };
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
     row.add("component", "stress", servo.component)

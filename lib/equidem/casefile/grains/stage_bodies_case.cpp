@@ -31,8 +31,8 @@ std::vector<Key<BodyRenamingTable>> renaming_keys() {
     key.read = [read = of_choice.read](BodyRenamingTable& table, TomlValue& value,
                                        const std::filesystem::path& folder) { read(table.which, value, folder); };
   }
-  keys.push_back(key("wall", &BodyRenamingTable::wall,
-                     not_beside({"group", "box"}, "one table renames bodies or a wall"),
+  const std::string one = "one table renames bodies or a wall";
+  keys.push_back(key("wall", &BodyRenamingTable::wall, not_beside({"group"}, one), not_beside({"box"}, one),
                      "instead of bodies: this wall, before [[stage.wall]] of the stage is read"));
   keys.push_back(key("to", &BodyRenamingTable::to, required,
                      "their group from now on, a new one or one that there is, or the new name of the wall: contacts, "

@@ -348,17 +348,18 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
                               static_cast<double>(system.bodies.constants.size());
   if (!system.scene.cell->servo) return state;
   const CellServo& servo = *system.scene.cell->servo;
-  const auto add = [&](const char* component, const std::optional<Schedule>& stress, const CellControl& control) {
+  const auto add = [&](const char* component, const std::optional<Schedule>& stress, double present,
+                       const CellControl& control) {
     if (!stress) return;
     state.servos.push_back({.component = component,
                             .reached = control.reached != 0,
                             .wanted = control.wanted,
-                            .stress = control.stress,
-                            .overshoot = control.overshoot,
-                            .mean_error = control.steps > 0 ? control.errors / control.steps : 0});
+                            .stress = present,
+                            .overshoot = control.largest_wanted > 0 ? control.overshoot : NAN,
+                            .mean_error = control.steps > 0 ? control.errors / control.steps : NAN});
   };
-  add("xx", servo.stress_xx, cell.controls[0]);
-  add("yy", servo.stress_yy, cell.controls[1]);
+  add("xx", servo.stress_xx, state.stress.xx, cell.controls[0]);
+  add("yy", servo.stress_yy, state.stress.yy, cell.controls[1]);
   return state;
 }
 

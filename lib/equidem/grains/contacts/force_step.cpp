@@ -170,13 +170,13 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
       lost.lost_restitution += step.loss * unit * unit_speed;
       if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
     }
+    double tangential = 0;  // also where the friction of an earlier stage left one
     if constexpr (friction) {
-      if (candidate.sliding.coefficient > 0) {
-        candidate.tangential_impulse =
-            slide(system, candidate, geometry, relative, std::max(candidate.impulse, 0.0) / dt, lost);
-        impulse += candidate.tangential_impulse * perpendicular(geometry.normal);
-      }
+      if (candidate.sliding.coefficient > 0)
+        tangential = slide(system, candidate, geometry, relative, std::max(candidate.impulse, 0.0) / dt, lost);
+      impulse += tangential * perpendicular(geometry.normal);
     }
+    candidate.tangential_impulse = tangential;
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
     if (candidate.j < 0)
       push_wall(

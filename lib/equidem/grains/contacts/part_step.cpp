@@ -194,13 +194,14 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
     pair.arm_j = geometry.arm_j;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * geometry.normal;
+    double tangential = 0;  // as of discs
     if constexpr (friction) {
-      if (candidate.sliding.coefficient > 0) {
-        candidate.tangential_impulse = slide(system, candidate, pair, contact, dot(relative, contact.tangent()),
-                                             std::max(candidate.impulse, 0.0) / dt, sums.lost);
-        impulse += candidate.tangential_impulse * contact.tangent();
-      }
+      if (candidate.sliding.coefficient > 0)
+        tangential = slide(system, candidate, pair, contact, dot(relative, contact.tangent()),
+                           std::max(candidate.impulse, 0.0) / dt, sums.lost);
+      impulse += tangential * contact.tangent();
     }
+    candidate.tangential_impulse = tangential;
     push(system.bodies.impulses, contact, impulse);
     if (candidate.j < 0)
       push_wall(system, candidate.j,

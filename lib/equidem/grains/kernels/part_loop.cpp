@@ -184,6 +184,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     torque_i += tangential * along_i;
     torque_j += tangential * along_j;
   } else {
+    store(Lanes{}, group.numbers[PartGroup::tangential_impulse]);  // the friction of an earlier stage may have left one
     add_losses(normal_loss, sums);
   }
   if constexpr (kind.verlet) {

@@ -166,6 +166,8 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
       py += tangential * nx;
       tangential_before = tangential;
       stretch = only(touch, tangent.stretch);
+    } else {
+      tangential_before = zero;  // the friction of an earlier stage may have left one
     }
     state[0] = overlap;
     closing_before = closing;

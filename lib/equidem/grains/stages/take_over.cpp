@@ -122,6 +122,14 @@ bool is_tied(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   return at != system.bonds.tied.end() && at->i == i && at->j == j;
 }
 
+/// Whether a contact has friction. \param i, j as in Candidate
+bool rubs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  Candidate candidate;
+  candidate.i = i;
+  candidate.j = j;
+  return system.properties(candidate).friction > 0;
+}
+
 /// Breaks, and the last impulses of bonds that both have; bonds whose discs are gone push no more.
 void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& places, const SceneOrigins& origins,
                      SavedState& state, bool verlet) {
@@ -190,6 +198,8 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
       impulses.add(contact, -1, i, j);
     } else if (*j < 0 || !is_tied(own, *i, *j)) {
       contact.move_to(own, *i, *j);
+      // without friction there is no spring; later friction begins anew
+      if (!rubs(own, *i, *j)) contact.numbers[contact.at.stretch] = 0;
       keep(contact);
     }
   }
