@@ -290,6 +290,9 @@ Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun
   add_energies(out, run);
   out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
   add_let_go(out, outcome.scene, run);
+  if (run.end() != PathEnd::none && run.releasing())
+    out.line("state", "the last one in balance: bonds that broke still carry what they had yet to give up");
+  out.set("within_a_break", run.releasing());
   add_trust(out, run);
   return out.append(events_and_curves(outcome, run));
 }
