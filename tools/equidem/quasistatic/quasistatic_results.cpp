@@ -45,7 +45,9 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run, 
   out.set("broken_in_tension", pulled).set("broken_in_shear", sheared);
   const bool cut_short =
       run.end() == PathEnd::no_answer || run.end() == PathEnd::not_balanced || run.end() == PathEnd::load_moves_part;
-  const std::string where = cut_short ? fmt::format(" at lambda {:.9g}", run.lambda()) : "";
+  const std::string where = !cut_short                 ? ""
+                            : run.leg_points().empty() ? " while the dead loads were applied"
+                                                       : fmt::format(" at lambda {:.9g}", run.lambda());
   out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended" + where + ": " + run.why());
   out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
   if (events.empty()) return;
