@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from program import CASES, PROGRAM, ProgramTest, equidem
+from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
 
 NOTCH = CASES / "notched_plate.toml"
 NO_PICTURE = ("--set", "output.picture=false")
@@ -160,6 +160,7 @@ class QuasistaticResume(ProgramTest):
         (out / "curve.svg").write_text("of an earlier path")
         done = self.check_done(equidem("quasistatic", case, "--out", out, "--overwrite"))
         self.assertIn("ended while the dead loads were applied: nothing resists", done.stdout)
+        self.assertEqual(parse_json((out / "result.json").read_text())["dead_loads_applied"], 0)
         self.assertEqual([file.name for file in out.glob("curve.*")], [])
 
 
