@@ -10,7 +10,7 @@ import subprocess
 import time
 import unittest
 
-from program import CASES, PROGRAM, ProgramTest, equidem
+from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
 
 NOTCH = CASES / "notched_plate.toml"
 NO_PICTURE = ("--set", "output.picture=false")
@@ -138,6 +138,30 @@ class QuasistaticResume(ProgramTest):
         for change, told in (("strength.seed=2", "strength.seed is"), ("support.1.uy=2e-6", "support.1.uy is 1e-06 there and 2e-06"),
                              ("quasistatic.legs=[2.0, 1.0]", "quasistatic.legs is given here alone")):
             self.check_error(equidem(*command, "--set", change, "--resume"), 2, "of another case", told)
+
+    BLOCK = ('schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = 5\nrows = 4\nradius = 0.01\n[springs]\nkN = 1e9\n'
+             'kT = 3e8\n[[support]]\ngroup = "bottom"\nux = true\nuy = true\n[[load]]\ngroup = "top"\nforce = [0.0, 1e3]\n')
+
+    def test_an_end_without_a_state_leaves_none_of_an_earlier_end_in_the_folder(self):
+        case, out = self.folder / "case.toml", self.folder / "out"
+        case.write_text(self.BLOCK + "[strength]\ntension = 1e3\nshear = 1e4\nweibull_modulus = 8.0\n")
+        states = [out / name for name in ("discs.csv", "contacts.csv", "state.vtm", "state_discs.vtp", "state_contacts.vtp")]
+        self.check_done(equidem("quasistatic", case, "--out", out, "--set", "quasistatic.max_events=1"))
+        self.assertEqual([file.name for file in states if not file.exists()], [])
+        done = self.check_done(equidem("quasistatic", case, "--out", out, "--resume"))
+        self.assertIn("none is written: what is left does not carry its loads", done.stdout)
+        self.assertEqual([file.name for file in states if file.exists()], [])
+
+    def test_a_path_that_ends_under_its_dead_loads_says_so_and_draws_no_curve(self):
+        case, out = self.folder / "case.toml", self.folder / "out"
+        pushed = '[[dead_load]]\ngroup = "top"\nforce = [1e3, -1e3]\n[strength]\ntension = 0\nshear = 0\nafter_breaking = "rubs"\n'
+        case.write_text(self.BLOCK.replace("hexagonal", "square").replace("columns = 5", "columns = 1") + pushed)
+        out.mkdir()
+        (out / "curve.svg").write_text("of an earlier path")
+        done = self.check_done(equidem("quasistatic", case, "--out", out, "--overwrite"))
+        self.assertIn("ended while the dead loads were applied: nothing resists", done.stdout)
+        self.assertEqual(parse_json((out / "result.json").read_text())["dead_loads_applied"], 0)
+        self.assertEqual([file.name for file in out.glob("curve.*")], [])
 
 
 if __name__ == "__main__":

@@ -1,19 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "state_files.hpp"
 
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
 #include "equidem/assembly/files.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
 
 namespace equidem {
 
-void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix) {
+namespace {
+
+std::vector<std::string> state_names(const OutputCase& wanted, const std::string& suffix) {
+  std::vector<std::string> names;
   if (wanted.csv)
-    for (const char* stem : {"discs", "contacts"}) plan.expect(stem + suffix + ".csv");
+    for (const char* stem : {"discs", "contacts"}) names.push_back(stem + suffix + ".csv");
   if (wanted.vtk)
-    for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) plan.expect("state" + suffix + end);
+    for (const char* end : {".vtm", "_discs.vtp", "_contacts.vtp"}) names.push_back("state" + suffix + end);
   if (wanted.picture)
-    for (const char* end : {".svg", ".png"}) plan.expect("picture" + suffix + end);
+    for (const char* end : {".svg", ".png"}) names.push_back("picture" + suffix + end);
+  return names;
+}
+
+}  // namespace
+
+void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix) {
+  for (const std::string& name : state_names(wanted, suffix)) plan.expect(name);
+}
+
+void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix) {
+  std::error_code ignored;
+  for (const std::string& name : state_names(wanted, suffix)) std::filesystem::remove(*options.out / name, ignored);
 }
 
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

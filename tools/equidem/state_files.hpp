@@ -13,7 +13,6 @@
 
 namespace equidem {
 
-/// \throws Error (bad_input) where a file could not be written
 /// The pictures alone of what is to be written.
 inline OutputCase pictures_of(OutputCase wanted) {
   wanted.csv = wanted.vtk = false;
@@ -21,7 +20,10 @@ inline OutputCase pictures_of(OutputCase wanted) {
   return wanted;
 }
 
+/// \throws Error (bad_input) where a file could not be written
 void expect_state(const OutputPlan& plan, const OutputCase& wanted, const std::string& suffix);
+/// Removes these files of an earlier computation, where the present one has no state to write over them.
+void remove_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix);
 
 /// Tables and files for ParaView that [output] asks for.
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,

@@ -62,8 +62,18 @@ double BreakageRun::direction(std::int64_t leg) const {
   return sign_of(legs[k] - (k == 0 ? 0 : legs[k - 1]));
 }
 
+const std::array<double, 2>& BreakageRun::held_response() const {
+  return scene_.path.control == LoadControl::load ? response_.load : response_.motion;
+}
+
 double BreakageRun::held_quantity(double lambda) const {
-  return NetworkResponse::at(scene_.path.control == LoadControl::load ? response_.load : response_.motion, lambda);
+  return NetworkResponse::at(held_response(), lambda);
+}
+
+/// What is held does not fall below this value.
+void BreakageRun::hold(double now) {
+  const double way = direction(leg_);
+  held_ = way * std::max(way * held_, way * now);
 }
 
 LegPoint BreakageRun::point_at(double lambda, std::int64_t leg) const {
@@ -91,19 +101,25 @@ LegPoint BreakageRun::point_at(double lambda, std::int64_t leg) const {
 
 std::vector<LegPoint> BreakageRun::leg_points() const {
   std::vector<LegPoint> points{point_at(0, -1)};
-  for (std::int64_t leg = 0; leg < leg_; ++leg)
-    points.push_back(point_at(scene_.path.legs[static_cast<std::size_t>(leg)], leg));
+  for (std::int64_t leg = 0; leg < leg_; ++leg) points.push_back(point_at(ends_[static_cast<std::size_t>(leg)], leg));
   return points;
 }
 
-/// The value of lambda at which the control holds the network as it is; infinite where no lambda reaches what is held.
-double BreakageRun::controlled_from() const {
+/// The value of lambda at which the control holds a network; infinite where no lambda reaches what is held.
+/// \param held of the network: the quantity that is held is held[0] + lambda held[1]
+double BreakageRun::controlled_from(const std::array<double, 2>& held) const {
   const LoadPath& path = scene_.path;
   if (path.control == LoadControl::path) return 0;
   if (path.controls_lambda()) return lambda_;
-  const auto& [rest, slope] = path.control == LoadControl::load ? response_.load : response_.motion;
+  const auto& [rest, slope] = held;
   if (!(slope > no_rate_)) return direction(leg_) * std::numeric_limits<double>::infinity();
   return (held_ - rest) / slope;
+}
+
+/// Where a load is held, contacts that broke may have driven lambda beyond the end of the leg.
+double BreakageRun::end_of_leg(double from) const {
+  const double to = scene_.path.legs[static_cast<std::size_t>(leg_)], way = direction(leg_);
+  return scene_.path.control == LoadControl::path ? to : way * std::max(way * to, way * from);
 }
 
 bool BreakageRun::leg_ends_before(double lambda) const {
@@ -136,7 +152,7 @@ bool BreakageRun::advance() {
       end(PathEnd::load_moves_part, system_.why_not());
       break;
     }
-    const double from = controlled_from();
+    const double from = controlled_from(held_response());
     if (!std::isfinite(from)) {
       end(PathEnd::carries_nothing, "what is left cannot take the load that is held");
       break;
@@ -168,9 +184,8 @@ bool BreakageRun::finish_leg(double from) {
     end(PathEnd::never_breaks, "no contact breaks at any lambda");
     return false;
   }
-  // Where a load is held, contacts that broke may have driven lambda beyond the end of the leg.
-  const double to = legs[static_cast<std::size_t>(leg_)], way = direction(leg_);
-  move_to(scene_.path.control == LoadControl::path ? to : way * std::max(way * to, way * from));
+  move_to(end_of_leg(from));
+  ends_.push_back(lambda_);
   held_ = held_quantity(lambda_);
   if (++leg_ < std::ssize(legs)) return true;
   end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", lambda_));
@@ -199,10 +214,7 @@ void BreakageRun::break_contact(const NextBreak& next) {
     if (largest > 0) clapeyron_ = std::max(clapeyron_, std::abs(energy_of_springs() - event.energy_before) / largest);
   }
   const double moved_before = NetworkResponse::at(response_.loads_by_motions, lambda_);
-  if (scene_.path.control != LoadControl::path) {
-    const double now = held_quantity(lambda_), way = direction(leg_);
-    held_ = way * std::max(way * held_, way * now);
-  }
+  if (scene_.path.control != LoadControl::path) hold(held_quantity(lambda_));
   event.loosened = system_.remove({&next.contact, 1});
   const OpenedContact* const opened = system_.opened();
   if (opened != nullptr) {
@@ -243,17 +255,23 @@ void BreakageRun::resume(std::vector<BreakEvent> events) {
   system_.remove(contacts);
   response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
   events_ = std::move(events);
-  const BreakEvent& last = events_.back();
-  leg_ = last.leg;
-  lambda_ = last.lambda;
-  work_ = last.work;
+  work_ = events_.back().work;
+  // The legs again: each ended in the network in which the first event of a later leg broke.
   const bool load = scene_.path.control == LoadControl::load;
-  const LegPoint start = leg_points().back();
+  const LegPoint start = point_at(0, -1);
   held_ = load ? start.load : start.motion;
-  for (const BreakEvent& event : events_) {
-    if (event.leg != leg_) continue;
-    const double way = direction(leg_);
-    held_ = way * std::max(way * held_, way * (load ? event.load : event.motion));
+  auto event = events_.begin();
+  const auto held_at = [&] { return load ? event->load : event->motion; };
+  for (leg_ = 0;; ++leg_) {
+    for (; event != events_.end() && event->leg == leg_; ++event) {
+      lambda_ = event->lambda;
+      hold(held_at());
+    }
+    if (event == events_.end()) return;
+    const double rate = load ? event->load_rate : event->motion_rate, rest = held_at() - event->lambda * rate;
+    lambda_ = end_of_leg(controlled_from({rest, rate}));
+    ends_.push_back(lambda_);
+    held_ = rest + lambda_ * rate;
   }
 }
 

@@ -4,6 +4,7 @@
 /// the next one is found in the network that is left (break_search.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -62,7 +63,8 @@ class BreakageRun : public EventPath {
 
  private:
   [[nodiscard]] bool leg_ends_before(double lambda) const;
-  [[nodiscard]] double controlled_from() const;
+  [[nodiscard]] double controlled_from(const std::array<double, 2>& held) const;
+  [[nodiscard]] double end_of_leg(double from) const;
   bool finish_leg(double from);
   [[nodiscard]] LegPoint point_at(double lambda, std::int64_t leg) const;
   void move_to(double lambda);
@@ -70,7 +72,10 @@ class BreakageRun : public EventPath {
   /// The elastic energy by the forces of all contacts, N: response_ has it by works and by the contacts that opened.
   [[nodiscard]] double energy_of_springs() const;
   void end(PathEnd why, std::string sentence);
+  /// The coefficients of 1 and lambda of the quantity that the control holds, of the network as it is.
+  [[nodiscard]] const std::array<double, 2>& held_response() const;
   [[nodiscard]] double held_quantity(double lambda) const;
+  void hold(double now);
 
   BreakageScene scene_;
   BreakableSystem& system_;
@@ -80,6 +85,7 @@ class BreakageRun : public EventPath {
   PathEnd end_ = PathEnd::none;
   std::string why_;
   std::int64_t leg_ = 0;
+  std::vector<double> ends_;  ///< lambda at the ends of the legs that are done
   double lambda_ = 0;
   double held_ = 0;              ///< the load or the motion that the control keeps from falling
   double work_ = 0;              ///< N

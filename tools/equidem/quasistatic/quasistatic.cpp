@@ -363,7 +363,7 @@ int quasistatic(const QuasistaticOptions& given) {
     if (!options.out) return;
     const OutputCase& wanted = sequence.problem.resolved.output;
     write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
-    if (end) write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), *end);
+    write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), end);
   });
   if (!done) {
     throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),

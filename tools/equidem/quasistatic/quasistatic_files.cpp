@@ -2,6 +2,8 @@
 #include "quasistatic/quasistatic_files.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/text.hpp"
@@ -29,6 +31,34 @@ std::string with_unit(const std::string& name, const std::string& unit) {
   return unit.empty() ? name : fmt::format("{} ({})", name, unit);
 }
 
+/// The cracks are the picture.
+OutputCase of_end(OutputCase wanted) {
+  wanted.picture = false;
+  return wanted;
+}
+
+/// None where dead loads were not carried, so that lambda never grew.
+void write_curve(const CommonOptions& options, const BreakageScene& scene, const EventPath& run,
+                 const std::string& title) {
+  const LoadCurve curve = curve_of(run);
+  if (curve.load.empty()) {
+    std::error_code ignored;  // that of an earlier path in the same folder
+    for (const char* extension : {".csv", ".gp", ".svg", ".png"})
+      std::filesystem::remove(*options.out / (std::string("curve") + extension), ignored);
+    return;
+  }
+  const DrivenBy driven_by = scene.path.driven_by;
+  Plot plot;
+  plot.title = title;
+  plot.x.label = with_unit(driven_by == DrivenBy::strain ? "mean strain" : "motion", unit_of_motion(driven_by));
+  plot.y.label = with_unit(driven_by == DrivenBy::strain ? "stress" : "load", unit_of_load(driven_by));
+  plot.series = {
+      series("events", curve, SeriesStyle::line, PlotColour::sky_blue),
+      series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
+      series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)};
+  write_plot(*options.out, "curve", plot, options.overwrite);
+}
+
 }  // namespace
 
 void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool checkpoint) {
@@ -37,23 +67,12 @@ void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool c
   plan.expect_plot("curve");
   if (wanted.picture)
     for (const char* end : {".svg", ".png"}) plan.expect(std::string("cracks") + end);
-  OutputCase of_end = wanted;
-  of_end.picture = false;  // the cracks are the picture
-  expect_state(plan, of_end, "");
+  expect_state(plan, of_end(wanted), "");
 }
 
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
                    const EventPath& run, std::span<const std::size_t> cut, const std::string& title) {
-  const DrivenBy driven_by = scene.path.driven_by;
-  Plot plot;
-  plot.title = title;
-  plot.x.label = with_unit(driven_by == DrivenBy::strain ? "mean strain" : "motion", unit_of_motion(driven_by));
-  plot.y.label = with_unit(driven_by == DrivenBy::strain ? "stress" : "load", unit_of_load(driven_by));
-  plot.series = {
-      series("events", curve_of(run), SeriesStyle::line, PlotColour::sky_blue),
-      series("envelope under motion control", motion_envelope(run), SeriesStyle::line, PlotColour::vermilion),
-      series("envelope under load control", load_envelope(run), SeriesStyle::line_with_points, PlotColour::black)};
-  write_plot(*options.out, "curve", plot, options.overwrite);
+  write_curve(options, scene, run, title);
   if (!wanted.picture) return;
   PictureOptions picture{.title = title, .colour = DiscColour::none};
   for (const std::size_t contact : cut) picture.cracks.push_back({static_cast<std::int64_t>(contact), CrackKind::cut});
@@ -119,7 +138,9 @@ PathState state_of(const BreakageScene& scene, const Effects& effects, const Unb
 }
 
 void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
-                     const PathState& state) {
+                     const std::optional<PathState>& end) {
+  if (!end) return remove_state(options, of_end(wanted), "");
+  const PathState& state = *end;
   const Assembly& assembly = scene.assembly;
   std::vector<DiscMotion> motions = state.motions;
   if (const std::optional<Tensor2>& gradient = scene.path.pattern.gradient) {

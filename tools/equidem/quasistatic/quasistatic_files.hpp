@@ -41,9 +41,10 @@ std::optional<PathState> state_of(const BreakageScene& scene, const Effects& eff
                                   const BreakageRun& run, const BreakableSystem& system);
 PathState state_of(const BreakageScene& scene, const Effects& effects, const UnbondedRun& run);
 
-/// discs.csv, contacts.csv and state.vtm of the end of a path.
+/// discs.csv, contacts.csv and state.vtm of the end of a path; none: those of an earlier path in the folder are
+/// removed.
 void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,
-                     const PathState& state);
+                     const std::optional<PathState>& end);
 
 /// A frame for every n-th event, and one for the end of the path: the network behind the event, at its lambda. The
 /// event stands for the time; an end at another lambda than that of the last event is one further.

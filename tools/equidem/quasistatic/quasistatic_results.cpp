@@ -45,7 +45,9 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run, 
   out.set("broken_in_tension", pulled).set("broken_in_shear", sheared);
   const bool cut_short =
       run.end() == PathEnd::no_answer || run.end() == PathEnd::not_balanced || run.end() == PathEnd::load_moves_part;
-  const std::string where = cut_short ? fmt::format(" at lambda {:.9g}", run.lambda()) : "";
+  const std::string where = run.leg_points().empty() ? " while the dead loads were applied"
+                            : cut_short              ? fmt::format(" at lambda {:.9g}", run.lambda())
+                                                     : "";
   out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended" + where + ": " + run.why());
   out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
   if (events.empty()) return;
@@ -290,6 +292,11 @@ Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun
   add_energies(out, run);
   out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
   add_let_go(out, outcome.scene, run);
+  if (run.end() != PathEnd::none && run.releasing())
+    out.line("state", "the last one in balance: bonds that broke still carry what they had yet to give up");
+  out.set("within_a_break", run.releasing());
+  if (outcome.scene.path.dead)
+    out.set("dead_loads_applied", run.state().dead(), "", "share of the dead loads that act at the end");
   add_trust(out, run);
   return out.append(events_and_curves(outcome, run));
 }

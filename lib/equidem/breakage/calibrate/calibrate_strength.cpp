@@ -151,7 +151,7 @@ void Search::refuse() const {
     remedy = fmt::format("Discs and notches {:.3g} to {:.3g} times as large have it", squared(target_ / most->ratio),
                          squared(target_ / least->ratio));
   } else {
-    remedy = finds_friction() ? "Take another strength.shear_over_tension"
+    remedy = finds_friction() ? "Take another strength_target.shear_over_tension"
                               : "Take another friction, a Weibull modulus, or another assembly";
   }
   const std::string problem = fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit);

@@ -59,6 +59,7 @@ class RateResidual {
     // Forces that no more than the rounding of motions leaves are none.
     const double none = rounded_motion * stiffest * fastest;
     rates.force_scale = std::max(rates.force_scale, none);
+    rates.round_off = none;
     if (sum <= none) return 0;
     return rates.force_scale > 0 ? sum / rates.force_scale : 0;
   }
@@ -104,6 +105,17 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
     best = rates;
   }
   rates = std::move(best);
+  if (!driving.by_motion || driving.rate == 0) return left;
+  // Where nothing resists the motion no load drives it: lambda is what refinement has left of the load that the springs
+  // of the ground would take, with a residual that does its work.
+  residual_of.evaluate(rates, residual);
+  double lost = 0;
+  for (std::size_t k = 0; k < residual.size(); ++k) lost += std::abs(residual[k] * rates.motion[k]);
+  const double power = std::abs(rates.lambda * driving.rate), by_ground = squared(driving.rate) / std::abs(along_load);
+  if (power <= 10 * lost || power <= 1e-6 * by_ground) {
+    rates.lambda = 0;
+    left = residual_of.evaluate(rates, residual);
+  }
   return left;
 }
 
@@ -167,7 +179,8 @@ void set_negligible(const RateProblem& problem, Rates& rates) {
     const SpringConstants& k = problem.laws[c].k;
     largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
   }
-  rates.negligible = 1e-9 * rates.force_scale + problem.rounded * largest;
+  // A part that moves rigidly shows the rounding of its motion as deformations: no contact breaks or opens by them.
+  rates.negligible = std::max(1e-9 * rates.force_scale + problem.rounded * largest, rates.round_off);
 }
 
 bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {

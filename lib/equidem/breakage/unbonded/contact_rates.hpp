@@ -30,10 +30,11 @@ struct Rates {
   std::vector<ContactDeformation> deformation;  ///< per contact, that of a mean gradient included
   double lambda = 0;
   double force_scale = 0;  ///< the largest rate of a contact force or load
+  double round_off = 0;    ///< of rates of forces, by the rounding of motions
   double negligible = 0;   ///< rates of forces, and of gaps times kN, below are round-off
   bool balanced = false;   ///< false: loads drive a motion that nothing resists
 
-  void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, negligible, balanced); }
+  void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, round_off, negligible, balanced); }
 };
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing

@@ -27,4 +27,23 @@ std::vector<std::int32_t> loose_discs(const BreakableNetwork& network, std::span
   return discs;
 }
 
+std::vector<std::int32_t> untouched_discs(const Assembly& assembly, const DegreesOfFreedom& unknowns,
+                                          std::span<const ContactStatus> status) {
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  std::vector<std::uint8_t> touched(assembly.size(), 0);
+  for (std::size_t d = 0; d < touched.size(); ++d) {
+    for (std::size_t k = d * b; k < (d + 1) * b; ++k)
+      if (unknowns.held[k] == DegreesOfFreedom::supported) touched[d] = 1;
+  }
+  for (std::size_t c = 0; c < status.size(); ++c) {
+    if (status[c] == ContactStatus::open) continue;
+    const Contact& contact = assembly.contacts[c];
+    touched[static_cast<std::size_t>(contact.i)] = touched[static_cast<std::size_t>(contact.j)] = 1;
+  }
+  std::vector<std::int32_t> discs;
+  for (std::size_t d = 0; d < touched.size(); ++d)
+    if (touched[d] == 0) discs.push_back(static_cast<std::int32_t>(d));
+  return discs;
+}
+
 }  // namespace equidem

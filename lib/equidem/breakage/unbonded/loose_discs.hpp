@@ -9,6 +9,7 @@
 
 #include "equidem/breakage/breakable_system.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 
@@ -18,5 +19,9 @@ namespace equidem {
 /// \param carried per contact: 1, whether it carries a force
 std::vector<std::int32_t> loose_discs(const BreakableNetwork& network, std::span<const UnbondedLaw> laws,
                                       std::span<const ContactStatus> status, std::span<const std::uint8_t> carried);
+
+/// Discs without a support of which every contact is open, ascending.
+std::vector<std::int32_t> untouched_discs(const Assembly& assembly, const DegreesOfFreedom& unknowns,
+                                          std::span<const ContactStatus> status);
 
 }  // namespace equidem

@@ -44,21 +44,7 @@ UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<
 }
 
 std::vector<std::int32_t> UnbondedRun::untouched() const {
-  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  std::vector<std::uint8_t> touched(scene_.assembly.size(), 0);
-  for (std::size_t d = 0; d < touched.size(); ++d) {
-    for (std::size_t k = d * b; k < (d + 1) * b; ++k)
-      if (unknowns_.held[k] == DegreesOfFreedom::supported) touched[d] = 1;
-  }
-  for (std::size_t c = 0; c < laws_.size(); ++c) {
-    if (state_->status()[c] == ContactStatus::open) continue;
-    const Contact& contact = scene_.assembly.contacts[c];
-    touched[static_cast<std::size_t>(contact.i)] = touched[static_cast<std::size_t>(contact.j)] = 1;
-  }
-  std::vector<std::int32_t> discs;
-  for (std::size_t d = 0; d < touched.size(); ++d)
-    if (touched[d] == 0) discs.push_back(static_cast<std::int32_t>(d));
-  return discs;
+  return untouched_discs(scene_.assembly, unknowns_, state_->status());
 }
 
 std::vector<std::int32_t> UnbondedRun::loose() const {
@@ -280,11 +266,7 @@ void UnbondedRun::finish_stage() {
   standstill_.begin();
   if (releasing()) {
     state_->end_release();
-    for (const std::size_t k : breaking_) {
-      events_[k].energy_after = state_->ledger().elastic;
-      events_[k].energy_released = state_->released_by(static_cast<std::size_t>(events_[k].contact));
-      events_[k].work = state_->ledger().work;
-    }
+    tell_released();
     breaking_.clear();
     return;
   }
@@ -299,7 +281,17 @@ void UnbondedRun::finish_stage() {
     end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
 }
 
+/// What the bonds that are breaking have given up so far.
+void UnbondedRun::tell_released() {
+  for (const std::size_t k : breaking_) {
+    events_[k].energy_after = state_->ledger().elastic;
+    events_[k].energy_released = state_->released_by(static_cast<std::size_t>(events_[k].contact));
+    events_[k].work = state_->ledger().work;
+  }
+}
+
 void UnbondedRun::end(PathEnd why, std::string sentence) {
+  tell_released();
   end_ = why;
   why_ = std::move(sentence);
 }
@@ -350,7 +342,11 @@ bool UnbondedRun::advance() {
     const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_, stage);
     const double t = std::min(stage, next.t);
     if (t == infinite) {
-      end(PathEnd::never_breaks, "no contact changes any more at any lambda");
+      if (by_motion() && rates_->lambda == 0) {
+        end(PathEnd::carries_nothing, "the motion grows without a load, and no contact changes any more");
+      } else {
+        end(PathEnd::never_breaks, "no contact changes any more at any lambda");
+      }
       break;
     }
     if (++steps > most_steps) {

@@ -79,6 +79,8 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] double released() const override { return state_->ledger().released; }
   [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
   [[nodiscard]] const UnbondedState& state() const { return *state_; }
+  /// Whether the path is within the break of bonds, whose forces are partly given up.
+  [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
   [[nodiscard]] UnbondedCounters counters() const;
   /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
   /// same bits.
@@ -89,7 +91,6 @@ class UnbondedRun : public EventPath {
   }
 
  private:
-  [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
   [[nodiscard]] bool by_motion() const;
   [[nodiscard]] Driving driving() const;
   bool find_rates();
@@ -99,6 +100,7 @@ class UnbondedRun : public EventPath {
   /// \return false where the path ends
   bool move(double t);
   void finish_stage();
+  void tell_released();
   void add_leg_point();
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;

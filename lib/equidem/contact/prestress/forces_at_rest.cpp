@@ -7,6 +7,8 @@
 namespace equidem {
 namespace {
 
+constexpr double round_off = 1e-12;  // of the largest force: such as solve leaves where a contact carries none
+
 bool is_loaded(const ContactForce& force) {
   return force.normal != 0 || force.tangential != 0;
 }
@@ -21,7 +23,7 @@ bool carries_forces(const Assembly& assembly) {
 
 RestSums sums_at_rest(const Assembly& assembly) {
   RestSums sums{std::vector<Vec2>(assembly.size()), std::vector<double>(assembly.size())};
-  double magnitudes = 0;
+  std::vector<double> magnitudes;
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const ContactForce force = force_at_rest(assembly, c);
     if (!is_loaded(force)) continue;
@@ -33,10 +35,16 @@ RestSums sums_at_rest(const Assembly& assembly) {
     sums.forces[j] -= on_i;
     sums.moments[i] += moment_on_i(frame, force);
     sums.moments[j] += moment_on_j(frame, force);
-    magnitudes += norm(on_i);
+    magnitudes.push_back(norm(on_i));
+  }
+  if (magnitudes.empty()) return sums;
+  const double largest = *std::ranges::max_element(magnitudes);
+  for (const double force : magnitudes) {
+    if (force <= round_off * largest) continue;
+    sums.mean_force += force;
     ++sums.loaded;
   }
-  if (sums.loaded > 0) sums.mean_force = magnitudes / static_cast<double>(sums.loaded);
+  if (sums.loaded > 0) sums.mean_force /= static_cast<double>(sums.loaded);
   return sums;
 }
 

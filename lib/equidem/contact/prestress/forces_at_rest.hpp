@@ -25,7 +25,7 @@ inline ContactForce force_at_rest(const Assembly& assembly, std::size_t contact)
 struct RestSums {
   std::vector<Vec2> forces;
   std::vector<double> moments;
-  std::int64_t loaded = 0;  ///< contacts that carry a force
+  std::int64_t loaded = 0;  ///< contacts that carry a force, beyond round-off of the largest
   double mean_force = 0;    ///< N/m, magnitude, over those contacts
 };
 RestSums sums_at_rest(const Assembly& assembly);
@@ -33,7 +33,7 @@ RestSums sums_at_rest(const Assembly& assembly);
 /// The sums of the forces at rest on every body, which vanish where these forces balance each other. Weight and other
 /// loads are not counted: the part that they balance is told here as lacking.
 struct RestBalance {
-  std::int64_t loaded = 0;         ///< contacts that carry a force
+  std::int64_t loaded = 0;         ///< likewise
   double mean_force = 0;           ///< N/m, magnitude, over those contacts
   double largest_force = 0;        ///< N/m, the largest sum of forces on one body
   double largest_moment = 0;       ///< N, the largest sum of moments on one body, about its centre
