@@ -67,7 +67,7 @@ class RatePath {
   /// Where the path has come to tau = 0, per component, with the ground; no motion is prescribed.
   [[nodiscard]] std::vector<double> motion() {
     std::vector<double> motion;
-    response_to(problem_.driving.rate, true, 0, &motion);
+    static_cast<void>(response_to(problem_.driving.rate, true, 0, &motion));
     return motion;
   }
 

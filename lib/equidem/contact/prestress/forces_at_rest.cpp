@@ -7,7 +7,7 @@
 namespace equidem {
 namespace {
 
-constexpr double round_off = 1e-12;  // of the largest force: such as solve leaves where a contact carries none
+constexpr double largest_round_off = 1e-12;  // of the largest force: such as solve leaves where a contact carries none
 
 bool is_loaded(const ContactForce& force) {
   return force.normal != 0 || force.tangential != 0;
@@ -40,7 +40,7 @@ RestSums sums_at_rest(const Assembly& assembly) {
   if (magnitudes.empty()) return sums;
   const double largest = *std::ranges::max_element(magnitudes);
   for (const double force : magnitudes) {
-    if (force <= round_off * largest) continue;
+    if (force <= largest_round_off * largest) continue;
     sums.mean_force += force;
     ++sums.loaded;
   }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double stiff_ground = 10, soft_ground = 1e-6, factor = 0.1;  // over the stiffest spring
 constexpr int halvings = 30;
-constexpr double grown = 1e3;     // times the load is c v where it grows without bound
-constexpr double settled = 0.03;  // by how much c v of a mechanism differs from one c to the next, over its size
+constexpr double grown = 1e3;          // times the load is c v where it grows without bound
+constexpr double least_change = 0.03;  // by how much c v of a mechanism differs from one c to the next, over its size
 
 /// c v; empty: the rates are not found.
 std::vector<double> force_of_ground(const RateProblem& problem, const std::vector<ContactStatus>& status, double c) {
@@ -32,7 +32,7 @@ double largest_component(const std::vector<double>& x) {
 bool is_settled(const std::vector<double>& before, const std::vector<double>& now) {
   double change = 0;
   for (std::size_t k = 0; k < now.size(); ++k) change = std::max(change, std::abs(now[k] - before[k]));
-  return change < settled * largest_component(now);
+  return change < least_change * largest_component(now);
 }
 
 }  // namespace
