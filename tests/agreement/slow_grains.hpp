@@ -110,7 +110,7 @@ class SlowGrains {
   Forces forces_;
 };
 
-/// The same discs for statics: those behind the lid are the group "lid", behind other walls "walls".
+/// The discs as an assembly for statics: those behind the lid are the group "lid", behind other walls "walls".
 struct HeldDiscs {
   Assembly assembly;
   ContactStrengths strengths;

@@ -70,7 +70,7 @@ double BreakageRun::held_quantity(double lambda) const {
   return NetworkResponse::at(held_response(), lambda);
 }
 
-/// What is held does not fall below this value.
+/// Keeps the quantity that the control holds from falling below `now`.
 void BreakageRun::hold(double now) {
   const double way = direction(leg_);
   held_ = way * std::max(way * held_, way * now);

@@ -281,7 +281,7 @@ void UnbondedRun::finish_stage() {
     end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
 }
 
-/// What the bonds that are breaking have given up so far.
+/// Tells with their events what the bonds that are breaking have given up so far.
 void UnbondedRun::tell_released() {
   for (const std::size_t k : breaking_) {
     events_[k].energy_after = state_->ledger().elastic;

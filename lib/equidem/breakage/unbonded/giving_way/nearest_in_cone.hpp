@@ -15,7 +15,7 @@ struct Cone {
   std::vector<std::vector<double>> lines;  ///< b_k
 };
 
-/// What is missing: the vector less the nearest one of the cone, by least squares with x >= 0 (Lawson & Hanson 1974,
+/// The vector less the nearest one of the cone, by least squares with x >= 0 (Lawson & Hanson 1974,
 /// Solving Least Squares Problems, ch. 23). With this remainder r of f, r . f = |r|², r . a <= 0 and r . b = 0 for all
 /// edges and lines (Farkas): where r is not 0 it proves that f is outside of the cone.
 struct ConeRemainder {

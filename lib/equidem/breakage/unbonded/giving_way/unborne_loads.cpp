@@ -42,7 +42,7 @@ class ConeOfForces {
  private:
   void line(std::size_t contact, const ContactForce& f) { cone_.lines.push_back(on_discs(contact, f)); }
   void edge(std::size_t contact, const ContactForce& f) { cone_.edges.push_back(on_discs(contact, f)); }
-  /// What balances it, on components that are not held.
+  /// The forces on discs that balance it, on components that are not held.
   [[nodiscard]] std::vector<double> on_discs(std::size_t contact, const ContactForce& f) const {
     std::vector<double> sum(contacts_.components(), 0.0);
     contacts_.add_internal(contact, f, sum);
