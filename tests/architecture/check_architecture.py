@@ -13,7 +13,7 @@ import os
 import re
 import sys
 
-LONGEST_SOURCE = 400  # lines
+LONGEST_SOURCE = 800  # lines
 WIDEST_LINE = 120  # characters
 FULLEST_FOLDER = 30  # sources in one folder of lib or tools
 LARGEST_SVG = 300_000  # bytes of a figure in data
