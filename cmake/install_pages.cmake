@@ -31,5 +31,3 @@ foreach(reference IN LISTS references)
 endforeach()
 
 write_help(${share}/bash-completion/completions/${name} completion bash)
-write_help(${share}/zsh/vendor-completions/_${name} completion zsh)
-write_help(${share}/fish/vendor_completions.d/${name}.fish completion fish)

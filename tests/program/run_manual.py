@@ -55,7 +55,7 @@ class Manual(ProgramTest):
 
     def test_other_names_are_refused(self):
         self.check_error(equidem("help", "man", "slove"), 2, "no manual page on 'slove'")
-        self.check_error(equidem("help", "completion", "csh"), 2, "'csh'", "bash, zsh and fish")
+        self.check_error(equidem("help", "completion", "csh"), 2, "'csh'", "bash")
 
 
 class Completion(ProgramTest):
@@ -95,13 +95,11 @@ class Completion(ProgramTest):
         for key in keys:
             self.assertRegex(text, rf"(?m)^  {re.escape(key.split('.')[-1])}\b", key)
 
-    def test_every_shell_can_read_its_script(self):
-        for shell in ("bash", "zsh", "fish"):
-            script = self.folder / shell
-            script.write_text(self.check_done(equidem("help", "completion", shell)).stdout)
-            if shutil.which(shell):
-                done = subprocess.run([shell, "-n", script], capture_output=True, text=True, timeout=60)
-                self.assertEqual((done.returncode, done.stderr), (0, ""), shell)
+    def test_bash_can_read_its_script(self):
+        script = self.folder / "bash"
+        script.write_text(self.check_done(equidem("help", "completion", "bash")).stdout)
+        done = subprocess.run(["bash", "-n", script], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Packages(unittest.TestCase):

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Completion of a program's command line by the shell, made from the command line itself.
+/// Completion of a program's command line by bash, made from the command line itself.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "program.hpp"
 
 namespace equidem {
 
-/// A script that completes commands, their options, and after options what the type of their value names: files,
-/// commands, keys of the case file and their words. A positional NAME|FILE has the names that the command prints with
+/// A script for bash that completes commands, their options, and after options what the type of their value names:
+/// files, commands, keys of the case file and their words. A positional NAME|FILE has the names that the command prints
+/// with
 /// --list, indented.
-/// \param shell bash, zsh or fish
-/// \return nothing for another shell
-std::optional<std::string> completion(const Program& program, const CLI::App& app, const std::string& shell);
+std::string bash_completion(const Program& program, const CLI::App& app);
 
 }  // namespace equidem

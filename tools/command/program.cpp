@@ -96,13 +96,15 @@ void check_refusals(const Program& program, const std::string& word) {
   bad_input(problem, "", help);
 }
 
-/// The manual page of a verb or topic, or the completion for a shell.
+/// The manual page of a verb or topic, or the completion for bash.
 std::string generated_text(const Program& program, const CLI::App& app, const std::string& kind,
                            const std::string& name) {
-  const bool manual = kind == manual_topic;
-  if (const auto text = manual ? man_page(program, app, name) : completion(program, app, name)) return *text;
-  if (manual) bad_input(fmt::format("there is no manual page on '{}'", name), "", "Name a verb or a topic of help");
-  bad_input(fmt::format("there is no completion for the shell '{}'", name), "", "The shells are bash, zsh and fish");
+  if (kind == completion_topic) {
+    if (name == "bash") return bash_completion(program, app);
+    bad_input(fmt::format("there is no completion for the shell '{}'", name), "", "The only shell is bash");
+  }
+  if (const auto page = man_page(program, app, name)) return *page;
+  bad_input(fmt::format("there is no manual page on '{}'", name), "", "Name a verb or a topic of help");
 }
 
 void show_help(const Program& program, const CLI::App& app, const std::vector<std::string>& arguments) {

@@ -25,7 +25,7 @@ constexpr const char* footer = R"(Examples:
   equidem help result        numbers of result.json, their units and meanings
   equidem help engines       what LAMMPS, YADE and PFC carry of a model
   equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
-  equidem help completion bash    completion for the shell; also zsh and fish
+  equidem help completion bash    completion for the shell
 
 The files of data/cases are installed in share/doc/equidem/examples.
 The tables and figures of published papers are computed by the program equidem-papers.
