@@ -284,16 +284,20 @@ class RatePath {
   ContactStatus before_ = ContactStatus::stuck;  // its status before
 };
 
-/// \return none where no path ends at an answer that agrees with its rates and balances the loads
+/// \return the answer to which a path leads: one that balances the loads or, where none does, one of loads that drive
+///         what nothing resists; none: no path leads to statuses that agree with their rates
 std::optional<RateAnswer> follow_rates(const RateProblem& problem, TangentSolver& solver,
                                        const std::vector<ContactStatus>& status) {
+  std::optional<RateAnswer> driven;
   for (const double ground : path_grounds) {
     RatePath path(problem, status, ground);
     if (!path.follow()) continue;
     RateAnswer answer = solve_rates(problem, solver, path.take_status());
-    if (answer.agrees && answer.rates.balanced) return answer;
+    if (!answer.agrees) continue;
+    if (answer.rates.balanced) return answer;
+    driven = std::move(answer);
   }
-  return {};
+  return driven;
 }
 
 /// Where loads drive what nothing resists, rates of that motion are forces over the ground, and round-off is a small
@@ -319,13 +323,13 @@ RateSearch search_rates(const RateProblem& problem, TangentSolver& solver, const
     search.answer = std::move(sticking);
     return search;
   }
+  // Rates of what nothing resists are large, and their round-off decides where Newton's method goes: the path does not
+  // depend on it.
   std::optional<RateAnswer> other;
   if (sticking.rates.balanced) other = follow_rates(problem, solver, status);
-  if (other) {
-    search = {std::move(*other), true};
-  } else if (search.answer.agrees) {
-    decide_beside_large_rates(problem, solver, search);
-  }
+  if (other) search = {std::move(*other)};
+  search.found = search.answer.agrees && search.answer.rates.balanced;
+  if (!search.found && search.answer.agrees) decide_beside_large_rates(problem, solver, search);
   return search;
 }
 

@@ -265,7 +265,8 @@ bool UnbondedRun::advance() {
   const std::size_t before = events_.size();
   const std::int64_t most = scene_.path.max_events;
   if (!releasing()) steps_ = 0;
-  while (end_ == PathEnd::none && events_.size() == before) {
+  bool released = false;
+  while (end_ == PathEnd::none && events_.size() == before && !released) {
     stop_if_interrupted();
     if (most > 0 && std::ssize(events_) >= most) {
       end(PathEnd::most_events,
@@ -276,10 +277,12 @@ bool UnbondedRun::advance() {
     if (!rates_) {
       if (!find_rates() || events_.size() > before) break;
     }
+    const bool was_releasing = releasing();
     step();
+    released = was_releasing && !releasing();
   }
   note_released();
-  return events_.size() > before;
+  return events_.size() > before || end_ == PathEnd::none;
 }
 
 /// To the next event, or to the end of the stage.

@@ -45,7 +45,7 @@ class UnbondedRun : public EventPath {
   ///         control is none of those that a path with a history has
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
 
-  /// Bonds that break are events of their own, and so is what happens while they give up their force.
+  /// A bond that breaks is an event, and so is what happens while it gives up its force; then to the end of that.
   bool advance() override;
   void fail(std::string why) override { end(PathEnd::failed, std::move(why)); }
   [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
