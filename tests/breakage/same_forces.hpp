@@ -76,7 +76,6 @@ class DenseStates {
 enum class ComparedUntil {
   end,       ///< of the path
   loose,     ///< a disc that nothing holds may be anywhere
-  several,   ///< an increment has several answers, or that it has one was not decided: it was told so
   no_dense,  ///< dense matrices found no rates: pivots ended, and combinations were many
   falling,   ///< the path ended while a bond let go: everything falls
   differs,   ///< forces are not the same
@@ -100,23 +99,18 @@ inline ComparedPaths compare_forces(Unbonded& ours, DenseUnbonded& dense, std::s
   const DenseStates states(dense);
   const auto& legs = ours.path().legs;
   ComparedPaths result;
-  bool chosen = false;  // by an increment before
   const auto stop = [&](ComparedUntil why) {
     result.until = why;
     return result;
   };
   while (ours.events().size() < most) {
     const std::size_t first = ours.events().size();
-    const bool more = ours.run().advance();
+    bool more = ours.run().advance();
+    while (more && ours.run().releasing()) more = ours.run().advance();
     if (!more && ours.run().end() != PathEnd::legs_done && ours.events().size() == first) break;
     const UnbondedState& state = ours.run().state();
     if (!state.releasing().empty()) return stop(falling);
     const std::span fresh = std::span(ours.events()).subspan(first);
-    const bool breaks = std::ranges::any_of(
-        fresh, [](const BreakEvent& e) { return e.mode == BreakMode::tension || e.mode == BreakMode::shear; });
-    const bool undecided = std::ranges::any_of(fresh, [](const BreakEvent& e) { return e.other_answers != 0; });
-    // The increments behind a break are over; that of other events begins here.
-    chosen = chosen || (breaks && undecided);
     const std::int64_t leg = !fresh.empty() ? fresh.back().leg : std::ssize(legs) - 1;
     result.way = way_of(state, ours.path(), leg);
     if (dense.determined == 0) return stop(loose);
@@ -128,12 +122,11 @@ inline ComparedPaths compare_forces(Unbonded& ours, DenseUnbonded& dense, std::s
     const bool forces = state.negligible_force() < 4e-5 * state.largest_force();
     if (forces && !(result.difference <= same)) {
       const bool at_end = !found && result.way >= dense.states.back().way - 1e-9;
-      return stop(chosen ? several : at_end ? no_dense : differs);
+      return stop(at_end ? no_dense : differs);
     }
     if (forces) result.largest = std::max(result.largest, result.difference);
     ++result.states;
     result.events = ours.events().size();
-    chosen = chosen || undecided;
     if (!more) break;
   }
   return result;

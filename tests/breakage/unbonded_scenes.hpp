@@ -3,7 +3,9 @@
 /// Paths of networks with unbonded contacts, with all that they refer to.
 #pragma once
 
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 
@@ -33,6 +35,21 @@ class Unbonded : public OwnedScene {
 
  private:
   UnbondedRun run_;
+};
+
+/// The sum of the ways of all components, m, along straight pieces.
+class Way {
+ public:
+  explicit Way(std::vector<double> from) : at_(std::move(from)) {}
+  void go_to(const std::vector<double>& to) {
+    for (std::size_t k = 0; k < to.size(); ++k) length_ += std::abs(to[k] - at_[k]);
+    at_ = to;
+  }
+  [[nodiscard]] double length() const { return length_; }
+
+ private:
+  std::vector<double> at_;
+  double length_ = 0;
 };
 
 }  // namespace equidem::test

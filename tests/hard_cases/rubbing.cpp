@@ -24,12 +24,7 @@ using namespace equidem::test;
 namespace {
 
 std::string told(const UnbondedRun& run) {
-  const UnbondedCounters counters = run.counters();
-  return fmt::format(
-      "{}, ended: {}; {} of {} with one answer, {} not decided", counted(std::ssize(run.events()), "event"),
-      to_string(run.end()), counters.unique,
-      counted(counters.unique + counters.not_unique + counters.no_answer + counters.unchecked, "increment"),
-      counters.unchecked);
+  return fmt::format("{}, ended: {}", counted(std::ssize(run.events()), "event"), to_string(run.end()));
 }
 
 Assembly rubbing_cell() {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/breakage/break_search.hpp"
@@ -44,6 +45,7 @@ class BreakageRun : public EventPath {
   /// \return false where the path has ended
   /// \throws Error (computation_failed) as BreakableSystem::remove
   bool advance() override;
+  void fail(std::string why) override { end(PathEnd::failed, std::move(why)); }
 
   [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
   [[nodiscard]] PathEnd end() const override { return end_; }

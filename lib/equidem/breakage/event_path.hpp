@@ -36,15 +36,11 @@ struct BreakEvent {
   std::int64_t unstable_modes = 0;        ///< of the network with the contact; -1: not known
   double relative_residual = 0;           ///< of the state at which it breaks
   std::vector<std::int32_t> loosened{};   ///< discs that leave the network with it and carry nothing behind it
-  // The numbers below are those of paths with contacts without a bond; elsewhere they are 0.
-  double friction = 0;                                ///< N, lost by slip so far
-  std::int64_t other_answers = 0;                     ///< found for the increment that begins here; -1: not known
-  double motion_difference = 0, load_difference = 0;  ///< relative, of their rates
+  double friction = 0;                    ///< N, lost by slip so far where contacts have friction; else 0
 
   void pass(PathNumbers& n) {
     n.pass(leg, lambda, contact, mode, ties, gap, load, motion, stress, energy_before, energy_after, energy_released);
-    n.pass(work, load_rate, motion_rate, unstable_modes, relative_residual, loosened);
-    n.pass(friction, other_answers, motion_difference, load_difference);
+    n.pass(work, load_rate, motion_rate, unstable_modes, relative_residual, loosened, friction);
   }
 };
 
@@ -55,9 +51,10 @@ enum class PathEnd {
   never_breaks,     ///< no contact breaks at any lambda
   carries_nothing,  ///< no contact carries a force that grows with lambda
   load_moves_part,  ///< a load acts on a part that nothing holds, or drives a mechanism
-  no_answer,        ///< no states of contacts that rub agree with their rates, or they change without end
-  not_balanced,     ///< forces of contacts that rub no longer balance to 1e-12: hardly anything holds some discs
+  no_answer,        ///< no consistent state of contacts without a bond was found, or their states cycle
+  not_balanced,     ///< forces no longer balance to 1e-12: the tangent stiffness of some discs is near singular
   most_events,      ///< LoadPath::max_events
+  failed,           ///< the computation of the next event failed
 };
 
 template <>
@@ -71,7 +68,8 @@ struct EnumNames<PathEnd> {
                                                  {load_moves_part, "load_moves_part"},
                                                  {no_answer, "no_answer"},
                                                  {not_balanced, "not_balanced"},
-                                                 {most_events, "most_events"}};
+                                                 {most_events, "most_events"},
+                                                 {failed, "failed"}};
 };
 
 /// A point of the curve of load against motion beside the events: the start, the end of a leg.
@@ -93,7 +91,11 @@ class EventPath {
 
   /// Goes on to the next event, or to several that happen at once.
   /// \return false where the path has ended
+  /// \throws Error (computation_failed) where what follows the last event cannot be computed, or of kind interrupted
+  ///         where the user asked to stop; all that was found so far stays
   virtual bool advance() = 0;
+  /// Ends the path behind its last event, since what follows cannot be computed.
+  virtual void fail(std::string why) = 0;
 
   [[nodiscard]] virtual const std::vector<BreakEvent>& events() const = 0;
   [[nodiscard]] virtual PathEnd end() const = 0;
@@ -107,13 +109,16 @@ class EventPath {
   [[nodiscard]] virtual const std::vector<std::int32_t>& idle() const = 0;
   /// lambda of the last event, or where the path has ended.
   [[nodiscard]] virtual double lambda() const = 0;
-  /// Whether contacts rub: their forces depend on the path.
+  /// Whether contacts have friction: their forces depend on the path.
   [[nodiscard]] virtual bool has_history() const = 0;
+  /// Whether a broken bond has yet to give up a part of its force, while lambda is held.
+  [[nodiscard]] virtual bool releasing() const { return false; }
   /// The load that the network as it is carries at a motion (LoadPath).
   [[nodiscard]] virtual double load_left(double motion) const = 0;
   [[nodiscard]] virtual double elastic_energy() const = 0;  ///< N, at lambda()
   [[nodiscard]] virtual double released() const = 0;        ///< N, by all bonds that broke
-  /// Work less everything that it went into, over the largest of these; where contacts rub, the largest so far.
+  /// Work less everything that it went into, over the largest of these; where contacts have friction, the largest so
+  /// far.
   [[nodiscard]] virtual double energy_error() const = 0;
 };
 

@@ -9,7 +9,6 @@
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/load_path.hpp"
-#include "equidem/breakage/path_estimate.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/core/error.hpp"
@@ -56,7 +55,8 @@ int dry_run_strengths(const CommonOptions& options, Problem& problem) {
   const StrengthTargetCase& target = *problem.resolved.strength_target;
   const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
   const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
-  const double solutions = solutions_of_path(estimated_events(std::ssize(problem.assembly.contacts)));
+  constexpr double of_break = 0.13, broken = 0.1;  // solutions; the share of contacts that break
+  const double solutions = 1 + of_break * broken * static_cast<double>(problem.assembly.contacts.size());
   Results results;
   add_unused(results, problem.resolved);
   results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});

@@ -95,9 +95,6 @@ Table event_table(const EventPath& run, const BreakageScene& scene) {
   table.add("loosened", events, [](const BreakEvent& event) { return numbers_of(event.loosened); });
   if (!run.has_history()) return table;
   table.add("friction_N", events, &BreakEvent::friction);
-  table.add("other_answers", events, &BreakEvent::other_answers);
-  table.add("motion_difference", events, &BreakEvent::motion_difference);
-  table.add("load_difference", events, &BreakEvent::load_difference);
   return table;
 }
 

@@ -3,13 +3,14 @@
 /// equidem quasistatic: contacts that break one after another under a growing load.
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
 #include "equidem/breakage/factor_to_update.hpp"
-#include "equidem/breakage/path_estimate.hpp"
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
@@ -145,6 +146,19 @@ struct Sequence {
   [[nodiscard]] std::optional<PathState> state() const {
     return unbonded ? state_of(scene(), effects, *unbonded) : state_of(scene(), effects, cut, *brittle, *system);
   }
+  /// Likewise, where the computation of the next event has left the system within it: solved for anew.
+  [[nodiscard]] std::optional<PathState> state_anew() const {
+    if (unbonded) return state();
+    std::vector<std::size_t> broken = cut;
+    for (const BreakEvent& event : brittle->events()) broken.push_back(static_cast<std::size_t>(event.contact));
+    try {
+      const auto rest = make_refactorized_rest(
+          breakable_network(scene(), effects, problem.supports, problem.resolved.solver), broken);
+      return state_of(scene(), effects, cut, *brittle, *rest);
+    } catch (const std::exception&) {
+      return {};
+    }
+  }
   void begin() {
     const Stopwatch watch;
     if (rubs()) {
@@ -168,36 +182,13 @@ struct Sequence {
   }
 };
 
-/// Size, memory and time of a path, of which only the number of events is not known before.
+/// Size and memory of a path, and the time of its first state: how many events follow is not known before.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
-  const std::int64_t contacts = std::ssize(problem.assembly.contacts), most = problem.resolved.quasistatic.max_events;
-  const bool rubs = sequence.rubs();
-  const std::int64_t events = most > 0 ? rubs ? most : std::min(most, contacts)
-                              : rubs ? estimated_rubbing_events(contacts)
-                                       : estimated_events(contacts);
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
-  further.line("events").add("estimated_events", "", events, "event", {Shown::count});
-  const std::string all = "the time below is that of the first state and all of them";
-  further.note(most > 0 ? ", max_events: " + all
-               : rubs   ? ": " + all
-                        : ", if a tenth of the contacts breaks: " + all +
-                            "; tension breaks fewer contacts, compression up to half of them");
-  if (rubs) {
-    further.line(
-        "",
-        "how often contacts break, open, close, slip and stick is not known before: fourteen paths of 68 to "
-        "1817 discs had 0.007 to 3.4 times as many events, twelve of them 0.1 to 2.4 times; an event took 0.3 to "
-        "3.4 times its share of the time, and hardly any where no contact carries a force");
-    further.line("",
-                 "where hardly a bond holds the discs, the search for the first states of their contacts may take far "
-                 "longer than all of this");
-  }
-  deliver(options, "dry_run",
-          dry_run_results(
-              problem, solutions_of_path(events, rubs), further, AssemblyKeys::all, 0,
-              rubs ? "if there are so many events, mostly within a factor of three" : "mostly within a factor of two"),
+  further.line("events", "their number is not known before: the time below is that of the first state alone");
+  deliver(options, "dry_run", dry_run_results(problem, 1, further, AssemblyKeys::all, 0, "of the first state"),
           problem.times);
   return 0;
 }
@@ -277,9 +268,24 @@ std::optional<FileMark> resume(const CommonOptions& options, Sequence& sequence)
   return frames;
 }
 
+/// How a path was left.
+struct Stop {
+  bool interrupted = false;
+  std::optional<Error> failure{};    ///< what ended it otherwise than by its own end
+  std::optional<PathState> state{};  ///< behind the last event; none: not known
+};
+
+/// The sentence with which a path ends where the next event cannot be computed.
+Error failure_of(const std::exception& exception) {
+  if (const auto* error = dynamic_cast<const Error*>(&exception)) return *error;
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&exception) != nullptr;
+  return {ErrorKind::computation_failed, memory ? "there is too little memory for the next event" : exception.what(),
+          "", memory ? "Use fewer discs, or a machine with more memory" : "Please report this case"};
+}
+
+/// Whatever ends the path, all that was found so far stays.
 /// \param from frames of the path so far
-/// \return whether the path has come to its end; false: the user asked to stop
-bool go(const CommonOptions& options, Sequence& sequence, const std::optional<FileMark>& from) {
+Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<FileMark>& from) {
   EventPath& run = sequence.run();
   const QuasistaticCase& wanted = sequence.problem.resolved.quasistatic;
   std::optional<EventFrames> frames;
@@ -295,16 +301,16 @@ bool go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
   double saved = 0;
   const auto contacts = static_cast<double>(sequence.problem.assembly.contacts.size());
   const double most = wanted.max_events > 0 ? static_cast<double>(wanted.max_events) : contacts;
-  bool done = true;
   const auto advance = [&] {
     between = false;
     const bool goes_on = run.advance();
-    if (goes_on && frames && frames->due(run)) {
+    if (goes_on && frames && !run.releasing() && frames->due(run)) {
       if (const auto state = sequence.state()) frames->add(run, *state);
     }
     between = true;
     return goes_on;
   };
+  Stop stop;
   try {
     Progress progress("breaking");
     while (advance()) {
@@ -314,20 +320,21 @@ bool go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
       }
       progress.update(static_cast<double>(run.events().size()) / most);
     }
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::interrupted) {
-      save();
-      throw;
+  } catch (const std::exception& exception) {
+    const auto* error = dynamic_cast<const Error*>(&exception);
+    stop.interrupted = error != nullptr && error->kind() == ErrorKind::interrupted;
+    if (!stop.interrupted) {
+      stop.failure = failure_of(exception);
+      const std::string& why = stop.failure->why();
+      run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
     }
-    done = false;
   }
   save();
-  if (frames && done) {
-    if (const auto state = sequence.state()) frames->add_end(run, *state);
-  }
+  if (!stop.interrupted || sequence.unbonded) stop.state = stop.failure ? sequence.state_anew() : sequence.state();
+  if (frames && !stop.interrupted && stop.state) frames->add_end(run, *stop.state);
   if (frames) frames->finish();
   sequence.problem.times.add("events", watch.seconds());
-  return done;
+  return stop;
 }
 
 int quasistatic(const QuasistaticOptions& given) {
@@ -350,23 +357,25 @@ int quasistatic(const QuasistaticOptions& given) {
     PathCheckpoint(options, sequence).remove();
   }
   write_case(options, sequence.problem.resolved);
-  const bool done = go(options, sequence, frames);
+  const Stop stop = go(options, sequence, frames);
   const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
                                    sequence.residual_friction()};
   Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
                                       : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
-  results.set("complete", done);
-  const std::optional<PathState> end = done && options.out ? sequence.state() : std::nullopt;
-  if (done && options.out && !end)
-    results.line("state", "none is written: what is left does not carry its loads at the end");
-  deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
-    if (!options.out) return;
-    const OutputCase& wanted = sequence.problem.resolved.output;
-    write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
-    write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), end);
-  });
-  if (!done) {
-    throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),
+  results.set("complete", !stop.interrupted && !stop.failure);
+  if (options.out && !stop.state)
+    results.line("state", "none is written: no equilibrium of what is left is known behind the last event");
+  deliver(
+      options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, [&](Results&) {
+        if (!options.out) return;
+        const OutputCase& wanted = sequence.problem.resolved.output;
+        write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
+        write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
+      });
+  const std::int64_t events = std::ssize(sequence.run().events());
+  if (stop.failure && events == 0) throw *stop.failure;  // nothing of the path is known
+  if (stop.interrupted) {
+    throw_stopped(options, fmt::format("{} are done", counted(events, "event")),
                   "Run the same command with --resume to go on");
   }
   return 0;

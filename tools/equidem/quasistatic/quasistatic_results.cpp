@@ -43,13 +43,14 @@ void add_events(Results& out, const BreakageScene& scene, const EventPath& run, 
           : fmt::format(": {} broken in tension, {} in shear, {} opened, {} closed, {} slipped, {} stuck", pulled,
                         sheared, in(BreakMode::open), in(BreakMode::close), in(BreakMode::slip), in(BreakMode::stick)));
   out.set("broken_in_tension", pulled).set("broken_in_shear", sheared);
-  const bool cut_short =
-      run.end() == PathEnd::no_answer || run.end() == PathEnd::not_balanced || run.end() == PathEnd::load_moves_part;
+  const bool cut_short = run.end() == PathEnd::no_answer || run.end() == PathEnd::not_balanced ||
+                         run.end() == PathEnd::load_moves_part || run.end() == PathEnd::failed;
   const std::string where = run.leg_points().empty() ? " while the dead loads were applied"
                             : cut_short              ? fmt::format(" at lambda {:.9g}", run.lambda())
                                                      : "";
-  out.line("", run.end() == PathEnd::none ? "not ended: stopped as asked" : "ended" + where + ": " + run.why());
-  out.set("end", to_string(run.end())).set("end_reason", run.why()).set("lambda", run.lambda());
+  const std::string why = run.end() == PathEnd::none ? "stopped as asked" : run.why();
+  out.line("", run.end() == PathEnd::none ? "not ended: " + why : "ended" + where + ": " + why);
+  out.set("end", to_string(run.end())).set("ended", why).set("lambda", run.lambda());
   if (events.empty()) return;
   const auto ties = std::ranges::count_if(events, [](const BreakEvent& event) { return event.ties > 0; });
   out.set("tied_events", ties);
@@ -170,38 +171,6 @@ void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& syst
 
 void add_trust(Results& out, const UnbondedRun& run) {
   const UnbondedCounters counters = run.counters();
-  out.line(
-      "uniqueness",
-      fmt::format("{} with events: {} with one answer, {} with several, {} with none, {} not decided",
-                  counted(counters.unique + counters.not_unique + counters.no_answer + counters.unchecked, "increment"),
-                  counters.unique, counters.not_unique, counters.no_answer, counters.unchecked));
-  out.set("increments/unique", counters.unique)
-      .set("increments/not_unique", counters.not_unique)
-      .set("increments/no_answer", counters.no_answer)
-      .set("increments/not_decided", counters.unchecked)
-      .set("increments/not_decided_contacts", counters.most_unchecked_contacts)
-      .set("increments/not_decided_by_round_off", counters.ties);
-  if (counters.not_unique > 0) {
-    out.line("", fmt::format("of several answers that which Newton's method reaches from the present states was taken; "
-                             "the rates of motion of another differ by {:.2g}, those of load by {:.2g}, relative, at "
-                             "most",
-                             counters.largest_motion_difference, counters.largest_load_difference));
-  }
-  if (counters.unchecked > counters.ties) {
-    out.line("",
-             fmt::format("not decided are increments with up to {} on limits, for which one answer is not proved and "
-                         "not all combinations were tried (those of the contacts of the event were, where they are "
-                         "few)",
-                         counted(counters.most_unchecked_contacts, "contact")));
-  }
-  if (counters.ties > 0) {
-    out.line("", fmt::format("of {} not decided all combinations of the states of contacts on limits were tried: "
-                             "whether one of them is another answer hangs on round-off, as where a force lies on a "
-                             "limit of its law. Friction, springs or loads that differ by a millionth decide it",
-                             counted(counters.ties, "increment")));
-  }
-  out.set("increments/motion_difference", counters.largest_motion_difference)
-      .set("increments/load_difference", counters.largest_load_difference);
   out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
   out.line("solver")
       .add("solver", "", "UMFPACK LU, updated")
@@ -265,7 +234,7 @@ Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<
       .set("strength/shear", std::vector<double>{low_shear, high_shear});
   out.set("strength/friction", scene.strengths.friction);
   if (residual_friction) {
-    out.note(fmt::format("; contacts without a bond rub with friction {:g}", *residual_friction));
+    out.note(fmt::format("; contacts without a bond have friction {:g}", *residual_friction));
     out.set("strength/residual_friction", *residual_friction);
   }
   const LoadPath& path = scene.path;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "equidem/breakage/event_path.hpp"
+#include "equidem/core/progress.hpp"
 
 namespace equidem {
 namespace {
@@ -73,10 +74,9 @@ class RateResidual {
 constexpr double balanced = 1e-11, refined = 1e-14;
 constexpr int most_refinements = 40;
 
-/// \param solved whether the rates may be right already
 /// \return the residual that is left
 double refine(const ContactOperator& contacts, const RateResidual& residual_of, const TangentSolver& solver,
-              const Driving& driving, bool solved, Rates& rates) {
+              const Driving& driving, Rates& rates) {
   const std::vector<double>& load = driving.pattern->force;
   std::vector<double> residual(rates.motion.size()), along;
   double along_load = 0;
@@ -90,7 +90,7 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   Rates best = rates;
   for (int k = 0; k < most_refinements; ++k) {
     const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
-    if ((k > 0 || solved) && left <= refined) break;
+    if (k > 0 && left <= refined) break;
     solver.solve(residual);
     const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
     rates.lambda += lambda;
@@ -119,6 +119,18 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
   return left;
 }
 
+/// Sets Rates::negligible.
+void set_negligible(const RateProblem& problem, Rates& rates) {
+  double largest = 0;
+  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
+    const ContactDeformation& d = rates.deformation[c];
+    const SpringConstants& k = problem.laws[c].k;
+    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
+  }
+  // A part that moves rigidly shows the rounding of its motion as deformations: no contact breaks or opens by them.
+  rates.negligible = std::max(1e-9 * rates.force_scale + problem.rounded * largest, rates.round_off);
+}
+
 struct StatusChange {
   std::size_t contact;
   ContactStatus wanted;
@@ -141,10 +153,21 @@ std::vector<StatusChange> inconsistent(const RateProblem& problem, const RateAns
   return wrong;
 }
 
+/// Sets the statuses of the contacts on limits to those that follow from the rates, RateAnswer::agrees and
+/// Rates::negligible.
+/// \return whether they were those already, but for slips to the other side without a force
+bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {
+  set_negligible(problem, answer.rates);
+  const auto wrong = inconsistent(problem, answer);
+  answer.agrees = std::ranges::all_of(wrong, &StatusChange::forceless);
+  for (const StatusChange& change : wrong) answer.status[change.contact] = change.wanted;
+  return answer.agrees;
+}
+
 }  // namespace
 
 Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving, const Rates* begin) {
+               const Driving& driving) {
   const RateResidual residual_of(contacts, tangents, driving);
   const auto& held = contacts.unknowns().held;
   const std::vector<double>& prescribed = driving.pattern->prescribed;
@@ -157,8 +180,7 @@ Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (held[k] != 0 && !prescribed.empty()) rates.motion[k] = rates.lambda * prescribed[k];
     }
-    if (begin != nullptr) rates.motion = begin->motion, rates.lambda = begin->lambda;
-    const double left = refine(contacts, residual_of, solver, driving, begin != nullptr, rates);
+    const double left = refine(contacts, residual_of, solver, driving, rates);
     rates.balanced = left <= balanced;
     if (rates.balanced || attempt > 0) return rates;
     solver.refresh();
@@ -172,25 +194,6 @@ std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::
   return tangents;
 }
 
-void set_negligible(const RateProblem& problem, Rates& rates) {
-  double largest = 0;
-  for (std::size_t c = 0; c < problem.laws.size(); ++c) {
-    const ContactDeformation& d = rates.deformation[c];
-    const SpringConstants& k = problem.laws[c].k;
-    largest = std::max({largest, std::abs(k.kN * d.normal), std::abs(k.kT * d.tangential)});
-  }
-  // A part that moves rigidly shows the rounding of its motion as deformations: no contact breaks or opens by them.
-  rates.negligible = std::max(1e-9 * rates.force_scale + problem.rounded * largest, rates.round_off);
-}
-
-bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {
-  set_negligible(problem, answer.rates);
-  const auto wrong = inconsistent(problem, answer);
-  answer.agrees = std::ranges::all_of(wrong, &StatusChange::forceless);
-  for (const StatusChange& change : wrong) answer.status[change.contact] = change.wanted;
-  return answer.agrees;
-}
-
 RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::vector<ContactStatus> status) {
   RateAnswer answer;
   answer.status = std::move(status);
@@ -202,6 +205,7 @@ RateAnswer solve_rates(const RateProblem& problem, TangentSolver& solver, std::v
   };
   constexpr int most = 60;
   for (int k = 0; k < most && seen.insert(on_limits()).second; ++k) {
+    stop_if_interrupted();
     answer.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, answer.status), problem.driving);
     if (agree_with_rates(problem, answer)) return answer;
   }

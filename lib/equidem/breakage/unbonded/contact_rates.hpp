@@ -39,9 +39,8 @@ struct Rates {
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing
 /// resists: those motions are then the least ones.
-/// \param begin motions and lambda to begin with, which may be larger by motions that nothing resists; null: none
 Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving, const Rates* begin = nullptr);
+               const Driving& driving);
 
 struct RateProblem {
   const ContactOperator& contacts;
@@ -58,14 +57,6 @@ struct RateAnswer {
 };
 
 std::vector<ContactTangent> tangents_of(std::span<const UnbondedLaw> laws, std::span<const ContactStatus> status);
-
-/// Sets Rates::negligible.
-void set_negligible(const RateProblem& problem, Rates& rates);
-
-/// Sets the statuses of the contacts on limits to those that follow from the rates, RateAnswer::agrees and
-/// Rates::negligible.
-/// \return whether they were those already, but for slips to the other side without a force
-bool agree_with_rates(const RateProblem& problem, RateAnswer& answer);
 
 /// The statuses of the contacts on limits that agree with the rates which follow from them, by Newton's method on the
 /// piecewise linear problem from the statuses given. It may go round in circles; rate_path.hpp does not.

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <utility>
+
+#include "equidem/core/progress.hpp"
 
 namespace equidem {
 namespace {
@@ -55,6 +58,7 @@ class RatePath {
     const double farthest = 1e6 * tau_;
     const std::size_t most = 1000 + 40 * problem_.limits.size();
     for (std::size_t piece = 0; piece < most; ++piece) {
+      stop_if_interrupted();
       const Step step = next_step();
       if (way_ < 0 && step.way >= tau_) return true;
       tau_ += way_ * step.way;
@@ -64,12 +68,6 @@ class RatePath {
     return false;
   }
   [[nodiscard]] std::vector<ContactStatus> take_status() { return std::move(status_); }
-  /// Where the path has come to tau = 0, per component, with the ground; no motion is prescribed.
-  [[nodiscard]] std::vector<double> motion() {
-    std::vector<double> motion;
-    static_cast<void>(response_to(problem_.driving.rate, true, 0, &motion));
-    return motion;
-  }
 
  private:
   struct Step {
@@ -99,9 +97,7 @@ class RatePath {
   }
 
   /// The response to lambda times the pattern, to the forces beside it where `others`, and to tau.
-  /// \param moved where the motion goes; null: nowhere
-  [[nodiscard]] Response response_to(double lambda, bool others, double tau,
-                                     std::vector<double>* moved = nullptr) const {
+  [[nodiscard]] Response response_to(double lambda, bool others, double tau) const {
     const ContactOperator& contacts = problem_.contacts;
     const Driving& driving = problem_.driving;
     const auto& held = contacts.unknowns().held;
@@ -132,7 +128,6 @@ class RatePath {
       if (held[k] == 0) motion[k] = residual[k];
     Response response{{}, load.empty() ? 0 : sum_of_products(load, motion)};
     for (const LimitContact& at : problem_.limits) response.deformation.push_back(deformation(at.contact));
-    if (moved != nullptr) *moved = std::move(motion);
     return response;
   }
   void respond() {
@@ -289,24 +284,53 @@ class RatePath {
   ContactStatus before_ = ContactStatus::stuck;  // its status before
 };
 
-}  // namespace
-
+/// \return the answer to which a path leads: one that balances the loads or, where none does, one of loads that drive
+///         what nothing resists; none: no path leads to statuses that agree with their rates
 std::optional<RateAnswer> follow_rates(const RateProblem& problem, TangentSolver& solver,
-                                       std::vector<ContactStatus> status) {
-  if (problem.limits.empty()) return {};
+                                       const std::vector<ContactStatus>& status) {
+  std::optional<RateAnswer> driven;
   for (const double ground : path_grounds) {
     RatePath path(problem, status, ground);
     if (!path.follow()) continue;
     RateAnswer answer = solve_rates(problem, solver, path.take_status());
-    if (answer.agrees && answer.rates.balanced) return answer;
+    if (!answer.agrees) continue;
+    if (answer.rates.balanced) return answer;
+    driven = std::move(answer);
   }
-  return {};
+  return driven;
 }
 
-std::vector<double> motion_on_ground(const RateProblem& problem, const std::vector<ContactStatus>& status,
-                                     double ground) {
-  RatePath path(problem, status, ground);
-  return path.follow() ? path.motion() : std::vector<double>{};
+/// Where loads drive what nothing resists, rates of that motion are forces over the ground, and round-off is a small
+/// share of them: more than that is left of the other forces.
+void decide_beside_large_rates(RateProblem problem, TangentSolver& solver, RateSearch& search) {
+  problem.rounded = 1e-14;
+  RateAnswer answer = solve_rates(problem, solver, search.answer.status);
+  if (!answer.agrees) return;
+  search.answer = std::move(answer);
+  search.found = search.answer.rates.balanced;
+}
+
+}  // namespace
+
+RateSearch search_rates(const RateProblem& problem, TangentSolver& solver, const std::vector<ContactStatus>& status) {
+  RateSearch search{solve_rates(problem, solver, status)};
+  search.found = search.answer.agrees && search.answer.rates.balanced;
+  if (search.found || problem.limits.empty()) return search;
+  RateAnswer sticking{true, status, {}};
+  for (const LimitContact& at : problem.limits) sticking.status[at.contact] = ContactStatus::stuck;
+  sticking.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, sticking.status), problem.driving);
+  if (!sticking.rates.balanced && !search.answer.agrees) {
+    search.answer = std::move(sticking);
+    return search;
+  }
+  // Rates of what nothing resists are large, and their round-off decides where Newton's method goes: the path does not
+  // depend on it.
+  std::optional<RateAnswer> other;
+  if (sticking.rates.balanced) other = follow_rates(problem, solver, status);
+  if (other) search = {std::move(*other)};
+  search.found = search.answer.agrees && search.answer.rates.balanced;
+  if (!search.found && search.answer.agrees) decide_beside_large_rates(problem, solver, search);
+  return search;
 }
 
 }  // namespace equidem

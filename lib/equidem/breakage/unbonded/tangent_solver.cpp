@@ -2,8 +2,9 @@
 #include "equidem/breakage/unbonded/tangent_solver.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
-#include "equidem/breakage/unbonded/dense_lu.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/linear/umfpack_factorization.hpp"
 
@@ -16,6 +17,43 @@ constexpr double least_pivot = 1e-7;      // of the capacity matrix: below, too 
 /// The rate of force beyond that of the base.
 ContactForce beyond(const ContactTangent& a, const ContactTangent& base, const ContactDeformation& d) {
   return ContactTangent{a.nn - base.nn, a.tn - base.tn, a.tt - base.tt}.rate(d);
+}
+
+/// L U of a square matrix, row-major, in its place.
+/// \return the least pivot over the largest entry of the matrix; 0: it is singular
+double factorize_dense(std::span<double> a, std::vector<std::size_t>& pivots) {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(a.size()))));
+  pivots.resize(n);
+  double largest = 0, least = 1;
+  for (const double x : a) largest = std::max(largest, std::abs(x));
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t p = k;
+    for (std::size_t r = k + 1; r < n; ++r) {
+      if (std::abs(a[r * n + k]) > std::abs(a[p * n + k])) p = r;
+    }
+    pivots[k] = p;
+    const double pivot = a[p * n + k];
+    if (!(std::abs(pivot) > 0)) return 0;
+    least = std::min(least, std::abs(pivot) / largest);
+    for (std::size_t c = 0; c < n && p != k; ++c) std::swap(a[k * n + c], a[p * n + c]);
+    for (std::size_t r = k + 1; r < n; ++r) {
+      const double factor = a[r * n + k] /= pivot;
+      for (std::size_t c = k + 1; c < n && factor != 0; ++c) a[r * n + c] -= factor * a[k * n + c];
+    }
+  }
+  return least;
+}
+
+void solve_dense(std::span<const double> lu, std::span<const std::size_t> pivots, std::span<double> x) {
+  const std::size_t n = pivots.size();
+  for (std::size_t k = 0; k < n; ++k) std::swap(x[k], x[pivots[k]]);
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = 0; c < r; ++c) x[r] -= lu[r * n + c] * x[c];
+  }
+  for (std::size_t r = n; r-- > 0;) {
+    for (std::size_t c = r + 1; c < n; ++c) x[r] -= lu[r * n + c] * x[c];
+    x[r] /= lu[r * n + r];
+  }
 }
 
 }  // namespace
@@ -64,14 +102,6 @@ const TangentSolver::Columns& TangentSolver::columns_of(std::size_t contact) {
   return columns_.emplace(contact, std::move(columns)).first->second;
 }
 
-void TangentSolver::restore(const std::vector<ContactTangent>& base, std::span<const ContactTangent> tangents) {
-  if (base_ != base) {
-    now_ = base;
-    factorize();
-  }
-  set(tangents);
-}
-
 void TangentSolver::pass(PathNumbers& n) {
   std::vector<ContactTangent> base = base_, now = now_;
   std::int64_t factorizations = factorizations_, updates = updates_;
@@ -79,7 +109,11 @@ void TangentSolver::pass(PathNumbers& n) {
   for (const auto& [contact, columns] : columns_) solved.push_back(contact);
   n.pass(base, now, solved, factorizations, updates);
   if (!n.restores()) return;
-  if (!base.empty()) restore(base, now);
+  if (!base.empty() && base_ != base) {
+    now_ = base;
+    factorize();
+  }
+  if (!base.empty()) set(now);
   for (const std::size_t contact : solved) columns_of(contact);
   factorizations_ = factorizations;
   updates_ = updates;

@@ -30,10 +30,6 @@ class TangentSolver {
   /// Makes these the tangents, one for each contact, by updates of the factor or by a new one.
   /// \throws Error (computation_failed) where the matrix has a zero pivot
   void set(std::span<const ContactTangent> tangents);
-  /// The tangents that are factorized.
-  [[nodiscard]] const std::vector<ContactTangent>& base() const { return base_; }
-  /// Makes the tangents those of before, and the factor too, so that solutions have the same bits as before.
-  void restore(const std::vector<ContactTangent>& base, std::span<const ContactTangent> tangents);
   /// Factorizes the tangent as it is, if it has changed since.
   void refresh();
   /// x := K^-1 x, held components are not changed by it.

@@ -6,12 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/breakage/unbonded/giving_way/end_sentence.hpp"
 #include "equidem/breakage/unbonded/loose_discs.hpp"
-#include "equidem/breakage/unbonded/rate_branches.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
-#include "equidem/breakage/unbonded/unique_rates.hpp"
+#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
@@ -96,99 +95,39 @@ bool UnbondedRun::find_rates() {
   const RateProblem problem{contacts_, laws_, limits, driving()};
   RateSearch search = search_rates(problem, solver_, state_->status());
   RateAnswer& answer = search.answer;
+  if (search.found || answer.agrees) record_changes(answer.status);
   if (!search.found) {
-    if (answer.agrees) record_changes(answer.status);
-    PathEnding ending = ending_of(scene_.assembly, problem, search, state_->status(),
-                                  {!dead_done_, releasing(), state_->dead(), state_->lambda()});
-    if (ending.end == PathEnd::no_answer) {
-      if (search.tried > 0 && search.ties == 0) {
-        ++counters_.no_answer;
-      } else {
-        count_unchecked(limits.size(), search.ties > 0);
-      }
-    }
-    end(ending.end, std::move(ending.sentence));
+    end_without_rates(search, limits.size());
     return false;
   }
-  const std::size_t first = begun_;  // breaks at this state begin the increment too
-  record_changes(answer.status);
-  if (events_.size() > first || !checked_) look_for_branches(problem, answer, first);
-  begun_ = events_.size();
   for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
   state_->settle(*rates_, !dead_done_, by_motion(), solver_);
   return true;
 }
 
-void UnbondedRun::count_unchecked(std::size_t limits, bool tie) {
-  ++counters_.unchecked;
-  if (tie) {
-    ++counters_.ties;
+std::string UnbondedRun::at_dead_loads() const {
+  if (dead_done_) return "";
+  return state_->dead() > 0 ? fmt::format("at {:.4g} % of the dead loads ", 100 * state_->dead())
+                            : "before any of the dead loads acts ";
+}
+
+void UnbondedRun::end_without_rates(const RateSearch& search, std::size_t on_limits) {
+  const std::string at = at_dead_loads() + (releasing() ? "while a broken bond gives up its force " : "");
+  if (search.answer.agrees) {
+    const std::vector<double>& rate = search.answer.rates.motion;
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    std::vector<DiscMotion> motions(scene_.assembly.size());
+    for (std::size_t d = 0; d < motions.size(); ++d) {
+      motions[d].u = {rate[d * b], rate[d * b + 1]};
+      if (b > 2) motions[d].theta = rate[d * b + 2] / unknowns_.rotation_scale;
+    }
+    end(PathEnd::load_moves_part, fmt::format("{}nothing resists the motion that the load drives any more: {}", at,
+                                              describe_motion(scene_.assembly, motions)));
     return;
   }
-  counters_.most_unchecked_contacts = std::max(counters_.most_unchecked_contacts, static_cast<std::int64_t>(limits));
-}
-
-/// Looks for other answers of an increment that begins with these events, and tells them.
-void UnbondedRun::look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first) {
-  std::vector<std::size_t> fresh;
-  for (const LimitContact& at : problem.limits) {
-    if (!is_slipping(state_->status()[at.contact]) || answer.status[at.contact] != state_->status()[at.contact])
-      fresh.push_back(at.contact);
-  }
-  checked_ = true;
-  Branches branches;
-  if (problem.limits.size() <= most_on_limits) {
-    if (proved_unique(problem, solver_, answer.status)) {
-      ++counters_.unique;
-      return;
-    }
-    branches = find_branches(problem, solver_, answer, fresh);
-  }
-  if (branches.others > 0) {
-    ++counters_.not_unique;
-  } else if (branches.decided()) {
-    ++counters_.unique;
-  } else {
-    count_unchecked(problem.limits.size(), branches.all_tried);
-  }
-  if (!branches.decided()) {
-    for (std::size_t k = first; k < events_.size(); ++k) events_[k].other_answers = -1;
-  }
-  if (branches.others == 0) return;
-  const Rates& other = branches.other.rates;
-  double size = 0, change = 0;
-  for (std::size_t k = 0; k < other.motion.size(); ++k) {
-    size = std::max(size, std::abs(answer.rates.motion[k]));
-    change = std::max(change, std::abs(other.motion[k] - answer.rates.motion[k]));
-  }
-  const double by_motion = size > 0 ? change / size : infinite;
-  const double load = load_rate_of(answer.rates, answer.status),
-               other_load = load_rate_of(other, branches.other.status);
-  const double by_load = load != 0 ? std::abs(other_load / load - 1) : other_load != 0 ? infinite : 0;
-  counters_.largest_motion_difference = std::max(counters_.largest_motion_difference, by_motion);
-  counters_.largest_load_difference = std::max(counters_.largest_load_difference, by_load);
-  for (std::size_t k = first; k < events_.size(); ++k) {
-    events_[k].other_answers = branches.others;
-    events_[k].motion_difference = by_motion;
-    events_[k].load_difference = by_load;
-  }
-}
-
-/// Rate of LoadPath::load.
-double UnbondedRun::load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const {
-  const LoadPath& path = scene_.path;
-  if (path.driven_by == DrivenBy::loads) return rates.lambda * path.size;
-  std::vector<double> internal(contacts_.components(), 0.0);
-  double sum = 0;
-  for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const ContactForce f = laws_[c].tangent(status[c]).rate(rates.deformation[c]);
-    contacts_.add_internal(c, f, internal);
-    if (!affine_.empty()) sum += f.normal * affine_[c].normal + f.tangential * affine_[c].tangential;
-  }
-  if (path.driven_by == DrivenBy::strain) return sum / (path.size * scene_.assembly.area());
-  for (std::size_t k = 0; k < internal.size(); ++k) sum += path.pattern.prescribed[k] * internal[k];
-  return sum / path.size;
+  end(PathEnd::no_answer, fmt::format("{}no consistent contact state found: {} on a limit of the law", at,
+                                      counted(static_cast<std::int64_t>(on_limits), "contact is", "contacts are")));
 }
 
 double UnbondedRun::stage_end() const {
@@ -252,7 +191,6 @@ void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
   breaking_.push_back(events_.size());
   events_.push_back(event);
   share_ = 1;
-  checked_ = false;
 }
 
 void UnbondedRun::add_leg_point() {
@@ -262,11 +200,11 @@ void UnbondedRun::add_leg_point() {
 
 void UnbondedRun::finish_stage() {
   rates_.reset();
-  checked_ = false;
   standstill_.begin();
+  steps_ = 0;
   if (releasing()) {
     state_->end_release();
-    tell_released();
+    note_released();
     breaking_.clear();
     return;
   }
@@ -281,8 +219,8 @@ void UnbondedRun::finish_stage() {
     end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
 }
 
-/// Tells with their events what the bonds that are breaking have given up so far.
-void UnbondedRun::tell_released() {
+/// What the bonds that are breaking have given up so far, with their events.
+void UnbondedRun::note_released() {
   for (const std::size_t k : breaking_) {
     events_[k].energy_after = state_->ledger().elastic;
     events_[k].energy_released = state_->released_by(static_cast<std::size_t>(events_[k].contact));
@@ -291,7 +229,7 @@ void UnbondedRun::tell_released() {
 }
 
 void UnbondedRun::end(PathEnd why, std::string sentence) {
-  tell_released();
+  note_released();
   end_ = why;
   why_ = std::move(sentence);
 }
@@ -299,8 +237,8 @@ void UnbondedRun::end(PathEnd why, std::string sentence) {
 bool UnbondedRun::move(double t) {
   if (!releasing()) travelled_ += t;
   if (!standstill_.moved(t, releasing() ? 1 : travelled_) && standstill_.again(state_->status())) {
-    end(PathEnd::no_answer,
-        fmt::format("contacts change without end at lambda = {:g}: no states of theirs last", state_->lambda()));
+    end(PathEnd::no_answer, fmt::format("{}contact states cycle at lambda = {:g}: no consistent contact state found",
+                                        at_dead_loads(), state_->lambda()));
     return false;
   }
   if (t == 0) return true;
@@ -314,8 +252,8 @@ bool UnbondedRun::move(double t) {
   if (state_->relative_residual() > balances_to) {
     end(PathEnd::not_balanced,
         fmt::format(
-            "at lambda = {:g} the forces balance to {:.1e} of the largest, not to {:g}: hardly anything resists "
-            "the motion of some discs",
+            "at lambda = {:g} the forces balance to {:.1e} of the largest, not to {:g}: the tangent stiffness of some "
+            "discs is near singular",
             state_->lambda(), state_->relative_residual(), balances_to));
     return false;
   }
@@ -325,45 +263,56 @@ bool UnbondedRun::move(double t) {
 
 bool UnbondedRun::advance() {
   const std::size_t before = events_.size();
-  std::int64_t steps = 0;
-  const std::int64_t most_steps = 1000 + 20 * std::ssize(laws_);  // a release may go on by ever smaller parts
-  while (end_ == PathEnd::none) {
-    if (!releasing() && events_.size() > before) return true;
-    if (scene_.path.max_events > 0 && std::ssize(events_) >= scene_.path.max_events && !releasing()) {
+  const std::int64_t most = scene_.path.max_events;
+  if (!releasing()) steps_ = 0;
+  bool released = false;
+  while (end_ == PathEnd::none && events_.size() == before && !released) {
+    stop_if_interrupted();
+    if (most > 0 && std::ssize(events_) >= most) {
       end(PathEnd::most_events,
-          fmt::format("{} are done, as many as asked for", counted(scene_.path.max_events, "event")));
+          fmt::format("{} are done, as many as asked for{}", counted(std::ssize(events_), "event"),
+                      releasing() ? ", while a broken bond gives up its force" : ""));
       break;
     }
     if (!rates_) {
-      if (!find_rates()) break;
-      if (!releasing() && events_.size() > before) return true;
+      if (!find_rates() || events_.size() > before) break;
     }
-    const double stage = stage_end();
-    const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_, stage);
-    const double t = std::min(stage, next.t);
-    if (t == infinite) {
-      if (by_motion() && rates_->lambda == 0) {
-        end(PathEnd::carries_nothing, "the motion grows without a load, and no contact changes any more");
-      } else {
-        end(PathEnd::never_breaks, "no contact changes any more at any lambda");
-      }
-      break;
-    }
-    if (++steps > most_steps) {
-      end(PathEnd::no_answer,
-          fmt::format("contacts change {} times before lambda = {:g} is left", steps - 1, state_->lambda()));
-      break;
-    }
-    if (!move(t)) break;
-    const double lambda_rate = rates_->lambda;
-    rates_.reset();
-    if (next.t <= stage && next.breaks) {
-      break_bond(next, lambda_rate);
-    } else if (stage <= next.t) {
-      finish_stage();
-    }
+    const bool was_releasing = releasing();
+    step();
+    released = was_releasing && !releasing();
   }
-  return events_.size() > before;
+  note_released();
+  return events_.size() > before || end_ == PathEnd::none;
+}
+
+/// To the next event, or to the end of the stage.
+void UnbondedRun::step() {
+  const double stage = stage_end();
+  const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_, stage);
+  const double t = std::min(stage, next.t);
+  if (t == infinite) {
+    if (by_motion() && rates_->lambda == 0) {
+      end(PathEnd::carries_nothing, "the motion grows without a load, and no contact changes any more");
+    } else {
+      end(PathEnd::never_breaks, "no contact changes any more at any lambda");
+    }
+    return;
+  }
+  const std::int64_t most_steps = 1000 + 20 * std::ssize(laws_);  // a release may go on by ever smaller parts
+  if (++steps_ > most_steps) {
+    end(PathEnd::no_answer,
+        fmt::format("{}contacts change {} times before lambda = {:g} is left: no consistent contact state found",
+                    at_dead_loads(), steps_ - 1, state_->lambda()));
+    return;
+  }
+  if (!move(t)) return;
+  const double lambda_rate = rates_->lambda;
+  rates_.reset();
+  if (next.t <= stage && next.breaks) {
+    break_bond(next, lambda_rate);
+  } else if (stage <= next.t) {
+    finish_stage();
+  }
 }
 
 }  // namespace equidem

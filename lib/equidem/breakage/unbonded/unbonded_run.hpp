@@ -5,8 +5,9 @@
 ///
 /// The answer depends on the path: dead loads come first, then lambda goes along its legs. Between two events all
 /// forces are linear in lambda. At an event the rates of all contacts on a limit of their law are found together
-/// (contact_rates.hpp), and other answers of that problem are looked for (rate_branches.hpp). A bond that breaks gives
-/// up its force in proportion while lambda is held; bonds that reach their strength meanwhile join it.
+/// (rate_path.hpp); with friction they need not be unique, and those are taken which Newton's method reaches from the
+/// present states. A bond that breaks gives up its force in proportion while lambda is held; bonds that reach their
+/// strength meanwhile join it.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@
 #include "equidem/breakage/unbonded/contact_events.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
-#include "equidem/breakage/unbonded/rate_search.hpp"
+#include "equidem/breakage/unbonded/rate_path.hpp"
 #include "equidem/breakage/unbonded/standstill.hpp"
 #include "equidem/breakage/unbonded/unbonded_state.hpp"
 
@@ -33,21 +34,7 @@ struct UnbondedOptions {
 
 struct UnbondedCounters {
   std::int64_t factorizations = 0, updates = 0;
-  std::int64_t unique = 0;      ///< increments of which no other answer exists
-  std::int64_t not_unique = 0;  ///< of which another answer was found
-  std::int64_t no_answer = 0;   ///< of which no combination of states of contacts on limits balances
-  std::int64_t unchecked = 0;   ///< neither proved to have one answer nor decided by all combinations of statuses
-  std::int64_t ties = 0;        ///< of which all combinations were tried, and round-off decides on one of them
-  std::int64_t most_unchecked_contacts = 0;  ///< on limits, of an increment with too many combinations
-  /// Relative, of the rates of motion and of load of the first other answer.
-  double largest_motion_difference = 0, largest_load_difference = 0;
   double largest_residual = 0;  ///< of the states of the path, relative
-
-  /// Without those of the solver.
-  void pass(PathNumbers& n) {
-    n.pass(unique, not_unique, no_answer, unchecked, ties, most_unchecked_contacts);
-    n.pass(largest_motion_difference, largest_load_difference, largest_residual);
-  }
 };
 
 class UnbondedRun : public EventPath {
@@ -58,7 +45,9 @@ class UnbondedRun : public EventPath {
   ///         control is none of those that a path with a history has
   UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
 
+  /// A bond that breaks is an event, and so is what happens while it gives up its force; then to the end of that.
   bool advance() override;
+  void fail(std::string why) override { end(PathEnd::failed, std::move(why)); }
   [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
   [[nodiscard]] PathEnd end() const override { return end_; }
   [[nodiscard]] const std::string& why() const override { return why_; }
@@ -79,14 +68,13 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] double released() const override { return state_->ledger().released; }
   [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
   [[nodiscard]] const UnbondedState& state() const { return *state_; }
-  /// Whether the path is within the break of bonds, whose forces are partly given up.
-  [[nodiscard]] bool releasing() const { return !state_->releasing().empty(); }
+  [[nodiscard]] bool releasing() const override { return !state_->releasing().empty(); }
   [[nodiscard]] UnbondedCounters counters() const;
   /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
   /// same bits.
   void pass(PathNumbers& n) {
-    n.pass(events_, points_, breaking_, begun_, rates_, dead_done_, checked_, standstill_, leg_, load_rate_);
-    n.pass(motion_rate_, share_, travelled_, end_, why_, counters_, *state_, solver_);
+    n.pass(events_, points_, breaking_, rates_, dead_done_, standstill_, steps_, leg_, load_rate_);
+    n.pass(motion_rate_, share_, travelled_, end_, why_, counters_.largest_residual, *state_, solver_);
     if (n.restores() && end_ == PathEnd::most_events) end(PathEnd::none, {});  // this path may have more
   }
 
@@ -94,18 +82,19 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] bool by_motion() const;
   [[nodiscard]] Driving driving() const;
   bool find_rates();
-  void look_for_branches(const RateProblem& problem, const RateAnswer& answer, std::size_t first);
-  [[nodiscard]] double load_rate_of(const Rates& rates, std::span<const ContactStatus> status) const;
+  void end_without_rates(const RateSearch& search, std::size_t on_limits);
+  /// "at 37 % of the dead loads ", before a clause; nothing on the legs of lambda, whose place the report gives.
+  [[nodiscard]] std::string at_dead_loads() const;
   [[nodiscard]] double stage_end() const;
+  void step();
   /// \return false where the path ends
   bool move(double t);
   void finish_stage();
-  void tell_released();
+  void note_released();
   void add_leg_point();
   void break_bond(const NextContactEvent& next, double lambda_rate);
   BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
-  void count_unchecked(std::size_t limits, bool tie);
   void end(PathEnd why, std::string sentence);
 
   BreakageScene scene_;
@@ -122,11 +111,11 @@ class UnbondedRun : public EventPath {
   std::vector<LegPoint> points_;
   std::vector<std::int32_t> idle_;
   std::vector<std::size_t> breaking_;  // events whose energy behind them is not known yet
-  std::size_t begun_ = 0;              // events whose increment has begun
   std::vector<double> beside_;         // per component, of a release
   std::optional<Rates> rates_;
-  bool dead_done_ = false, checked_ = false;
+  bool dead_done_ = false;
   Standstill standstill_;
+  std::int64_t steps_ = 0;  // of the release, or since the last event
   std::int64_t leg_ = 0;
   double load_rate_ = 0, motion_rate_ = 0, share_ = 0, travelled_ = 0;
   PathEnd end_ = PathEnd::none;

@@ -159,26 +159,33 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   const std::vector<PreciseDeformation> deformation = deformation_;
   const std::vector<ContactForce> forces = forces_;
   const std::vector<long double> slip = slip_;
-  const std::vector<double> internal = internal_, motion = motion_.high;
-  const double lambda = lambda_, was_kept = kept_share_;
+  const std::vector<double> internal = internal_;
+  const PreciseMotion before = motion_;
+  const double lambda = lambda_, dead_before = dead_, was_kept = kept_share_;
   std::vector<double> loads(contacts_.components()), step(rates.motion);
   for (std::size_t k = 0; k < loads.size(); ++k) loads[k] = outside(k);
   for (double& x : step) x *= t;
   motion_.add(step);
   (dead ? dead_ : lambda_) += t * rates.lambda;
-  correct(by_motion, solver);
+  try {
+    correct(by_motion, solver);
+  } catch (...) {  // the path ends with the last state that balances
+    motion_ = before, lambda_ = lambda, dead_ = dead_before, share_ = was_kept;
+    deformation_ = deformation, forces_ = forces, internal_ = internal;
+    throw;
+  }
   // Round-off on long ways is no work, as long as nothing carries a force.
   const bool works = carries();
   for (std::size_t k = 0; works && k < loads.size(); ++k) {
-    const double by = motion_.high[k] - motion[k];
+    const double by = motion_.high[k] - before.high[k];
     ledger_.work += 0.5 * by * (unknowns_.held[k] != 0 ? internal[k] + internal_[k] : loads[k] + outside(k));
   }
   for (std::size_t c = 0; c < laws_.size(); ++c) {
     if (is_slipping(status_[c])) {
       slip_[c] = laws_[c].slip_at(deformation_[c], forces_[c].tangential - share_ * kept_[c].tangential);
-      const double before = forces[c].tangential - was_kept * kept_[c].tangential;
+      const double then = forces[c].tangential - was_kept * kept_[c].tangential;
       const double now = forces_[c].tangential - share_ * kept_[c].tangential;
-      if (works) ledger_.friction += 0.5 * (before + now) * static_cast<double>(slip_[c] - slip[c]);
+      if (works) ledger_.friction += 0.5 * (then + now) * static_cast<double>(slip_[c] - slip[c]);
     }
     if (works && !affine_.empty())
       ledger_.work +=
@@ -192,8 +199,8 @@ void UnbondedState::move(double t, const Rates& rates, bool dead, bool by_motion
   kept_share_ = share_;
   const double none = negligible_force();
   for (std::size_t c = 0; c < laws_.size(); ++c) {
-    const double before = releasing_.empty() && t > 0 ? largest_of(forces[c]) : 0;
-    carried_[c] = std::max(before, largest_of(forces_[c])) > none ? 1 : 0;
+    const double then = releasing_.empty() && t > 0 ? largest_of(forces[c]) : 0;
+    carried_[c] = std::max(then, largest_of(forces_[c])) > none ? 1 : 0;
   }
   if (works) ledger_.take(elastic_energy() - rest_energy_);
   ledger_.negligible = std::max(ledger_.negligible, no_force * round_off_force() * farthest());
