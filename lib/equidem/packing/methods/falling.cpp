@@ -92,7 +92,9 @@ void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
   packing.contacts = std::move(settled.contacts);
   packing.bonds = std::move(settled.bonds);
   packing.settling = settled.report;
-  if (settled.failure) packing.failure = std::move(settled.failure);
+  keep_failure(packing, [&] {
+    if (settled.failure) throw *settled.failure;
+  });
   double top = 0;
   for (const Grain& grain : packing.grains)
     top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));
