@@ -11,6 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/outline.hpp"
+#include "equidem/packing/size_distribution.hpp"
 
 namespace equidem {
 
