@@ -165,12 +165,13 @@ std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
     for (std::size_t f = e; f < ends.size(); ++f) {
       const Wall& other = given[ends[f].wall];
       const Vec2 at = end_of(other, ends[f].number);
-      const bool meets = f == e || (ends[f].wall != ends[e].wall && !ends[f].placed && move_alike(wall, other) &&
-                                    norm(at - point) <= gap_between(wall, other, tolerance));
+      const double gap = norm(at - point);
+      const bool meets = f == e || (gap <= tolerance && ends[f].wall != ends[e].wall && !ends[f].placed &&
+                                    move_alike(wall, other) && gap <= gap_between(wall, other, tolerance));
       if (!meets) continue;
       meeting.push_back(&ends[f]);
       sum += at;
-      widest = std::max(widest, norm(at - point));
+      widest = std::max(widest, gap);
     }
     if (meeting.size() == 1) continue;
     Vec2 common = sum / static_cast<double>(meeting.size());
@@ -185,10 +186,10 @@ std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
   for (const End& end : ends) {
     Wall& wall = walls[end.wall];
     for (std::size_t k = 0; k < walls.size() && !end.placed && wall.shape == Wall::Shape::segment; ++k) {
-      if (k == end.wall || !move_alike(wall, walls[k])) continue;
       const Vec2 point = end_of(wall, end.number);
       const WallContact foot = nearest(walls[k], {}, point);
       const double gap = std::abs(foot.distance);
+      if (k == end.wall || gap > tolerance || !move_alike(wall, walls[k])) continue;
       if (gap > gap_between(wall, walls[k], tolerance)) continue;
       if (gap > rounding * tolerance) put_end(wall, end.number, point - foot.distance * foot.normal);
       break;
@@ -205,9 +206,10 @@ std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance)
     for (const int end : {1, 2}) {
       const Vec2 point = end_of(walls[w], end);
       for (std::size_t k = 0; k < walls.size(); ++k) {
-        if (k == w || !move_alike(walls[k], walls[w])) continue;
+        const double gap = std::abs(nearest(walls[k], {}, point).distance);
+        if (k == w || !(gap <= tolerance) || !move_alike(walls[k], walls[w])) continue;
         WallJoint joint{static_cast<std::int32_t>(k), 0, gap_between(walls[w], walls[k], tolerance)};
-        if (!(std::abs(nearest(walls[k], {}, point).distance) <= joint.reach)) continue;
+        if (gap > joint.reach) continue;
         if (has_ends(walls[k])) {
           for (const int other : {1, 2})
             if (norm(end_of(walls[k], other) - point) <= joint.reach) joint.end = other;
@@ -230,9 +232,9 @@ std::vector<std::string> gaps_of_walls(std::span<const Wall> given, double small
   };
   std::vector<std::string> sentences;
   const auto compare = [&](std::size_t w, int end, std::size_t k, int other) {
-    if (!is_free(w, end) || !is_free(k, other) || !move_alike(walls[w], walls[k])) return;
+    if (!is_free(w, end) || !is_free(k, other)) return;
     const double gap = norm(end_of(walls[w], end) - end_of(walls[k], other));
-    if (gap > widest * smallest_radius) return;
+    if (gap > widest * smallest_radius || !move_alike(walls[w], walls[k])) return;
     sentences.push_back(fmt::format(
         "walls \"{}\" and \"{}\" end {:.3g} m apart, {:.2g} of the smallest radius: a body over this gap is pushed by "
         "both; let them end in one point, or farther apart",
