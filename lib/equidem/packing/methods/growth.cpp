@@ -36,10 +36,11 @@ class Growth {
   void refuse_two_images() const {
     const double width = this->width(), period = std::min(options_.box.size.x, options_.box.size.y);
     if (!options_.box.periodic() || 2 * width <= period) return;
-    computation_failed(fmt::format("the largest {} has grown to {:.4g} m, the box is {:.4g} m by {:.4g} m",
-                                   noun_of(options_.shape.kind), width, options_.box.size.x, options_.box.size.y),
-                       "a period holds two of them side by side, so that none meets two images of another",
-                       "Take more of them, or a squarer box");
+    throw Error(ErrorKind::computation_failed,
+                fmt::format("the largest {} has grown to {:.4g} m, the box is {:.4g} m by {:.4g} m",
+                            noun_of(options_.shape.kind), width, options_.box.size.x, options_.box.size.y),
+                "a period holds two of them side by side, so that none meets two images of another",
+                "Take more of them, or a squarer box", "grains");
   }
 
   [[nodiscard]] double full() const { return full_; }
