@@ -145,3 +145,144 @@ TEST_CASE("numbers_whose_squares_are_none_are_refused_where_they_stand") {
     }
   }
 }
+
+namespace {
+
+Wall arc(std::string name, Vec2 centre, double radius, double from, double to) {
+  Wall wall = line(std::move(name), centre, {0, 1});
+  wall.shape = Wall::Shape::arc;
+  wall.radius = radius;
+  wall.from = from;
+  wall.to = to;
+  return wall;
+}
+
+struct Passage {
+  double least = INFINITY, most = 0;  // force on the walls over the weight
+  double lowest = INFINITY, highest = -INFINITY;
+  Vec2 end;
+};
+
+/// A disc of the radius 2e-3 that rests on a floor with an overlap of a thousandth of it and moves along.
+Passage pass(const std::vector<Wall>& walls, const Stepping& stepping, Vec2 start = {-2e-4, 2e-3 - 2e-6},
+             Vec2 velocity = {0.25, 0}, double duration = 6e-3) {
+  const double weight = 9.81, stiffness = weight / 2e-6, step = 2e-6;
+  GrainScene scene =
+      scene_of({ball(start, 2e-3, velocity)}, walls, {.stiffness = stiffness, .restitution = 1}, {0, -weight});
+  GrainSimulation simulation(scene, options_of(stepping, step));
+  Passage passage;
+  for (int k = 0; k < duration / step; ++k) {
+    simulation.advance(1);
+    Vec2 force;
+    for (const WallState& wall : simulation.walls()) force += wall.force;
+    passage.least = std::min(passage.least, norm(force) / weight);
+    passage.most = std::max(passage.most, norm(force) / weight);
+    passage.end = simulation.motions()[0].u;
+    passage.lowest = std::min(passage.lowest, passage.end.y);
+    passage.highest = std::max(passage.highest, passage.end.y);
+  }
+  return passage;
+}
+
+}  // namespace
+
+TEST_CASE("a_disc_passes_ends_of_walls_that_nearly_meet_as_one_wall") {
+  // gaps, overlaps, steps up and down, of 1e-13 to 2e-3 of the radius; the floor of one piece is what is right
+  const Stepping stepping = GENERATE(Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
+                                     Stepping{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler});
+  const Passage whole = pass({segment("one", {-0.05, 0}, {0.05, 0})}, stepping);
+  for (const double gap : {1e-16, 3e-12, 1e-9, 3e-8, 3e-7, 3e-6, -3e-8, -3e-7, -3e-6}) {
+    for (const double rise : {0.0, 0.1, -0.1}) {
+      const Vec2 from{gap, rise * std::abs(gap)};
+      const std::vector<std::vector<Wall>> floors{
+          {segment("a", {-0.05, 0}, {0, 0}), segment("b", from, {0.05, 0})},
+          {segment("b", {0.05, 0}, from), segment("a", {0, 0}, {-0.05, 0})},
+          {segment("a", {-0.05, 0}, {0, 0}), segment("b", from, {0.05, 0}), segment("post", -from, {0, -0.05})}};
+      for (const auto& floor : floors) {
+        const Passage parts = pass(floor, stepping);
+        CAPTURE(stepping.name(), gap, rise, floor.size(), parts.least, parts.most, parts.lowest, parts.highest);
+        CHECK(gaps_of_walls(floor, 2e-3).empty());
+        // of a step the first wall takes half
+        const double margin = 1e-3 + 0.6 * std::abs(rise * gap) / 2e-6;
+        CHECK(std::abs(parts.least - whole.least) < margin);
+        CHECK(std::abs(parts.most - whole.most) < margin);
+        CHECK(std::abs(parts.lowest - whole.lowest) < 2e-6 * margin);
+        CHECK(std::abs(parts.highest - whole.highest) < 2e-6 * margin);
+      }
+    }
+  }
+}
+
+TEST_CASE("a_disc_passes_from_an_arc_that_is_typed_with_six_digits_to_a_segment_as_from_an_exact_one") {
+  // down a quarter of a bowl, over the floor; 4.71239 is 3 pi/2
+  const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+  const double pi = std::numbers::pi;
+  const auto walls = [&](double to, double x, double y) {
+    return std::vector<Wall>{arc("bowl", {0, 0.1}, 0.1, 3.5, to), segment("floor", {x, y}, {0.05, 0})};
+  };
+  const Vec2 start = Vec2{0, 0.1} + (0.098 + 1e-6) * Vec2{std::cos(4.68), std::sin(4.68)};
+  const auto roll = [&](const std::vector<Wall>& all) { return pass(all, stepping, start, {0.25, -0.0081}, 0.03); };
+  const Passage exact = roll(walls(1.5 * pi, 0, 0));
+  for (const double to : {4.71239, 4.71238, 4.7124, 4.7123, 1.5 * pi - 1e-5, 1.5 * pi + 1e-5}) {
+    for (const Vec2 end : {Vec2{0, 0}, Vec2{1e-6, 0}, Vec2{-1e-6, 1e-7}}) {
+      const Passage typed = roll(walls(to, end.x, end.y));
+      CAPTURE(to, end.x, end.y, exact.most, exact.least, typed.most, typed.least, typed.end.y);
+      CHECK(typed.most == Approx(exact.most).epsilon(5e-3));
+      CHECK(typed.end.y == Approx(exact.end.y).margin(2e-7));
+      CHECK(typed.end.x == Approx(exact.end.x).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("corners_of_ends_that_nearly_meet_act_as_corners") {
+  // over a ridge, through a notch, over kinks so slight that both walls are met in nearly one point
+  const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+  for (const double slope : {-0.3, -0.01, -1e-3, -1e-5, 1e-7, 1e-5, 1e-4}) {
+    const Vec2 end{0.05, 0.05 * slope};
+    const Passage exact = pass({segment("a", {-0.05, 0}, {0, 0}), segment("b", {0, 0}, end)}, stepping);
+    // up to a twentieth of the overlap, half of which the first wall takes
+    for (const Vec2 from : {Vec2{1e-6, 0}, Vec2{-1e-6, 0}, Vec2{-1e-6, 1e-7}, Vec2{0, -1e-7}}) {
+      const Passage typed = pass({segment("a", {-0.05, 0}, {0, 0}), segment("b", from, end)}, stepping);
+      CAPTURE(slope, from.x, from.y, exact.most, typed.most, exact.end.y, typed.end.y);
+      CHECK(typed.most == Approx(exact.most).epsilon(4e-2));
+      CHECK(typed.end.y == Approx(exact.end.y).margin(2e-7));
+    }
+    if (std::abs(slope) <= 1e-5) CHECK(exact.most == Approx(1).epsilon(5e-3));
+  }
+}
+
+TEST_CASE("rings_close_whose_ends_nearly_meet") {
+  const std::vector<Wall> walls = joined_walls(std::vector{arc("ring", {0, 0}, 0.1, 0, 6.28318)}, 2e-5);
+  CHECK(walls[0].to - walls[0].from == Approx(2 * std::numbers::pi).epsilon(1e-15));
+  const std::vector<Wall> open = joined_walls(std::vector{arc("ring", {0, 0}, 0.1, 0, 6.2)}, 2e-5);
+  CHECK(open[0].to == 6.2);
+}
+
+TEST_CASE("only_walls_that_move_alike_join_and_gaps_of_others_stay") {
+  const std::vector<Wall> still{segment("a", {-1, 0}, {0, 0}), segment("b", {1e-5, 0}, {1, 0})};
+  CHECK(joined_walls(still, 1e-4)[0].end == joined_walls(still, 1e-4)[1].point);
+  CHECK(joined_walls(still, 1e-6)[0].end == still[0].end);
+  std::vector<Wall> moving = still;
+  moving[1].move_x = {Schedule::Kind::sine, 0.2, 0, 0, 0.5};
+  CHECK(joined_walls(moving, 1e-4)[1].point == still[1].point);
+  CHECK(joints_of(moving, 1e-4).empty());
+  std::vector<Wall> pushed = still;
+  pushed[1].servo.emplace();
+  CHECK(joints_of(pushed, 1e-4).empty());
+  // short walls keep their lengths, whatever the bodies are
+  const std::vector<Wall> fine{segment("a", {0, 0}, {1e-5, 0}), segment("b", {1e-5, 0}, {2e-5, 0})};
+  const std::vector<Wall> kept = joined_walls(fine, 1e-4);
+  for (std::size_t k = 0; k < 2; ++k) CHECK((kept[k].point == fine[k].point && kept[k].end == fine[k].end));
+  CHECK(joints_of(fine, 1e-4)[0][1].size() == 1);
+}
+
+TEST_CASE("ends_a_little_too_far_apart_to_join_are_named_with_their_distance") {
+  const std::vector<Wall> walls{segment("left half", {-1, 0}, {0, 0}), segment("right half", {0.005, 0}, {1, 0})};
+  const std::vector<std::string> sentences = gaps_of_walls(walls, 0.1);
+  REQUIRE(sentences.size() == 1);
+  INFO(sentences[0]);
+  for (const char* word : {"left half", "right half", "0.005 m apart, 0.05 of"})
+    CHECK(sentences[0].find(word) != std::string::npos);
+  CHECK(gaps_of_walls(walls, 0.01).empty());  // a slot
+  CHECK(gaps_of_walls(walls, 1).empty());     // they join
+}

@@ -279,3 +279,24 @@ TEST_CASE("a_disc_swings_in_a_round_bowl_without_loss") {
   CHECK(errors[1] < errors[0] / 3.5);
   CHECK(errors[2] < errors[1] / 3.5);
 }
+
+TEST_CASE("steps_lose_nothing_at_tangential_dashpots_that_are_not_there") {
+  // What Verlet steps of a spring that sticks take or give beside its energy is their error, not a loss; it falls with
+  // the square of the step.
+  for (const Stepping& stepping : all_steppings) {
+    std::vector<double> errors;
+    for (const double step : {2e-3, 1e-3}) {
+      GrainScene scene = busy_box(stepping.law, 5, 5, 11);
+      scene.pairs[0].tangential_damping = 0;
+      const Balance balance = run(scene, options_of(stepping, step), 2);
+      errors.push_back(balance.error);
+      const double lost = balance.last.lost_tangential_dashpot;
+      CAPTURE(stepping.name(), step, lost, balance.last.lost(), balance.contacts, balance.error);
+      CHECK(balance.last.lost_slip > 0);
+      CHECK(lost == 0);
+      if (!is_map(stepping.law)) CHECK(balance.error < 0.02);
+    }
+    CAPTURE(stepping.name(), errors[0], errors[1]);
+    CHECK(errors[1] < std::max(0.9 * errors[0], 1e-3));
+  }
+}

@@ -186,6 +186,60 @@ TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   CHECK_THROWS_AS(enum_from<PackingMethod>("grow"), Error);
 }
 
+TEST_CASE("radii_of_bodies_that_grow_until_they_jam_are_only_ratios") {
+  const auto grow = [](std::int64_t discs, PackingBox::Sides sides, double factor) {
+    PackingOptions options = square_box(PackingMethod::growth, sides, discs, 0.8);
+    for (double& radius : options.radii) radius *= factor;
+    options.as_dense_as_possible = true;
+    options.overlap = 1e-4;
+    return pack(options);
+  };
+  for (const auto sides : {PackingBox::Sides::periodic, PackingBox::Sides::walls}) {
+    const GrainPacking given = grow(30, sides, 1);
+    for (const double factor : {1e-50, 1e-3, 0.1, 3.7, 100.0, 1e50}) {
+      const GrainPacking packing = grow(30, sides, factor);
+      CAPTURE(factor);
+      CHECK(packing.radii == given.radii);
+      CHECK(centres_of(packing) == centres_of(given));
+    }
+  }
+  // A period holds two bodies side by side, whatever radii were given.
+  for (const double factor : {1e-3, 1.0, 100.0}) {
+    CAPTURE(factor);
+    for (const std::int64_t discs : {2, 3})
+      CHECK_THROWS_WITH(grow(discs, PackingBox::Sides::periodic, factor),
+                        Catch::Contains("a period holds two of them"));
+    CHECK(grow(2, PackingBox::Sides::walls, factor).jammed);
+  }
+}
+
+TEST_CASE("a_packing_that_fails_keeps_the_bodies_as_they_lie_and_says_why") {
+  const auto check_kept = [](const PackingOptions& options, std::size_t least, const std::string& why) {
+    const GrainPacking packing = try_to_pack(options);
+    REQUIRE(packing.failure);
+    INFO(packing.failure->what());
+    CHECK(packing.failure->problem().find(why) != std::string::npos);
+    CHECK(!packing.complete);
+    CHECK(packing.size() >= least);
+    CHECK(packing.grains.size() == packing.size());
+    CHECK_NOTHROW(measure(packing, Region{{0, 0}, packing.box.size}));
+    CHECK_THROWS_AS(pack(options), Error);
+  };
+  PackingOptions options = square_box(PackingMethod::rejection, PackingBox::Sides::walls, 200, 0.7);
+  options.attempts = 200;
+  check_kept(options, 50, "found a place");
+  options.method = PackingMethod::insertion;
+  options.box.size *= 0.9;
+  check_kept(options, 50, "found a gap");
+  options.method = PackingMethod::local_moves;
+  check_kept(options, 200, "still overlap");
+  options = square_box(PackingMethod::growth, PackingBox::Sides::walls, 100, 0.93);
+  check_kept(options, 100, "the solid fraction of 0.93 that is asked for");
+  options = falling_soil(20, 0.1);
+  options.settling.longest = 0.05;
+  check_kept(options, 20, "not at rest");
+}
+
 TEST_CASE("one_disc_is_packed_by_every_method") {
   for (const auto& entry : EnumNames<PackingMethod>::list) {
     INFO(entry.name);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/packing/packing.hpp"
 
 #include "support/catch.hpp"
 
@@ -113,6 +114,15 @@ TEST_CASE("a_sieve_curve_that_descends_or_is_in_percent_is_told_so") {
 TEST_CASE("sizes_out_of_range_are_refused") {
   CHECK_THROWS_AS(check(SizeDistribution{.smallest = 0, .largest = 1}), Error);
   CHECK_THROWS_AS(check(SizeDistribution{.smallest = 2, .largest = 1}), Error);
+  for (const double size : {1e-200, 1e-80, 1e80, 1e200}) {  // moments of inertia would be 0 or infinite
+    CAPTURE(size);
+    CHECK_THROWS_WITH(check(SizeDistribution{.smallest = size, .largest = size}), Catch::Contains("1e-60 to 1e60"));
+    CHECK_THROWS_AS(check(SizeDistribution{.kind = SizeDistribution::Kind::log_normal, .median = size}), Error);
+    PackingOptions options;
+    options.box.size = {size, size};
+    options.radii = {size / 10};
+    CHECK_THROWS_WITH(pack(options), Catch::Contains("number"));
+  }
   CHECK_THROWS_AS(check(SizeDistribution{.kind = SizeDistribution::Kind::log_normal, .median = 1, .deviation = -1}),
                   Error);
 }

@@ -48,6 +48,17 @@ class Files(PackTest):
             equidem("stability", self.case_of(out / "assembly.json"), "--json", "-")).stdout)
         self.assertGreater(waves["omega_max"], 0)
 
+    def test_a_packing_that_is_not_at_rest_is_delivered_with_the_reason(self):
+        out = self.folder / "out"
+        done = equidem("pack", SOIL, "--out", out, *FEW, "--set", "settling.longest=0.05")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("not at rest", done.stderr)
+        self.assertIn("NOT DONE", done.stdout)
+        result = parse_json((out / "result.json").read_text())
+        self.assertEqual(result["status"], "failed")
+        self.assertIn("not at rest", result["failure"])
+        self.assertEqual(len(rows_of(out / "grains.csv")), 60)
+
     def test_calibrated_springs_give_a_packing_the_moduli_wanted(self):
         result, out = self.pack(JAMMED, "--set", "packing.grains=90")
         wanted = 'own_springs = false\n[material]\nshear_modulus = 1.0e8\npoisson_ratio = 0.2\nplane = "strain"\n'

@@ -206,6 +206,10 @@ class Output(RunTest):
                               ("run.damping.stiffness=1e-7", 1)):
             report = self.check_done(equidem("run", PULSE, "--dry-run", "--set", option)).stdout
             self.assertRegex(report, rf"integrator +leapfrog, order {order}")
+        viscous = self.folder / "viscous.toml"
+        viscous.write_text(PULSE.read_text() + '[viscoelastic]\nnormal = "kelvin_voigt"\ntauN = 1e-7\n')
+        report = self.check_done(equidem("run", viscous, "--dry-run")).stdout
+        self.assertRegex(report, r"integrator +leapfrog, order 1 \(dampers act half a step late\)")
 
     def test_a_run_to_rest_says_that_schedules_stand_still(self):
         for case, told in ((SHAKE, True), (REST, False)):

@@ -84,7 +84,9 @@ std::vector<Key<WallTable>> wall_keys(BodyFamily family) {
     const auto segment = of({"segment"}), arc = of({"arc"});
     keys.insert(keys.begin() + 1,
                 key("shape", &T::wall, &W::shape,
-                    "line: endless, bodies on one side; segment, arc: thin, with two sides and two ends"));
+                    "line: endless, bodies on one side; segment, arc: thin, with two sides and two ends; ends within a "
+                    "hundredth of the smallest radius, and of their lengths, of one another or of another wall that "
+                    "moves alike are joined there"));
     keys.insert(keys.end(), {key("end", &T::wall, &W::end, required, unit("m"), segment),
                              key("centre", &T::wall, &W::point, required, unit("m"), arc),
                              key("radius", &T::wall, &W::radius, required, unit("m"), positive, arc),

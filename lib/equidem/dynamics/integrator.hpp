@@ -36,8 +36,4 @@ inline const IntegrationScheme& scheme_of(Integrator integrator) {
   return *entry_of(integrator).scheme;
 }
 
-/// Order with velocity-dependent forces (contact dashpots, local damping): all schemes evaluate them at least half a
-/// step late.
-constexpr int order_with_late_velocities = 1;
-
 }  // namespace equidem

@@ -61,6 +61,9 @@ struct Damping {
 
   /// True where contacts have dashpots.
   [[nodiscard]] bool dashpots() const { return stiffness > 0 || contact > 0 || normal_time > 0 || tangential_time > 0; }
+  /// Forces that depend on velocities, but for mass-proportional damping: all schemes evaluate them at least half a
+  /// step late, which makes any of them one of order 1.
+  [[nodiscard]] bool acts_late() const { return dashpots() || local > 0; }
 };
 
 struct SimulationOptions {
@@ -71,6 +74,11 @@ struct SimulationOptions {
   double time_step = 0;                 ///< s, > 0
   std::size_t discs_per_thread = 4000;  ///< with fewer discs per thread, synchronization takes longer than the work
 };
+
+/// Order of the motions in the time step.
+inline int order_of(const SimulationOptions& options) {
+  return options.damping.acts_late() ? 1 : scheme_of(options.integrator).order;
+}
 
 /// The scene of a simulation; the assembly and the springs must outlive the simulation.
 struct Scene : AnyScene {

@@ -55,6 +55,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);
+  system.scene.walls = joined_walls(system.walls.given, joint_gap * system.smallest_radius);
   double fastest = 0;
   for (const Grain& grain : scene.grains)
     fastest = std::max(
@@ -252,7 +253,7 @@ std::vector<WallState> GrainSimulation::walls() const {
   const GrainSystem& system = implementation_->system;
   std::vector<WallState> walls(system.scene.walls.size());
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    const Wall& wall = system.scene.walls[w];
+    const Wall& wall = system.walls.given[w];
     const WallPlace& place = system.walls.places[w];
     const WallLoad& load = system.walls.loads[w];
     walls[system.walls.wall_of[w]] = {.name = wall.name,
@@ -276,7 +277,7 @@ std::vector<Wall> GrainSimulation::placed_walls() const {
   const GrainSystem& system = implementation_->system;
   std::vector<Wall> walls(system.scene.walls.size());
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    Wall wall = system.scene.walls[w];
+    Wall wall = system.walls.given[w];
     wall.point += system.walls.places[w].displacement;
     wall.end += system.walls.places[w].displacement;
     wall.move_x = wall.move_y = {};

@@ -143,6 +143,7 @@ struct Shapes {
 
 /// The walls sorted by position.
 struct Walls {
+  std::vector<Wall> given;  ///< those of the scene are joined (wall_joints.hpp)
   std::vector<WallPlace> places;
   std::vector<WallLoad> loads;
   std::vector<ServoState> servos;
@@ -280,7 +281,7 @@ inline void push_wall(const GrainSystem& system, std::int32_t wall, Vec2 point, 
   sums.lost.work_of_walls += work;
   load.work += work;
   load.step_impulse += impulse;
-  load.step_angular += cross(point - (system.scene.walls[w].point + system.walls.places[w].displacement), impulse);
+  load.step_angular += cross(point - (system.walls.given[w].point + system.walls.places[w].displacement), impulse);
 }
 
 /// Set the displacement of walls at the start of the step and their mean velocity over it.

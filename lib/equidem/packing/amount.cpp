@@ -58,8 +58,9 @@ void check(const PackingAmount& amount, const PackingOptions& options) {
     bad_input("the amount to pack is missing",
               falls || dense ? "grains and box give it" : "two of grains, box and solid_fraction give it",
               "Give two of them");
-  if (amount.box && !(amount.box->x > 0 && amount.box->y > 0))
-    bad_input_at("box", "the box has no area", "width and height are positive", "Correct it");
+  if (amount.box && !(is_size(amount.box->x) && is_size(amount.box->y)))
+    bad_input_at("box", fmt::format("the box is {} m by {} m", amount.box->x, amount.box->y),
+                 "width and height are positive, from 1e-60 to 1e60 m, so that its area is a number", "Correct it");
 }
 
 }  // namespace

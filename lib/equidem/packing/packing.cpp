@@ -11,8 +11,13 @@
 #include "equidem/core/text.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/outline.hpp"
+#include "equidem/packing/size_distribution.hpp"
 
 namespace equidem {
+
+bool grows_to_any_size(const PackingOptions& options) {
+  return options.as_dense_as_possible && options.method == PackingMethod::growth;
+}
 
 /// \param width of the widest body, m \param least m, that a side of the box needs
 [[noreturn]] static void refuse_narrow_box(const PackingOptions& options, const std::string& noun, double width,
@@ -39,9 +44,9 @@ void check(const PackingOptions& options) {
   const std::string noun = noun_of(options.shape.kind);
   if (options.radii.empty()) bad_input("there are no bodies to pack", "the box would stay empty", "Give their number");
   const PackingBox& box = options.box;
-  if (!is_positive(box.size.x) || (!falls && !is_positive(box.size.y))) {
+  if (!is_size(box.size.x) || (!falls && !is_size(box.size.y))) {
     bad_input_at("box", fmt::format("the box is {} m wide and {} m high", box.size.x, box.size.y),
-                 "it must have an area", "Correct it");
+                 "it must have an area that is a number", "Correct it");
   }
   if (falls != (box.sides == PackingBox::Sides::open_top)) {
     bad_input_at("sides",
@@ -52,14 +57,14 @@ void check(const PackingOptions& options) {
   }
   double largest = 0;
   for (std::size_t k = 0; k < options.radii.size(); ++k) {
-    if (!is_positive(options.radii[k])) {
+    if (!is_size(options.radii[k])) {
       bad_input_at("radii", fmt::format("{} {} has the radius {} m", noun, k, options.radii[k]),
-                   "it must be positive and finite", "Correct the sizes");
+                   "it must be positive, with an area and a moment of inertia that are numbers", "Correct the sizes");
     }
     largest = std::max(largest, options.radii[k]);
   }
   const double width = 2 * shape.reach * largest, least = box.periodic() ? 2 * width : width;
-  if (least > (falls ? box.size.x : std::min(box.size.x, box.size.y))) {
+  if (!grows_to_any_size(options) && least > (falls ? box.size.x : std::min(box.size.x, box.size.y))) {
     refuse_narrow_box(options, noun, width, least);
   }
   const double share = area_of(options.shape, options.radii) / box.area();
@@ -140,13 +145,20 @@ std::vector<Wall> walls_of(const PackingBox& box) {
   return walls;
 }
 
-GrainPacking pack(const PackingOptions& options) {
+GrainPacking try_to_pack(const PackingOptions& options) {
   check(options);
   const Stopwatch watch;
   GrainPacking packing;
   packing.box = options.box;
   entry_of(options.method).fill(options, packing);
+  if (packing.failure && packing.grains.empty()) throw *packing.failure;
   packing.seconds = watch.seconds();
+  return packing;
+}
+
+GrainPacking pack(const PackingOptions& options) {
+  GrainPacking packing = try_to_pack(options);
+  if (packing.failure) throw *packing.failure;
   return packing;
 }
 

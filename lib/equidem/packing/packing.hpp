@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
@@ -66,6 +68,7 @@ struct GrainPacking {
   std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
   std::vector<double> radii;     ///< of each body (PackingShape), m
   bool complete = true;          ///< all wanted bodies are there, in the wanted sizes
+  std::optional<Error> failure;  ///< why it is not what was wanted, but what there was when packing ended
   bool jammed = false;           ///< the overlaps, with equal springs, hold the bodies in balance
   double seconds = 0;
   std::int64_t work = 0;  ///< attempts, sweeps, evaluations of all contacts or time steps: as the method counts
@@ -84,6 +87,25 @@ struct GrainPacking {
 ///         falling into a box without an open top and the reverse; (computation_failed): the bodies do not fit, naming
 ///         how dense they came to lie, and as settle
 GrainPacking pack(const PackingOptions& options);
+
+/// As pack, but where packing fails or is interrupted the bodies come back as they lie then, with the failure.
+/// \throws Error (bad_input) as pack; any failure before a body has a place
+GrainPacking try_to_pack(const PackingOptions& options);
+
+/// Does a part of a packing; its failure or interruption is noted in the packing, which keeps what it has.
+template <typename Work>
+void keep_failure(GrainPacking& packing, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::bad_input) throw;
+    packing.failure = error;
+    packing.complete = false;
+  }
+}
+
+/// Radii are only ratios: what counts is the size to which the bodies have grown.
+bool grows_to_any_size(const PackingOptions& options);
 
 /// \throws Error (bad_input) as pack
 void check(const PackingOptions& options);

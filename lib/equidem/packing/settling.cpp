@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -170,24 +171,34 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   const double steps = std::ceil(options.longest / step);
   const double expected = std::ceil(time_to_rest(scene, options) / step);
   Progress progress(fmt::format("settling, about {:.2g} steps", expected));
+  const auto settled = [&](const Unbalance& unbalance, std::optional<Error> failure) {
+    return SettledBodies{.grains = simulation.grains(),
+                         .contacts = simulation.contacts(),
+                         .bonds = scene.bonds,
+                         .report = {.unbalanced = unbalance.mean,
+                                    .largest_unbalanced = unbalance.largest,
+                                    .time_step = step,
+                                    .time = simulation.time(),
+                                    .steps = simulation.step(),
+                                    .ledger = simulation.energy(),
+                                    .bonds = simulation.bonds()},
+                         .failure = std::move(failure)};
+  };
   double peak = 0;
-  while (static_cast<double>(simulation.step()) < steps) {
-    simulation.advance(block);
-    const double kinetic = simulation.energy().kinetic;
+  std::optional<Error> failure;
+  while (!failure && static_cast<double>(simulation.step()) < steps) {
     constexpr double nearly_done = 0.99;  // rest may take longer than expected
-    progress.update(std::min(static_cast<double>(simulation.step()) / expected, nearly_done));
+    try {
+      simulation.advance(block);
+      progress.update(std::min(static_cast<double>(simulation.step()) / expected, nearly_done));
+    } catch (const Error& error) {
+      failure = error;
+    }
+    const double kinetic = simulation.energy().kinetic;
     peak = std::max(peak, kinetic);
     if (kinetic <= resting_drop * weight_radius) {
       const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
-      if (unbalance.mean <= options.rest) {
-        SettlingReport report{.unbalanced = unbalance.mean, .largest_unbalanced = unbalance.largest};
-        report.time_step = step;
-        report.time = simulation.time();
-        report.steps = simulation.step();
-        report.ledger = simulation.energy();
-        report.bonds = simulation.bonds();
-        return {simulation.grains(), simulation.contacts(), scene.bonds, report};
-      }
+      if (unbalance.mean <= options.rest) return settled(unbalance, {});
     }
     if (kinetic < lying_drop * weight_radius && kinetic < 0.5 * peak) {
       simulation.stop_all();
@@ -195,11 +206,14 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     }
   }
   const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
-  computation_failed(fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
-                     fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
-                                 unbalance.mean, options.rest),
-                     scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
-                                         : "Let the bonds creep less (a larger bond_share), or give them longer");
+  if (!failure)
+    failure.emplace(ErrorKind::computation_failed,
+                    fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
+                    fmt::format("the mean unbalanced force is {:.2g} of the mean contact force, {:.2g} was wanted",
+                                unbalance.mean, options.rest),
+                    scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
+                                        : "Let the bonds creep less (a larger bond_share), or give them longer");
+  return settled(unbalance, std::move(failure));
 }
 
 }  // namespace equidem

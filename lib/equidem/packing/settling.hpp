@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "equidem/core/error.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/spring_constants.hpp"
 
@@ -41,12 +43,13 @@ struct SettlingReport {
   BondReport bonds = {};  ///< how far bonded pairs drifted
 };
 
-/// Bodies at rest.
+/// Bodies at rest, or where `failure` says why they are not.
 struct SettledBodies {
   std::vector<Grain> grains;
   std::vector<GrainContact> contacts;
   std::vector<GrainBond> bonds;  ///< with their dashpots
   SettlingReport report;
+  std::optional<Error> failure;
 };
 
 /// The walls of the box: 0 floor, 1 left, 2 right.
@@ -60,9 +63,9 @@ GrainScene scene_of_box(double width, const SettlingOptions& options);
 /// lever of its forces. Several contacts of a body lower it.
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options);
 
-/// The grains of a scene of a box move under gravity until all are at rest. Bonds get their dashpots.
-/// \throws Error (bad_input) on options out of range; (computation_failed) where no rest comes in `longest`, and as
-///         GrainSimulation
+/// The grains of a scene of a box move under gravity until all are at rest, or until that fails: where no rest comes in
+/// `longest`, as GrainSimulation, or interrupted. Bonds get their dashpots.
+/// \throws Error (bad_input) on options out of range
 SettledBodies settle(GrainScene scene, const SettlingOptions& options);
 
 /// Work until bodies that fall are at rest, known before they do.
@@ -73,7 +76,7 @@ struct SettlingEstimate {
   double seconds = 0;      ///< wall-clock time of the expected steps, from the first few
 };
 
-/// 	hrows Error (bad_input) as settle
+/// \throws Error (bad_input) as settle
 SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options);
 
 }  // namespace equidem

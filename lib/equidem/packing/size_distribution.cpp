@@ -102,13 +102,15 @@ double quantile(const SizeDistribution& sizes, const std::vector<double>& below,
 void check(const SizeDistribution& sizes) {
   switch (sizes.kind) {
     case SizeDistribution::Kind::uniform:
-      if (is_positive(sizes.smallest) && is_positive(sizes.largest) && sizes.smallest <= sizes.largest) return;
-      bad_input(fmt::format("radii from {} to {} m", sizes.smallest, sizes.largest),
-                "the first is the smaller, both are > 0", "Correct them");
+      if (is_size(sizes.smallest) && is_size(sizes.largest) && sizes.smallest <= sizes.largest) return;
+      bad_input(
+          fmt::format("radii from {} to {} m", sizes.smallest, sizes.largest),
+          "the first is the smaller, both are from 1e-60 to 1e60, so that areas and moments of inertia are numbers",
+          "Correct them: lengths are in m");
     case SizeDistribution::Kind::log_normal:
-      if (is_positive(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
+      if (is_size(sizes.median) && sizes.deviation >= 0 && sizes.deviation <= 2) return;
       bad_input(fmt::format("radii with the median {} m and the deviation {}", sizes.median, sizes.deviation),
-                "the median is > 0, the deviation of the logarithm from 0 to 2", "Correct them");
+                "the median is from 1e-60 to 1e60, the deviation of the logarithm from 0 to 2", "Correct them");
     case SizeDistribution::Kind::sieve_curve:
       break;
   }
@@ -128,9 +130,9 @@ void check(const SizeDistribution& sizes) {
   for (std::size_t k = 0; k < sieves.size(); ++k) {
     const bool ascends =
         k == 0 || (sieves[k].diameter > sieves[k - 1].diameter && sieves[k].passing >= sieves[k - 1].passing);
-    if (is_positive(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
+    if (is_size(sieves[k].diameter) && std::isfinite(sieves[k].passing) && ascends) continue;
     bad_input(fmt::format("point {} of the sieve curve is {} m, {}", k + 1, sieves[k].diameter, sieves[k].passing),
-              "diameters ascend, and what passes never falls", "Correct it");
+              "diameters ascend, from 1e-60 to 1e60 m, and what passes never falls", "Correct it");
   }
 }
 

@@ -38,6 +38,11 @@ struct EnumNames<SizeDistribution::Kind> {
       {uniform, "uniform"}, {log_normal, "log_normal"}, {sieve_curve, "sieve_curve"}};
 };
 
+/// Whether a length is positive, and its fourth power, as in moments of inertia, is a number.
+inline bool is_size(double length) {
+  return length >= 1e-60 && length <= 1e60;
+}
+
 /// \throws Error (bad_input) on numbers out of range, sieves that do not ascend or do not run from 0 to 1
 void check(const SizeDistribution& sizes);
 

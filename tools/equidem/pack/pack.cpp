@@ -90,7 +90,7 @@ int run(const CommonOptions& common) {
   StageTimes times;
   Stopwatch watch;
   const auto shared_packing =
-      std::make_shared<const GrainPacking>(located(resolved, "method", [&] { return pack(resolved.packing); }));
+      std::make_shared<const GrainPacking>(located(resolved, "method", [&] { return try_to_pack(resolved.packing); }));
   const GrainPacking& packing = *shared_packing;
   times.add("packing", watch.lap());
   Assembly network = network_of(packing, resolved.network);
@@ -98,13 +98,19 @@ int run(const CommonOptions& common) {
   times.add("network", watch.lap());
   const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
   times.add("measures", watch.lap());
-  const RestConfirmation rest = confirm_rest(packing, resolved.packing.settling);
+  const RestConfirmation rest = packing.failure ? RestConfirmation{.missing = "the bodies are not at rest"}
+                                                : confirm_rest(packing, resolved.packing.settling);
   times.add("statics", watch.lap());
-  deliver(common, "done", packing_results(resolved, packing, network, density, measures, rest), std::move(times),
-          [&](Results&) {
+  const bool stopped = packing.failure && packing.failure->kind() == ErrorKind::interrupted;
+  deliver(common,
+          stopped           ? "interrupted"
+          : packing.failure ? "failed"
+                            : "done",
+          packing_results(resolved, packing, network, density, measures, rest), std::move(times), [&](Results&) {
             if (common.out) write_files(common, resolved, packing, network, density);
             write_case(common, resolved.document);
           });
+  if (packing.failure) located(resolved, "method", [&] { throw *packing.failure; });
   hand_over(std::make_shared<const Assembly>(std::move(network)));
   hand_over([shared_case, shared_packing](const CommonOptions& into) {
     draw(into, *shared_case, *shared_packing);

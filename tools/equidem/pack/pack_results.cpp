@@ -213,10 +213,16 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   Results out = pack_case_results(resolved);
   out.set("title", resolved.title).set("method", to_string(options.method)).set("shape", to_string(packing.shape));
   out.set("grains", packing.size()).set("complete", packing.complete).set("box", packing.box.size);
-  if (!packing.complete) {
-    out.line("packed", packing.size() < options.radii.size()
-                           ? fmt::format("{} of {}", packing.size(), options.radii.size())
-                           : fmt::format("all radii scaled by {:.6g}", packing.radii[0] / options.radii[0]));
+  if (packing.failure) {
+    const Error& failure = *packing.failure;
+    out.set("failure", failure.what());
+    out.line("NOT DONE", failure.kind() == ErrorKind::interrupted ? "stopped as asked" : failure.problem())
+        .note(": what follows is how the bodies lie now");
+  }
+  if (packing.size() < options.radii.size()) {
+    out.line("packed", fmt::format("{} of {}", packing.size(), options.radii.size()));
+  } else if (options.method == PackingMethod::growth && !packing.complete) {
+    out.line("packed", fmt::format("all radii scaled by {:.6g}", packing.radii[0] / options.radii[0]));
   }
   const Region& region = measures.region;
   out.line("solid fraction")

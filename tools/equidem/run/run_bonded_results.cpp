@@ -11,10 +11,6 @@ namespace {
 
 constexpr double balance_to_mention = 1e-3;  // of the largest energy
 
-bool has_late_dampers(const Damping& damping) {
-  return damping.dashpots() || damping.local > 0;
-}
-
 /// Keys of the case that have no effect on a run to rest.
 std::string unused_at_rest(const RunCase& run, const OutputCase& output) {
   std::vector<std::string> names;
@@ -23,7 +19,7 @@ std::string unused_at_rest(const RunCase& run, const OutputCase& output) {
   };
   name(run.time_step.step.has_value(), "time_step");
   name(run.integrator != Integrator::leapfrog, "integrator");
-  name(run.damping.mass > 0 || has_late_dampers(run.damping), "[run.damping]");
+  name(run.damping.mass > 0 || run.damping.acts_late(), "[run.damping]");
   name(!run.velocities.empty(), "[[velocity]]");
   name(output.frame_interval.has_value(), "frame_interval");
   name(!run.probes.empty() || output.probe_interval, "[[probe]]");
@@ -42,7 +38,7 @@ bool any_schedule(const Scene& scene) {
 }  // namespace
 
 int BondedRun::order() const {
-  return has_late_dampers(run().damping) ? order_with_late_velocities : scheme_of(run().integrator).order;
+  return order_of(options_);
 }
 
 Results BondedRun::scene() const {

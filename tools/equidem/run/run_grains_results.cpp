@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/kinds.hpp"
+#include "equidem/grains/scene/wall_joints.hpp"
 #include "equidem/output/run/cell_history.hpp"
 
 #include "run/break_files.hpp"
@@ -227,6 +229,25 @@ std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& 
 
 }  // namespace
 
+namespace {
+
+/// Of the walls at the start, and of those of later stages that no stage before has moved.
+std::vector<std::string> gaps_in_walls(const GrainCase& resolved) {
+  const double smallest = smallest_inscribed_radius(resolved.scene);
+  std::vector<std::string> sentences = gaps_of_walls(resolved.scene.walls, smallest), moved;
+  for (const StageCase& stage : resolved.stages) {
+    std::vector<Wall> standing = stage.scene.walls;
+    std::erase_if(standing, [&](const Wall& wall) { return std::ranges::find(moved, wall.name) != moved.end(); });
+    for (const std::string& sentence : gaps_of_walls(standing, smallest))
+      if (std::ranges::find(sentences, sentence) == sentences.end()) sentences.push_back(sentence);
+    for (const Wall& wall : standing)
+      if (wall.moves() || wall.servo) moved.push_back(wall.name);
+  }
+  return sentences;
+}
+
+}  // namespace
+
 Results GrainRun::scene() const {
   Results out;
   if (!case_.title.empty()) out.block(case_.title + "\n\n");
@@ -238,6 +259,7 @@ Results GrainRun::scene() const {
   if (case_.shaking) out.append(shaking_results(*case_.shaking).under("shaking"));
   for (const StageCase& stage : case_.stages)
     if (stage.shaking) out.line("shaking", fmt::format("in the stage '{}': {}", stage.name, describe(*stage.shaking)));
+  for (const std::string& sentence : gaps_in_walls(case_)) out.line("WARNING", sentence);
   add_bonds(out, case_, step_);
   return out;
 }

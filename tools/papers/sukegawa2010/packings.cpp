@@ -103,6 +103,7 @@ class Ways {
     GrainScene scene = scene_of_box(width_, settling_);
     scene.grains = packing.grains;
     SettledBodies rest = settle(std::move(scene), settling_);
+    if (rest.failure) throw *rest.failure;
     packing.grains = std::move(rest.grains);
     packing.box.sides = PackingBox::Sides::open_top;
     packing.box.size.y = 0;

@@ -188,7 +188,8 @@ void bind_run(File<CaseTables>& file) {
                  "allow a step above the critical one, and kT < 0"),
              key("integrator", &R::integrator,
                  "leapfrog: central differences; velocity_verlet: the same motion; thesis: Sukegawa (3.14)-(3.17) as "
-                 "printed, order 1; fourth_order: symplectic, four forces a step"),
+                 "printed, order 1; fourth_order: symplectic, four forces a step; all are of order 1 with dashpots, "
+                 "viscoelastic springs or local damping"),
              key("motion", &R::motion,
                  "small: contacts keep their direction, exactly the stiffness of statics; finite: they follow the "
                  "discs")});

@@ -17,8 +17,8 @@ std::vector<Key<PackingTables>> packing_keys() {
       key("box", &T::amount, &PackingAmount::box, unit("m"),
           "width and height from the origin; falling: the height is not used"),
       key("solid_fraction", &T::amount, &PackingAmount::solid_fraction, or_auto, optional, between(0, 1),
-          "wanted; auto: as dense as the method gets, with grains and box (growth scales the radii, rejection "
-          "and insertion leave out what finds no place)"),
+          "wanted; auto: as dense as the method gets, with grains and box (growth scales the radii, which are only "
+          "ratios; rejection and insertion leave out what finds no place)"),
       key("sides", &T::sides, choices({"walls", "periodic"}), "of the box; falling: walls and an open top"),
       key("seed", &T::options, &O::seed, not_negative),
       key("overlap", &T::options, &O::overlap, range({.low = 0, .high = 0.1, .low_open = true}),

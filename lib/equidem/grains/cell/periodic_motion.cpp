@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
 
 namespace equidem {
 namespace {
@@ -20,18 +19,6 @@ constexpr std::int64_t steps_between_measures = 16;
 
 double contraction(const Tensor2& a, const Tensor2& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
-}
-
-double area_of(const Grain& grain, const std::vector<Clump>& clumps) {
-  switch (grain.shape()) {
-    case GrainShape::clump:
-      return inertia_of_clump(clumps[static_cast<std::size_t>(grain.clump)], 1).mass;
-    case GrainShape::ellipse:
-      return std::numbers::pi * grain.radius * grain.short_half_axis;
-    case GrainShape::disc:
-      break;
-  }
-  return std::numbers::pi * squared(grain.radius);
 }
 
 /// Springs and dashpots of a contact or a bond, along and across its branch: N/m and N s/m.

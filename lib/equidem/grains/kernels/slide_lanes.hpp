@@ -83,7 +83,8 @@ EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const LawLanes<Lanes>& law, const Lan
   // half of the kicks before and after the drift, less the energy stored in the spring
   const Lanes loss = 0.5 * mean_slip * (impulse - before) + released;
   const Lanes dragged = drag * mean_slip;
-  return {impulse, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(-dashpot), loss)), slides};
+  return {impulse, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(Lanes{} - dashpot), loss)),
+          slides};
 }
 
 /// Tangential law of contacts without a spring: the impulse that stops the slip within the step, limited by friction.
@@ -94,7 +95,7 @@ EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide_without_spring(const LawLanes<Lanes>&
                                                           const Lanes& before, const Lanes& yield) {
   const Lanes impulse = within(velocity / (2 * mobility), yield);
   const Lanes loss = verlet ? 0.5 * mean_slip * (impulse - before) : impulse * (velocity - mobility * impulse);
-  return {impulse, Lanes{}, loss, Lanes{}, negative(-law.friction)};
+  return {impulse, Lanes{}, loss, Lanes{}, negative(Lanes{} - law.friction)};
 }
 
 }  // namespace equidem::eight

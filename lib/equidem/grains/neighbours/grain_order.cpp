@@ -62,6 +62,7 @@ void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vec
     system.bodies.motions.push_back({grain.position, grain.velocity, grain.spin, grain.angle});
   }
   for (std::size_t k = 0; k < scene.walls.size(); ++k) system.scene.walls[k] = scene.walls[system.walls.wall_of[k]];
+  system.walls.given = system.scene.walls;
   system.bodies.impulses.resize(scene.grains.size());
   system.walls.places.resize(scene.walls.size());
   system.walls.loads.resize(scene.walls.size());

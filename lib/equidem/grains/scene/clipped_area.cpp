@@ -5,165 +5,122 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace equidem {
 namespace {
 
-constexpr double full_turn = 2 * std::numbers::pi;
+/// Area, first moments and polar moment of a part of a disc about its centre.
+struct Moments {
+  double area = 0, polar = 0;
+  Vec2 first;
 
-/// Signed area that the circle around the origin shares with the triangle (0, a, b).
-double sector_or_triangle(Vec2 a, Vec2 b, double radius) {
-  const auto sector = [&](Vec2 from, Vec2 to) {
-    return 0.5 * radius * radius * std::atan2(cross(from, to), dot(from, to));
-  };
-  const Vec2 way = b - a;
-  const double length2 = dot(way, way);
-  if (!(length2 > 0)) return 0;
+  void operator+=(const Moments& more) {
+    area += more.area;
+    polar += more.polar;
+    first += more.first;
+  }
+};
+
+Moments triangle(Vec2 a, Vec2 b) {
+  const double area = 0.5 * cross(a, b);
+  return {area, area * (dot(a, a) + dot(a, b) + dot(b, b)) / 6, area / 3 * (a + b)};
+}
+
+/// \param from, to seen from the centre; their lengths do not matter
+Moments sector(Vec2 from, Vec2 to, double radius) {
+  const double length = norm(from), other = norm(to);
+  if (!(length > 0 && other > 0)) return {};
+  const double angle = std::atan2(cross(from, to), dot(from, to)), square = radius * radius;
+  const Vec2 change = to / other - from / length;
+  return {0.5 * square * angle, 0.25 * square * square * angle, square * radius / 3 * Vec2{change.y, -change.x}};
+}
+
+/// Of what the disc around the origin shares with the triangle (0, a, b), negative if b lies clockwise of a.
+Moments sector_or_triangle(Vec2 a, Vec2 b, double radius) {
+  const double length = norm(b - a);
+  if (!(length > 0)) return {};
+  const Vec2 way = (b - a) / length;
+  const double distance = std::abs(cross(a, way));
+  if (distance >= radius) return sector(a, b, radius);
   // The circle is entered and left at a + t way.
-  const double middle = -dot(a, way) / length2;
-  const double square = middle * middle - (dot(a, a) - radius * radius) / length2;
-  if (square <= 0) return sector(a, b);
-  const double half = std::sqrt(square), first = middle - half, last = middle + half;
-  if (last <= 0 || first >= 1) return sector(a, b);
-  const Vec2 in = a + std::max(first, 0.0) * way, out = a + std::min(last, 1.0) * way;
-  double area = 0.5 * cross(in, out);
-  if (first > 0) area += sector(a, in);
-  if (last < 1) area += sector(out, b);
-  return area;
+  const double half = std::sqrt((radius - distance) * (radius + distance)), middle = -dot(a, way);
+  const double first = middle - half, last = middle + half;
+  if (last <= 0 || first >= length) return sector(a, b, radius);
+  const Vec2 in = first > 0 ? a + first * way : a, out = last < length ? a + last * way : b;
+  Moments sum = triangle(in, out);
+  if (first > 0) sum += sector(a, in, radius);
+  if (last < length) sum += sector(out, b, radius);
+  return sum;
 }
 
 std::array<Vec2, 4> corners_of(const Region& region) {
   return {region.low, {region.high.x, region.low.y}, region.high, {region.low.x, region.high.y}};
 }
 
-bool holds(const Clump::Disc& disc, Vec2 place) {
-  const Vec2 way = place - disc.offset;
-  return dot(way, way) < disc.radius * disc.radius;
-}
-
-bool holds(const Region& region, Vec2 place) {
-  return place.x > region.low.x && place.x < region.high.x && place.y > region.low.y && place.y < region.high.y;
-}
-
-/// A part of a circle, counter-clockwise.
-struct Arc {
-  Vec2 centre;
-  double radius = 0, from = 0, to = 0;  ///< rad
-};
-
-/// Angles at which a circle crosses another.
-void add_crossings(const Clump::Disc& circle, const Clump::Disc& other, std::vector<double>& angles) {
-  const Vec2 way = other.offset - circle.offset;
-  const double distance = norm(way), r = circle.radius, s = other.radius;
-  if (!(distance < r + s) || !(distance > std::abs(r - s))) return;
-  // Half the common chord by Heron's formula, the same from both circles: the edge closes even where they hardly cross.
-  const double chord = std::sqrt((distance + r + s) * (r + s - distance) * (distance + r - s) * (distance - r + s));
-  const double half = std::atan2(chord, distance * distance + r * r - s * s);
-  const double middle = std::atan2(way.y, way.x);
-  angles.push_back(middle - half);
-  angles.push_back(middle + half);
-}
-
-/// Angles at which a circle crosses the lines of the sides.
-void add_crossings(const Clump::Disc& circle, const Region& region, std::vector<double>& angles) {
-  for (const double x : {region.low.x, region.high.x}) {
-    const double share = (x - circle.offset.x) / circle.radius;
-    if (std::abs(share) >= 1) continue;
-    const double half = std::acos(share);
-    angles.push_back(half);
-    angles.push_back(-half);
+/// The part of a disc that lies in half-planes.
+class CutDisc {
+ public:
+  explicit CutDisc(double radius) : radius_(radius) {
+    const double half = 2 * radius;
+    polygon_ = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
   }
-  for (const double y : {region.low.y, region.high.y}) {
-    const double share = (y - circle.offset.y) / circle.radius;
-    if (std::abs(share) >= 1) continue;
-    const double angle = std::asin(share);
-    angles.push_back(angle);
-    angles.push_back(std::numbers::pi - angle);
-  }
-}
 
-/// The arcs that bound the discs together, in the region where there is one.
-template <typename Body>
-void for_arcs(std::span<const Clump::Disc> discs, const Region* region, const Body& body) {
-  std::vector<double> angles;
-  for (std::size_t k = 0; k < discs.size(); ++k) {
-    const Clump::Disc& circle = discs[k];
-    const auto same = [&](const Clump::Disc& other) {
-      return other.offset == circle.offset && other.radius == circle.radius;
-    };
-    if (std::any_of(discs.begin(), discs.begin() + static_cast<std::ptrdiff_t>(k), same)) continue;
-    angles = {0};
-    for (const Clump::Disc& other : discs) add_crossings(circle, other, angles);
-    if (region != nullptr) add_crossings(circle, *region, angles);
-    for (double& angle : angles) angle -= full_turn * std::floor(angle / full_turn);
-    angles.push_back(full_turn);
-    std::sort(angles.begin(), angles.end());
-    for (std::size_t a = 0; a + 1 < angles.size(); ++a) {
-      const double middle = 0.5 * (angles[a] + angles[a + 1]);
-      const Vec2 place = circle.offset + circle.radius * Vec2{std::cos(middle), std::sin(middle)};
-      const auto covers = [&](const Clump::Disc& other) { return !same(other) && holds(other, place); };
-      if (std::any_of(discs.begin(), discs.end(), covers)) continue;
-      if (region == nullptr || holds(*region, place)) body(Arc{circle.offset, circle.radius, angles[a], angles[a + 1]});
+  /// Keeps where dot(normal, x) <= limit, x from the centre, the normal being a unit vector.
+  void keep(Vec2 normal, double limit) {
+    if (limit >= radius_) return;
+    if (limit <= -radius_) return polygon_.clear();
+    kept_.clear();
+    for (std::size_t k = 0; k < polygon_.size(); ++k) {
+      const Vec2 a = polygon_[k], b = polygon_[k + 1 < polygon_.size() ? k + 1 : 0];
+      const double out_a = dot(normal, a) - limit, out_b = dot(normal, b) - limit;
+      if (out_a <= 0) kept_.push_back(a);
+      if ((out_a < 0 && out_b > 0) || (out_a > 0 && out_b < 0)) kept_.push_back(a + out_a / (out_a - out_b) * (b - a));
     }
+    std::swap(polygon_, kept_);
   }
-}
 
-/// (1/2) integral of x dy - y dx.
-double area_under(const Arc& arc) {
-  const double r = arc.radius;
-  return 0.5 * r *
-         (arc.centre.x * (std::sin(arc.to) - std::sin(arc.from)) -
-          arc.centre.y * (std::cos(arc.to) - std::cos(arc.from)) + r * (arc.to - arc.from));
-}
+  void clear() { polygon_.clear(); }
 
-/// The same of the parts of a side that lie in discs.
-double area_under(Vec2 from, Vec2 to, std::span<const Clump::Disc> discs, std::vector<double>& cuts) {
-  const Vec2 way = to - from;
-  const double length2 = dot(way, way);
-  cuts = {0, 1};
-  for (const Clump::Disc& disc : discs) {
-    const Vec2 a = from - disc.offset;
-    const double middle = -dot(a, way) / length2;
-    const double square = middle * middle - (dot(a, a) - disc.radius * disc.radius) / length2;
-    if (square <= 0) continue;
-    for (const double cut : {middle - std::sqrt(square), middle + std::sqrt(square)})
-      if (cut > 0 && cut < 1) cuts.push_back(cut);
+  [[nodiscard]] Moments moments() const {
+    Moments sum;
+    for (std::size_t k = 0; k < polygon_.size(); ++k)
+      sum += sector_or_triangle(polygon_[k], polygon_[k + 1 < polygon_.size() ? k + 1 : 0], radius_);
+    return sum;
   }
-  std::sort(cuts.begin(), cuts.end());
-  double share = 0;
-  for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
-    const Vec2 place = from + 0.5 * (cuts[k] + cuts[k + 1]) * way;
-    const auto covers = [&](const Clump::Disc& disc) { return holds(disc, place); };
-    if (std::any_of(discs.begin(), discs.end(), covers)) share += cuts[k + 1] - cuts[k];
-  }
-  return 0.5 * share * cross(from, to);
-}
 
-/// Integrals over an arc, by Green's theorem: of x and y (x² dy/2, -y² dx/2) and of x² + y² ((x³ dy - y³ dx)/3).
-struct Moments {
-  double area = 0, polar = 0;
-  Vec2 first;
+ private:
+  double radius_;
+  std::vector<Vec2> polygon_, kept_;
 };
 
-Moments moments_under(const Arc& arc) {
-  // Powers of cos and sin from 1 to 4, integrated.
-  const auto powers = [](double t, bool of_sine) {
-    const double s = std::sin(t), c = std::cos(t), s2 = std::sin(2 * t), s4 = std::sin(4 * t);
-    return of_sine ? std::array{-c, t / 2 - s2 / 4, -c + c * c * c / 3, 3 * t / 8 - s2 / 4 + s4 / 32}
-                   : std::array{s, t / 2 + s2 / 4, s - s * s * s / 3, 3 * t / 8 + s2 / 4 + s4 / 32};
-  };
-  // Integrals of (c + r f)^2 r f and (c + r f)^3 r f, f = cos or sin.
-  const auto integrate = [&](double c, bool of_sine) {
-    const auto low = powers(arc.from, of_sine), high = powers(arc.to, of_sine);
-    const double r = arc.radius;
-    const double p1 = high[0] - low[0], p2 = high[1] - low[1], p3 = high[2] - low[2], p4 = high[3] - low[3];
-    return std::pair(r * (c * c * p1 + 2 * c * r * p2 + r * r * p3),
-                     r * (c * c * c * p1 + 3 * c * c * r * p2 + 3 * c * r * r * p3 + r * r * r * p4));
-  };
-  const auto [x2, x3] = integrate(arc.centre.x, false);
-  const auto [y2, y3] = integrate(arc.centre.y, true);
-  return {area_under(arc), (x3 + y3) / 3, {x2 / 2, y2 / 2}};
+/// The moments of disjoint parts of a union of discs, one part of each disc: the points of which its power |x - c|² -
+/// r² is the least. Rounding shifts the straight line between two parts, by digits of their distance, and no part
+/// depends on whether two circles cross: that is not decidable where they touch.
+std::vector<Moments> parts_of_union(std::span<const Clump::Disc> discs, const Region* region) {
+  std::vector<Moments> parts;
+  for (std::size_t k = 0; k < discs.size(); ++k) {
+    const auto& [centre, r] = discs[k];
+    CutDisc part(r);
+    if (region != nullptr) {
+      part.keep({-1, 0}, centre.x - region->low.x);
+      part.keep({1, 0}, region->high.x - centre.x);
+      part.keep({0, -1}, centre.y - region->low.y);
+      part.keep({0, 1}, region->high.y - centre.y);
+    }
+    for (std::size_t other = 0; other < discs.size(); ++other) {
+      const Vec2 way = discs[other].offset - centre;
+      const double distance = norm(way), s = discs[other].radius;
+      if (distance > 0) {
+        part.keep(way / distance, 0.5 * (distance + (r - s) * ((r + s) / distance)));
+      } else if (s > r || (s == r && other < k)) {
+        part.clear();
+      }
+    }
+    parts.push_back(part.moments());
+  }
+  return parts;
 }
 
 std::vector<Clump::Disc> placed(const Grain& grain, const Clump& clump) {
@@ -190,16 +147,13 @@ double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region) {
     x = {dot(ellipse.axis, way) / ellipse.a, cross(ellipse.axis, way) / ellipse.b};
   }
   double area = 0;
-  for (std::size_t k = 0; k < 4; ++k) area += sector_or_triangle(corners[k], corners[(k + 1) % 4], 1);
+  for (std::size_t k = 0; k < 4; ++k) area += sector_or_triangle(corners[k], corners[(k + 1) % 4], 1).area;
   return ellipse.a * ellipse.b * area;
 }
 
 double clipped_area(std::span<const Clump::Disc> discs, const Region& region) {
   double area = 0;
-  for_arcs(discs, &region, [&](const Arc& arc) { area += area_under(arc); });
-  const auto corners = corners_of(region);
-  std::vector<double> cuts;
-  for (std::size_t k = 0; k < 4; ++k) area += area_under(corners[k], corners[(k + 1) % 4], discs, cuts);
+  for (const Moments& part : parts_of_union(discs, &region)) area += part.area;
   return area;
 }
 
@@ -220,19 +174,21 @@ double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Reg
 }
 
 DiscUnion union_of(std::span<const Clump::Disc> discs) {
-  // About the first centre: far from the origin digits would cancel.
-  std::vector<Clump::Disc> near(discs.begin(), discs.end());
-  const Vec2 origin = near.front().offset;
-  for (Clump::Disc& disc : near) disc.offset -= origin;
-  Moments sum;
-  for_arcs(near, nullptr, [&](const Arc& arc) {
-    const Moments part = moments_under(arc);
-    sum.area += part.area;
-    sum.first += part.first;
-    sum.polar += part.polar;
-  });
-  const Vec2 centre = sum.first / sum.area;
-  return {sum.area, origin + centre, sum.polar - sum.area * dot(centre, centre)};
+  const std::vector<Moments> parts = parts_of_union(discs, nullptr);
+  DiscUnion whole;
+  Vec2 first;  // about the first centre: far from the origin digits would cancel
+  const Vec2 origin = discs.front().offset;
+  for (std::size_t k = 0; k < discs.size(); ++k) {
+    whole.area += parts[k].area;
+    first += parts[k].first + parts[k].area * (discs[k].offset - origin);
+  }
+  whole.centre = first / whole.area;
+  for (std::size_t k = 0; k < discs.size(); ++k) {
+    const Vec2 way = discs[k].offset - origin - whole.centre;
+    whole.polar_moment += parts[k].polar + 2 * dot(parts[k].first, way) + parts[k].area * dot(way, way);
+  }
+  whole.centre += origin;
+  return whole;
 }
 
 double area_of(const Grain& grain, std::span<const Clump> clumps) {

@@ -21,7 +21,9 @@ Clump centred_clump(std::vector<Clump::Disc> discs) {
   }
   for (std::size_t p = 0; p < discs.size(); ++p) {
     for (std::size_t q = 0; q < discs.size(); ++q) {
-      if (p == q || norm(discs[p].offset - discs[q].offset) + discs[p].radius > discs[q].radius) continue;
+      // A disc that touches the other from inside adds nothing either, whatever rounding says.
+      const double reach = norm(discs[p].offset - discs[q].offset) + discs[p].radius;
+      if (p == q || reach > discs[q].radius * (1 + 1e-12)) continue;
       bad_input(fmt::format("disc {} of a clump lies within disc {}", p, q),
                 "it adds nothing to the body, and where the two meet others contacts would count twice",
                 "Leave it out");

@@ -16,7 +16,7 @@ namespace equidem {
 ///         another
 Clump centred_clump(std::vector<Clump::Disc> discs);
 
-/// Mass and moment of inertia of the union of the discs about its centroid. Exact: an integral along the boundary.
+/// Mass and moment of inertia of the union of the discs about its centroid, exact to rounding.
 /// \param density kg/m³
 /// \throws Error (bad_input) if the density is not positive and finite
 Inertia inertia_of_clump(const Clump& clump, double density);

@@ -13,6 +13,7 @@
 #include "equidem/grains/cell/periodic_images.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/shape_check.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 #include "equidem/grains/servo_walls.hpp"
@@ -273,10 +274,10 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
                 fmt::format("the table of pairs has {}", scene.kinds), "Use kinds from 0 to one less than that");
     }
   }
-  double smallest = scene.grains.front().radius;
-  for (const Grain& grain : scene.grains) smallest = std::min(smallest, grain.radius);
+  constexpr double on_one_another = 1e-6;
+  const double smallest = smallest_inscribed_radius(scene);
   check_servos(scene, options.law);
-  if (const auto twice = coinciding_walls(scene.walls, joint_gap * smallest)) {
+  if (const auto twice = coinciding_walls(joined_walls(scene.walls, joint_gap * smallest), on_one_another * smallest)) {
     bad_input(fmt::format("walls \"{}\" and \"{}\" lie on one another", scene.walls[twice->first].name,
                           scene.walls[twice->second].name),
               "a grain would meet both at once, twice as stiff", "Remove one, or let it end where the other begins");

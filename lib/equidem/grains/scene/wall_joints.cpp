@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <numbers>
 
+#include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/part_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 
@@ -17,25 +20,74 @@ Vec2 end_of(const Wall& wall, int end) {
   return wall.point + wall.radius * Vec2{std::cos(angle), std::sin(angle)};
 }
 
+double length_of(const Wall& wall) {
+  if (wall.shape == Wall::Shape::line) return std::numeric_limits<double>::infinity();
+  return wall.shape == Wall::Shape::arc ? wall.radius * (wall.to - wall.from) : norm(wall.end - wall.point);
+}
+
+bool is_closed(const Wall& wall) {
+  return wall.shape == Wall::Shape::arc && wall.to - wall.from >= 2 * std::numbers::pi * (1 - 1e-15);
+}
+
+bool has_ends(const Wall& wall) {
+  return wall.shape != Wall::Shape::line && !is_closed(wall);
+}
+
+/// Largest gap at which two walls join.
+double gap_between(const Wall& a, const Wall& b, double tolerance) {
+  return std::min(tolerance, joint_gap * std::min(length_of(a), length_of(b)));
+}
+
 /// The wall that covers a contact of grain i with an end of wall w; -1: none.
 std::int32_t cover_of(const GrainSystem& system, std::int32_t i, std::int32_t part, std::int32_t w) {
   const WallJoints& joints = system.walls.joints[static_cast<std::size_t>(w)];
   if (joints[0].empty() && joints[1].empty()) return -1;
-  const auto nearest_to = [&](std::int32_t wall) {
-    const auto k = static_cast<std::size_t>(wall);
-    return nearest(system.scene.walls[k], system.walls.places[k].displacement, viewpoint_on(system, i, part, wall));
+  // The contacts of an ellipse with two walls are seen from two points.
+  const bool round = system.shapes.parts.empty() || system.shapes.parts[static_cast<std::size_t>(part)].is_round();
+  struct Met {
+    WallContact contact;
+    Vec2 point;  // without displacement
   };
-  const int end = nearest_to(w).end;
-  if (end == 0) return -1;
-  for (const WallJoint& joint : joints[static_cast<std::size_t>(end - 1)]) {
-    // Where the other wall is not met in the same point it is met in a nearer one.
-    if (joint.end == 0 || nearest_to(joint.wall).end != joint.end || joint.wall < w) return joint.wall;
+  const auto meet = [&](std::int32_t wall) {
+    const auto k = static_cast<std::size_t>(wall);
+    const Vec2 from = viewpoint_on(system, i, part, wall), displacement = system.walls.places[k].displacement;
+    const WallContact contact = nearest(system.scene.walls[k], displacement, from);
+    return Met{contact, from - displacement - contact.distance * contact.normal};
+  };
+  const auto is_at = [&](const Met& met, std::int32_t wall, int end, double reach) {
+    if (met.contact.end == end) return true;
+    return round && norm(met.point - end_of(system.scene.walls[static_cast<std::size_t>(wall)], end)) <= reach;
+  };
+  const Met own = meet(w);
+  for (const int end : {1, 2}) {
+    for (const WallJoint& joint : joints[static_cast<std::size_t>(end - 1)]) {
+      const bool at_end = own.contact.end == end;
+      if (joint.end == 0 && at_end) return joint.wall;
+      if (joint.end == 0 || !is_at(own, w, end, joint.reach)) continue;
+      const Met other = meet(joint.wall);
+      const double nearer = round ? own.contact.distance - other.contact.distance : 0;
+      // Where the other wall is not met in the same point it is met in a nearer one.
+      const bool covers =
+          is_at(other, joint.wall, joint.end, joint.reach) ? nearer > 0 || (nearer == 0 && joint.wall < w) : at_end;
+      if (covers) return joint.wall;
+    }
   }
   return -1;
 }
 
 bool move_alike(const Wall& a, const Wall& b) {
-  return a.move_x == b.move_x && a.move_y == b.move_y;
+  return a.move_x == b.move_x && a.move_y == b.move_y && !a.servo && !b.servo;
+}
+
+/// Moves the end of a segment to a point; lets an arc end as near to it as it can.
+void put_end(Wall& wall, int end, Vec2 point) {
+  if (wall.shape == Wall::Shape::segment) {
+    (end == 1 ? wall.point : wall.end) = point;
+    return;
+  }
+  double& angle = end == 1 ? wall.from : wall.to;
+  const Vec2 now = end_of(wall, end) - wall.point, then = point - wall.point;
+  angle += std::atan2(cross(now, then), dot(now, then));
 }
 
 /// Transfer of the state of a contact to another one at the same point.
@@ -87,20 +139,80 @@ std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<co
   return {};
 }
 
+std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
+  constexpr double rounding = 1e-4;  // of the tolerance
+  std::vector<Wall> walls(given.begin(), given.end());
+  struct End {
+    std::size_t wall = 0;
+    int number = 0;
+    bool placed = false;
+  };
+  std::vector<End> ends;
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    Wall& wall = walls[w];
+    if (wall.shape == Wall::Shape::arc && !is_closed(wall) && wall.to - wall.from > std::numbers::pi &&
+        norm(end_of(wall, 1) - end_of(wall, 2)) <= gap_between(wall, wall, tolerance))
+      wall.from = 0, wall.to = 2 * std::numbers::pi;
+    if (has_ends(wall)) ends.insert(ends.end(), {{w, 1}, {w, 2}});
+  }
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    if (ends[e].placed) continue;
+    const Wall& wall = given[ends[e].wall];
+    const Vec2 point = end_of(wall, ends[e].number);
+    std::vector<End*> meeting;
+    Vec2 sum;
+    double widest = 0;
+    for (std::size_t f = e; f < ends.size(); ++f) {
+      const Wall& other = given[ends[f].wall];
+      const Vec2 at = end_of(other, ends[f].number);
+      const double gap = norm(at - point);
+      const bool meets = f == e || (gap <= tolerance && ends[f].wall != ends[e].wall && !ends[f].placed &&
+                                    move_alike(wall, other) && gap <= gap_between(wall, other, tolerance));
+      if (!meets) continue;
+      meeting.push_back(&ends[f]);
+      sum += at;
+      widest = std::max(widest, gap);
+    }
+    if (meeting.size() == 1) continue;
+    Vec2 common = sum / static_cast<double>(meeting.size());
+    const auto arc =
+        std::ranges::find_if(meeting, [&](const End* end) { return walls[end->wall].shape == Wall::Shape::arc; });
+    if (arc != meeting.end()) common = end_of(walls[(*arc)->wall], (*arc)->number);
+    for (End* end : meeting) {
+      end->placed = true;
+      if (widest > rounding * tolerance) put_end(walls[end->wall], end->number, common);
+    }
+  }
+  for (const End& end : ends) {
+    Wall& wall = walls[end.wall];
+    for (std::size_t k = 0; k < walls.size() && !end.placed && wall.shape == Wall::Shape::segment; ++k) {
+      const Vec2 point = end_of(wall, end.number);
+      const WallContact foot = nearest(walls[k], {}, point);
+      const double gap = std::abs(foot.distance);
+      if (k == end.wall || gap > tolerance || !move_alike(wall, walls[k])) continue;
+      if (gap > gap_between(wall, walls[k], tolerance)) continue;
+      if (gap > rounding * tolerance) put_end(wall, end.number, point - foot.distance * foot.normal);
+      break;
+    }
+  }
+  return walls;
+}
+
 std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance) {
   std::vector<WallJoints> all(walls.size());
   bool any = false;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    if (walls[w].shape == Wall::Shape::line) continue;
+    if (!has_ends(walls[w])) continue;
     for (const int end : {1, 2}) {
       const Vec2 point = end_of(walls[w], end);
       for (std::size_t k = 0; k < walls.size(); ++k) {
-        if (k == w || !move_alike(walls[k], walls[w])) continue;
-        if (!(std::abs(nearest(walls[k], {}, point).distance) <= tolerance)) continue;
-        WallJoint joint{static_cast<std::int32_t>(k), 0};
-        if (walls[k].shape != Wall::Shape::line) {
+        const double gap = std::abs(nearest(walls[k], {}, point).distance);
+        if (k == w || !(gap <= tolerance) || !move_alike(walls[k], walls[w])) continue;
+        WallJoint joint{static_cast<std::int32_t>(k), 0, gap_between(walls[w], walls[k], tolerance)};
+        if (gap > joint.reach) continue;
+        if (has_ends(walls[k])) {
           for (const int other : {1, 2})
-            if (norm(end_of(walls[k], other) - point) <= tolerance) joint.end = other;
+            if (norm(end_of(walls[k], other) - point) <= joint.reach) joint.end = other;
         }
         all[w][static_cast<std::size_t>(end - 1)].push_back(joint);
         any = true;
@@ -109,6 +221,30 @@ std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance)
   }
   if (!any) all.clear();
   return all;
+}
+
+std::vector<std::string> gaps_of_walls(std::span<const Wall> given, double smallest_radius) {
+  constexpr double widest = 0.2;
+  const std::vector<Wall> walls = joined_walls(given, joint_gap * smallest_radius);
+  const std::vector<WallJoints> joints = joints_of(walls, joint_gap * smallest_radius);
+  const auto is_free = [&](std::size_t w, int end) {
+    return has_ends(walls[w]) && (joints.empty() || joints[w][static_cast<std::size_t>(end - 1)].empty());
+  };
+  std::vector<std::string> sentences;
+  const auto compare = [&](std::size_t w, int end, std::size_t k, int other) {
+    if (!is_free(w, end) || !is_free(k, other)) return;
+    const double gap = norm(end_of(walls[w], end) - end_of(walls[k], other));
+    if (gap > widest * smallest_radius || !move_alike(walls[w], walls[k])) return;
+    sentences.push_back(fmt::format(
+        "walls \"{}\" and \"{}\" end {:.3g} m apart, {:.2g} of the smallest radius: a body over this gap is pushed by "
+        "both; let them end in one point, or farther apart",
+        walls[w].name, walls[k].name, gap, gap / smallest_radius));
+  };
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    for (std::size_t k = w + 1; k < walls.size(); ++k)
+      for (const int end : {1, 2})
+        for (const int other : {1, 2}) compare(w, end, k, other);
+  return sentences;
 }
 
 void cover_joints(GrainSystem& system) {

@@ -84,7 +84,7 @@ SettlingEstimate estimate_falling(const PackingOptions& options) {
 void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
   const UnitBody shape = unit_body_of(options.shape);
   Bodies bodies = bodies_above(options, shape);
-  if (options.settling.relax_first) relax_down(options, shape, bodies, packing.work);
+  if (options.settling.relax_first) keep_failure(packing, [&] { relax_down(options, shape, bodies, packing.work); });
   GrainScene scene = scene_of(options, bodies, packing);
   SettledBodies settled = settle(std::move(scene), options.settling);
   packing.work += settled.report.steps;
@@ -92,6 +92,9 @@ void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
   packing.contacts = std::move(settled.contacts);
   packing.bonds = std::move(settled.bonds);
   packing.settling = settled.report;
+  keep_failure(packing, [&] {
+    if (settled.failure) throw *settled.failure;
+  });
   double top = 0;
   for (const Grain& grain : packing.grains)
     top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -31,6 +32,17 @@ class Growth {
     return report;
   }
 
+  /// As check() refuses bodies that keep their size.
+  void refuse_two_images() const {
+    const double width = this->width(), period = std::min(options_.box.size.x, options_.box.size.y);
+    if (!options_.box.periodic() || 2 * width <= period) return;
+    throw Error(ErrorKind::computation_failed,
+                fmt::format("the largest {} has grown to {:.4g} m, the box is {:.4g} m by {:.4g} m",
+                            noun_of(options_.shape.kind), width, options_.box.size.x, options_.box.size.y),
+                "a period holds two of them side by side, so that none meets two images of another",
+                "Take more of them, or a squarer box", "grains");
+  }
+
   [[nodiscard]] double full() const { return full_; }
   /// At the start.
   [[nodiscard]] double first_fraction() const { return first_; }
@@ -41,11 +53,14 @@ class Growth {
   }
 
  private:
+  [[nodiscard]] double width() const {
+    return 2 * shape_.reach * *std::max_element(bodies_.radii.begin(), bodies_.radii.end());
+  }
+
   /// Such a body would overlap its own images, which are no partners.
   void refuse_wider_than_period() const {
-    const double width = 2 * shape_.reach * *std::max_element(bodies_.radii.begin(), bodies_.radii.end());
     const double period = std::min(options_.box.size.x, options_.box.size.y);
-    if (!options_.box.periodic() || width <= period) return;
+    if (!options_.box.periodic() || width() <= period) return;
     computation_failed(
         fmt::format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period),
         "it would meet itself across the sides", "Take more of them, or a squarer box");
@@ -79,6 +94,7 @@ class Growth {
                      [&](std::size_t a, std::size_t b) { return options_.radii[a] > options_.radii[b]; });
     GrainPacking placed;
     fill_by_rejection(circles, placed);
+    if (placed.failure) throw *placed.failure;
     bodies_.centres.resize(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) bodies_.centres[order[k]] = placed.grains[k].position;
     Random random(options_.seed ^ 0xa5a5a5a5ULL);
@@ -101,12 +117,13 @@ double next_fraction(double fraction, double end) {
   return std::min(fraction + step, end);
 }
 
-[[noreturn]] void refuse_jammed(const PackingOptions& options, double fraction, const PushingReport& report) {
+[[noreturn]] void refuse_jammed(const PackingOptions& options, double wanted, double fraction,
+                                const PushingReport& report) {
   throw Error(
       ErrorKind::computation_failed,
-      fmt::format("the {}s jam before they reach a solid fraction of {:.4g}: there they overlap by {:.2g} of the mean "
-                  "radius and no longer move apart",
-                  noun_of(options.shape.kind), fraction, std::max(report.mean_overlap, report.largest_overlap)),
+      fmt::format("the {}s jam before they reach the solid fraction of {:.4g} that is asked for: grown to {:.4g} they "
+                  "overlap by {:.2g} of the mean radius and no longer move apart",
+                  noun_of(options.shape.kind), wanted, fraction, std::max(report.mean_overlap, report.largest_overlap)),
       "discs at random jam at 0.82 to 0.86, few of them or between near walls at less, those of equal size at what is "
       "nearly a lattice",
       "Ask for a smaller solid fraction, or give grains and box with solid_fraction = \"auto\" for the densest",
@@ -126,7 +143,8 @@ void grow_to_size(const PackingOptions& options, Growth& growth) {
     const bool last = fraction >= end;
     const auto report = growth.grow_to(fraction, {.overlap = last ? spare : 0.01, .most = last ? 100000 : 3000});
     progress.update(std::min(fraction / end, 1.0));
-    if (!report.apart && (last || report.mean_overlap > hopeless)) refuse_jammed(options, fraction, report);
+    if (!report.apart && (last || report.mean_overlap > hopeless))
+      refuse_jammed(options, growth.full(), fraction, report);
     if (last) break;
     fraction = next_fraction(fraction, end);
   }
@@ -169,18 +187,31 @@ void grow_to_jamming(const PackingOptions& options, Growth& growth) {
       "Allow a larger overlap, or change the seed");
 }
 
+/// Over the largest, rounded so that they have the same digits in all units.
+std::vector<double> ratios_of(std::vector<double> radii) {
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  for (double& radius : radii) radius = std::ldexp(std::max(std::round(std::ldexp(radius / largest, 30)), 1.0), -30);
+  return radii;
+}
+
 }  // namespace
 
-void fill_by_growth(const PackingOptions& options, GrainPacking& packing) {
-  Growth growth(options);
-  if (options.as_dense_as_possible) {
-    grow_to_jamming(options, growth);
-    packing.complete = false;
-    packing.jammed = true;
-  } else {
-    grow_to_size(options, growth);
-  }
-  growth.give(packing);
+void fill_by_growth(const PackingOptions& given, GrainPacking& packing) {
+  PackingOptions options = given;
+  if (grows_to_any_size(options)) options.radii = ratios_of(options.radii);
+  std::optional<Growth> growth;
+  keep_failure(packing, [&] {
+    growth.emplace(options);
+    if (options.as_dense_as_possible) {
+      packing.complete = false;
+      grow_to_jamming(options, *growth);
+      growth->refuse_two_images();
+      packing.jammed = true;
+    } else {
+      grow_to_size(options, *growth);
+    }
+  });
+  if (growth) growth->give(packing);
 }
 
 }  // namespace equidem

@@ -183,24 +183,26 @@ void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
   if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
   Inserter inserter(options);
   Progress progress("inserting");
-  for (std::size_t k = 0; k < radii.size(); ++k) {
-    if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
-    bool found = false;
-    std::int64_t attempt = 0;
-    for (; attempt < options.attempts && !found && (attempt <= Inserter::anywhere_first || !inserter.hopeless());
-         ++attempt) {
-      ++packing.work;
-      found = inserter.insert(radii[k], attempt);
+  keep_failure(packing, [&] {
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+      if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
+      bool found = false;
+      std::int64_t attempt = 0;
+      for (; attempt < options.attempts && !found && (attempt <= Inserter::anywhere_first || !inserter.hopeless());
+           ++attempt) {
+        ++packing.work;
+        found = inserter.insert(radii[k], attempt);
+      }
+      if (found) continue;
+      packing.complete = false;
+      if (options.as_dense_as_possible) continue;
+      computation_failed(
+          fmt::format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
+                      area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
+          fmt::format("for the next one {} gaps were all too small", attempt),
+          "Ask for less, for more attempts, or use growth");
     }
-    if (found) continue;
-    packing.complete = false;
-    if (options.as_dense_as_possible) continue;
-    computation_failed(
-        fmt::format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
-                    area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
-        fmt::format("for the next one {} gaps were all too small", attempt),
-        "Ask for less, for more attempts, or use growth");
-  }
+  });
   make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);
 }
 
