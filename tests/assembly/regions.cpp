@@ -193,7 +193,7 @@ TEST_CASE("a_box_that_is_turned_keeps_its_place") {
     Assembly bad = a;
     bad.box = box;
     try {
-      check(bad);
+      check(bad), measure_cells(bad);
     } catch (const Error& error) {
       return std::string(error.what());
     }

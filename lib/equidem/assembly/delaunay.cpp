@@ -269,6 +269,7 @@ void measure_cells(Assembly& assembly) {
 void measure_missing_cells(Assembly& assembly) {
   const bool has_areas = !assembly.cell_areas.empty();
   const bool has_facets = !assembly.facet_lengths.empty() || (has_areas && assembly.contacts.empty());
+  if (assembly.box) check_inside(assembly, *assembly.box);
   if (has_areas && (assembly.box || assembly.period)) {
     constexpr double close = 1e-6;
     const double region = assembly.period ? assembly.period->x * assembly.period->y : assembly.box->area();

@@ -203,6 +203,7 @@ void add_sides(const Assembly& assembly, const TurnedRectangle& domain, std::vec
 }
 
 PowerCells free_cells(const Assembly& assembly, const TurnedRectangle& domain) {
+  check_inside(assembly, domain);
   const Sites sites(assembly);
   Strips strips(sites);
   std::optional<DualCells> dual;
@@ -227,6 +228,22 @@ PowerCells free_cells(const Assembly& assembly, const TurnedRectangle& domain) {
 
 TurnedRectangle region_of_cells(const Assembly& assembly) {
   return assembly.box ? *assembly.box : least_rectangle(assembly.centres, assembly.radii);
+}
+
+void check_inside(const Assembly& assembly, const TurnedRectangle& region) {
+  constexpr double epsilon = 8 * std::numeric_limits<double>::epsilon();
+  const auto& [low, high] = static_cast<const Rectangle&>(region);
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    const Vec2 x = assembly.centres[d], from_low = region.seen(x - low), to_high = region.seen(high - x);
+    const double rounding = region.upright() ? 0 : epsilon * (norm(x) + norm(low) + norm(high));
+    if (std::min({from_low.x, from_low.y, to_high.x, to_high.y}) >= -rounding) continue;
+    const std::string turned =
+        region.upright() ? "" : fmt::format(" with a side along ({:g}, {:g})", region.along.x, region.along.y);
+    bad_input(
+        fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside the box from ({:g}, {:g}) to ({:g}, {:g}) m{}",
+                    d, x.x, x.y, low.x, low.y, high.x, high.y, turned),
+        "the cells of all discs fill the box", "Correct the box, or remove it");
+  }
 }
 
 PowerCells power_cells(const Assembly& assembly, const std::optional<TurnedRectangle>& domain) {

@@ -32,6 +32,9 @@ struct PowerCells {
 /// (least_rectangle.hpp), which turns with them.
 TurnedRectangle region_of_cells(const Assembly& assembly);
 
+/// \throws Error (bad_input) naming a disc with its centre outside the region of the cells
+void check_inside(const Assembly& assembly, const TurnedRectangle& region);
+
 /// Cells of a periodic assembly, or of a free one in the given rectangle, which must hold all centres: without one in
 /// its region. They fill it to round-off. Facets shorter than 1e-9 of the distance of the
 /// centres are left out: they are corners where more than three cells meet.
