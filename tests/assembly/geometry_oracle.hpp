@@ -19,8 +19,9 @@ struct Corner {
 };
 using Polygon = std::vector<Corner>;
 
-inline Polygon rectangle(const Rectangle& r) {
-  return {{r.low}, {{r.high.x, r.low.y}}, {r.high}, {{r.low.x, r.high.y}}};
+inline Polygon rectangle(const TurnedRectangle& r) {
+  const Vec2 width = r.size().x * r.along;
+  return {{r.low}, {r.low + width}, {r.high}, {r.high - width}};
 }
 
 /// The part of a polygon with normal . x <= offset.
@@ -67,7 +68,7 @@ struct Cells {
 };
 
 /// Cells of an assembly whose centres lie in its cell where periodic, with `rings` of images around it.
-inline Cells cells(const Assembly& assembly, const Rectangle& domain, int rings) {
+inline Cells cells(const Assembly& assembly, const TurnedRectangle& domain, int rings) {
   std::vector<Site> sites;
   const Vec2 period = assembly.period.value_or(Vec2{});
   const int around = assembly.periodic() ? rings : 0;
@@ -80,7 +81,8 @@ inline Cells cells(const Assembly& assembly, const Rectangle& domain, int rings)
     }
   }
   const double far = 3 * around;
-  const Rectangle outline = assembly.periodic() ? Rectangle{-far * period, (1 + far) * period} : domain;
+  TurnedRectangle outline = domain;
+  if (assembly.periodic()) outline = Rectangle{-far * period, (1 + far) * period};
   Cells result;
   for (std::size_t d = 0; d < assembly.size(); ++d) {
     const Vec2 x = assembly.centres[d];

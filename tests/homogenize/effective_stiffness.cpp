@@ -7,14 +7,19 @@
 
 #include <nlohmann/json.hpp>
 
+#include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/touching.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 #include "homogenize/samples.hpp"
 #include "homogenize/tensors.hpp"
 #include "support/catch.hpp"
+#include "support/free_samples.hpp"
 
 using namespace equidem;
 using namespace samples;
@@ -274,5 +279,92 @@ TEST_CASE("a_floppy_network_prints_no_modulus") {
     loose.contacts.clear();
     loose.facet_lengths.clear();
     CHECK(contains(message_of([&] { static_cast<void>(of(loose, {1, 1})); }), "no contacts"));
+  }
+}
+
+namespace {
+
+/// Free samples as files give them: discs that touch, and scattered ones joined by their triangulation.
+std::vector<Sample> samples_of_files() {
+  std::vector<Sample> samples = {{"hexagonal block", test::hexagonal_block()},
+                                 {"heap", test::rows_of_discs(7, 7, 1)},
+                                 {"heap with a flat top", test::rows_of_discs(8, 4, 1)}};
+  for (Sample& sample : samples) {
+    sample.assembly.contacts = touching_discs(sample.assembly, 1e-9);
+    for (Contact& c : sample.assembly.contacts) c.lever_i = c.lever_j = 0.5 * norm(sample.assembly.branch(c));
+  }
+  Random random(5);
+  samples.push_back({"scattered", test::scattered_discs(80, 0.5, 1.5, random)});
+  triangulate(samples.back().assembly);
+  return samples;
+}
+
+const std::vector<test::Placement> placements = {{.degrees = 13, .moved = {}},
+                                                 {.degrees = 30, .mirrored = true, .moved = {}},
+                                                 {.degrees = 45, .moved = {40, -30}},
+                                                 {.degrees = 77, .mirrored = true, .moved = {}, .unit = 1e-3}};
+
+/// A stiffness in the axes of a sample that lies otherwise.
+Matrix3 placed(const Matrix3& c, const test::Placement& placement) {
+  Matrix3 result = rotated(c, -placement.degrees * std::numbers::pi / 180);
+  for (std::size_t k = 0; placement.mirrored && k < 2; ++k) result[k][2] = -result[k][2], result[2][k] = -result[2][k];
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("moduli_and_solid_fraction_do_not_depend_on_how_the_sample_lies") {
+  for (const auto& [name, sample] : samples_of_files()) {
+    const bool scattered = name == "scattered";
+    for (const Boundary boundary : {Boundary::displacement, Boundary::traction}) {
+      for (const SpringWeighting weighting : {SpringWeighting::uniform, SpringWeighting::contact_density,
+                                              SpringWeighting::local_contact_density, SpringWeighting::voronoi}) {
+        // Facets of contacts that a corner of the region cuts off are round-off, and so would their springs be.
+        if (scattered && weighting == SpringWeighting::voronoi) continue;
+        const auto stiffness = [&](const Assembly& a) {
+          const ContactSprings springs = contact_springs(a, {1e9, 3e8}, weighting);
+          return effective_stiffness(a, springs, {.boundary = boundary, .rotation = {}, .solver = {}}).stiffness;
+        };
+        Assembly as_it_lies = sample;
+        measure_cells(as_it_lies);
+        const Matrix3 expected = stiffness(as_it_lies);
+        for (const test::Placement& placement : placements) {
+          Assembly other = placed(sample, placement);
+          measure_cells(other);
+          const Matrix3 found = stiffness(other), wanted = placed(expected, placement);
+          CAPTURE(name, to_string(boundary), to_string(weighting), placement.name(), shown(found), shown(wanted));
+          CHECK(relative_difference(found, wanted) < (scattered ? 1e-10 : 1e-12));
+          CHECK(other.solid_fraction() == Approx(as_it_lies.solid_fraction()).epsilon(1e-12));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a_heap_of_logs_has_the_mean_stress_of_its_lines_of_contacts_however_it_lies") {
+  // Report 01: every line of contacts carries W/sqrt 3 more at each log.
+  Assembly heap = test::rows_of_discs(7, 7, 1);
+  heap = test::placed(heap, {.moved = {}, .unit = 0.15});
+  heap.contacts = touching_discs(heap, 1e-9);
+  for (Contact& c : heap.contacts) c.lever_i = c.lever_j = 0.075;
+  constexpr double W = 1.5;
+  std::vector<test::Placement> all = placements;
+  all.insert(all.begin(), test::Placement{.moved = {}});
+  for (const test::Placement& placement : all) {
+    Assembly a = placed(heap, placement);
+    measure_cells(a);
+    for (std::int32_t d = 0; d < 28; ++d) a.groups[d < 7 ? "base" : "logs"].discs.push_back(d);
+    const Equilibrium found = solve_equilibrium(
+        a, ContactSprings(SpringConstants{2e6, 0}),
+        std::vector<Support>{{.group = "base", .ux = 0.0, .uy = 0.0, .rotation = {}}},
+        {{.group = "logs", .kind = LoadKind::per_disc, .force = placement.turned({0, -W}), .moment = 0}});
+    const Tensor2 s = macroscopic_stress(a, found.contact_forces);
+    // Forces of the 21 logs: each line of the two slanted families carries W/sqrt 3 more at each log.
+    const Vec2 x = placement.turned({1, 0}), y = placement.turned({0, 1});
+    const double xx = placement.unit * dot(x, s * x), yy = placement.unit * dot(y, s * y);
+    CAPTURE(placement.name(), xx, yy, a.area());
+    CHECK(xx == Approx(-3.72715).epsilon(1e-5));
+    CHECK(yy == Approx(-11.18146).epsilon(1e-5));
+    CHECK(yy / xx == Approx(3).epsilon(1e-9));
   }
 }

@@ -76,6 +76,7 @@ inline Matrix3 random_stiffness(Random& random, const std::vector<double>& weigh
 inline Assembly turned(Assembly assembly, double angle) {
   const Vec2 x{std::cos(angle), std::sin(angle)}, y = perpendicular(x);
   for (Vec2& centre : assembly.centres) centre = centre.x * x + centre.y * y;
+  assembly.box.reset();
   return assembly;
 }
 

@@ -273,5 +273,64 @@ class Refusals(HomogenizeTest):
         self.check_error(equidem("homogenize", case), 2, "springs.toml:3: springs.kN", "out of range")
 
 
+class FreeSamples(HomogenizeTest):
+    SPRINGS = "[springs]\nkN = 3.0e8\nkT = 1.2e8\n"
+
+    def case(self, name, assembly, more=""):
+        path = self.folder / name
+        path.write_text('schema = "equidem/1"\n[assembly]\n' + assembly + self.SPRINGS + more)
+        return path
+
+    def block(self, degrees, more=()):
+        """A case of a hexagonal block of 8 by 8 discs that lies askew."""
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        places = [(k + 0.5 * (row % 2), row * math.sqrt(3) / 2) for row in range(8) for k in range(8)] + list(more)
+        discs = [[c * x - s * y, s * x + c * y, 0.5] for x, y in places]
+        groups = {"base": list(range(8)), "lid": list(range(56, 64))}
+        (self.folder / f"block{degrees}.json").write_text(json.dumps(
+            {"schema": "equidem-assembly/1", "discs": discs, "groups": groups}))
+        return f'kind = "file"\npath = "block{degrees}.json"\ngap_tolerance = 1e-9\n'
+
+    def test_moduli_do_not_depend_on_how_a_block_lies(self):
+        wanted = self.homogenize(self.case("as_it_lies.toml", self.block(0)))
+        for degrees in (13, 30, 45, 77):
+            found = self.homogenize(self.case("turned.toml", self.block(degrees)))
+            for key in ("area", "solid_fraction"):
+                self.assertAlmostEqual(found[key] / wanted[key], 1, delta=1e-12)
+            for key in ("bulk_modulus_2d", "shear_modulus"):
+                self.assertAlmostEqual(found["isotropic"][key] / wanted["isotropic"][key], 1, delta=1e-10)
+
+    def test_a_written_assembly_has_the_area_and_the_stress_of_the_one_that_was_made(self):
+        test = '[test]\nkind = "uniaxial_tension"\nstress = 2.0e5\n'
+        kinds = {"hexagonal": 'kind = "hexagonal"\ncolumns = 5\nrows = 6\nradius = 0.02\n',
+                 "square": 'kind = "square"\ncolumns = 5\nrows = 5\nradius = 0.02\n',
+                 "delaunay": 'kind = "delaunay"\ndiscs = 60\nradii = {smallest = 0.004, largest = 0.006}\n'}
+        for name, assembly in kinds.items():
+            for form, suffix in (("json", "json"), ("hdf5", "h5")):
+                out = self.folder / f"{name}_{form}"
+                made = self.case("made.toml", assembly, test + f'[output]\nassembly = "{form}"\n')
+                self.check_done(equidem("solve", made, "--out", out))
+                back = self.case("back.toml", f'kind = "file"\npath = "{out.name}/assembly.{suffix}"\n', test)
+                for verb in ("solve", "homogenize"):
+                    first, second = (parse_json(self.check_done(equidem(verb, case, "--json", "-")).stdout)
+                                     for case in (made, back))
+                    for key in ("area", "solid_fraction", "macroscopic_stress", "stiffness"):
+                        self.assertEqual(first.get(key), second.get(key), (name, form, verb, key))
+                    self.assertIn("area", first)
+
+    def test_a_rattler_at_the_edge_leaves_the_area_as_it_is(self):
+        load = ('[[support]]\ngroup = "base"\nux = true\nuy = true\n'
+                '[[load]]\ngroup = "lid"\nkind = "total"\nforce = [0.0, 1.0e5]\n')
+        results = []
+        for more in ((), ((8.7, 2.0),)):
+            case = self.case("held.toml", self.block(0, more), load)
+            results.append(parse_json(self.check_done(equidem("solve", case, "--json", "-")).stdout))
+        without, beside = results
+        height = 7 * math.sqrt(3) / 2 + 1
+        self.assertIn("rattler", beside["report"])
+        self.assertAlmostEqual(without["area"], 8.5 * height, delta=1e-10)
+        self.assertAlmostEqual(beside["area"], 9.7 * height, delta=1e-10)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -59,6 +59,25 @@ def test_an_assembly_is_not_copied_by_what_uses_it():
     assert result.assembly is block
 
 
+def test_written_assemblies_are_the_same_assemblies(tmp_path):
+    turned = 0.2 + np.arange(6)[:, None] * [np.cos(0.3), np.sin(0.3)]
+    pairs = [(k, k + 1) for k in range(5)]
+    for made in (eq.hexagonal(columns=5, rows=6, radius=0.02), eq.square(columns=3, rows=4, radius=1 / 3),
+                 eq.delaunay(discs=60, radii={"smallest": 4e-3, "largest": 6e-3}),
+                 eq.delaunay(discs=60, radius=5e-3, periodic=True), eq.Assembly(turned, 0.5, pairs)):
+        made = made.with_strengths(np.full((len(made.contacts), 2), 1 / 3)).with_forces(made.levers / 7)
+        copies = [pickle.loads(pickle.dumps(made))]
+        for name in ("a.json", "a.h5"):
+            made.write(tmp_path / name, overwrite=True)
+            copies.append(eq.read(tmp_path / name))
+        for copy in copies:
+            for name in ("centres", "radii", "contacts", "shifts", "levers", "cell_areas", "facet_lengths", "forces"):
+                np.testing.assert_array_equal(getattr(copy, name), getattr(made, name), name)
+            assert (copy.area, copy.cell, copy.solid_fraction) == (made.area, made.cell, made.solid_fraction)
+            assert {name: list(discs) for name, discs in copy.groups.items()} == \
+                {name: list(discs) for name, discs in made.groups.items()}
+
+
 def test_results_and_assemblies_are_pickled():
     cell = eq.delaunay(discs=40, radius=1e-3, seed=1, periodic=True)
     copy = pickle.loads(pickle.dumps(cell))

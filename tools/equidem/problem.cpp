@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/assembly/voids.hpp"
 #include "equidem/core/error.hpp"
@@ -265,7 +266,7 @@ AssemblySummary summary_of(const Assembly& a, const ContactSprings& springs) {
 Results problem_results(const Problem& problem, const Effects& effects, AssemblyKeys keys) {
   const Assembly& a = problem.assembly;
   Results of_whole;
-  if (!a.periodic() && !a.box && !a.cell_areas.empty() && !a.sections.empty()) {
+  if (!a.periodic() && !a.cell_areas.empty() && !a.sections.empty() && a.box == least_rectangle(a.centres, a.radii)) {
     of_whole.line("",
                   "The area is that of the rectangle around the discs of equal area: the file gives no \"box\", and "
                   "the outlines of the bodies are not known.");

@@ -262,19 +262,19 @@ void check_group(const Assembly& assembly, const std::string& name, const DiscGr
 
 void check_box(const Assembly& assembly) {
   if (!assembly.box) return;
-  const auto& [low, high] = *assembly.box;
-  const std::string box = fmt::format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
+  const TurnedRectangle& rectangle = *assembly.box;
+  const auto [low, high] = static_cast<Rectangle>(rectangle);
+  std::string box = fmt::format("the box from ({:g}, {:g}) to ({:g}, {:g}) m", low.x, low.y, high.x, high.y);
+  if (!rectangle.upright()) box += fmt::format(" with a side along ({:g}, {:g})", rectangle.along.x, rectangle.along.y);
   if (assembly.period)
     bad_input(box + " stands beside a period", "a periodic cell fills its period", "Remove one of the two");
-  if (!(measurable(high.x - low.x) && measurable(high.y - low.y))) {
-    bad_input(fmt::format("{} is {:g} m wide and {:g} m high", box, high.x - low.x, high.y - low.y), length_limits(),
+  constexpr double close = 1e-9;
+  if (!(std::abs(norm(rectangle.along) - 1) <= close))
+    bad_input(box + " has no direction", "that of its side is a vector of length 1", "Divide it by its length");
+  const Vec2 size = rectangle.size();
+  if (!(measurable(size.x) && measurable(size.y))) {
+    bad_input(fmt::format("{} is {:g} m wide and {:g} m high", box, size.x, size.y), length_limits(),
               "Give its lower left corner, then its upper right one");
-  }
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    const Vec2 x = assembly.centres[d];
-    if (x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y) continue;
-    bad_input(fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside {}", d, x.x, x.y, box),
-              "the cells of all discs fill the box", "Correct the box, or remove it");
   }
 }
 

@@ -49,6 +49,23 @@ struct Rectangle {
   Vec2 high;  ///< m
 };
 
+/// A rectangle with its lower side along a unit vector; low and high are the corners that are the lower left and the
+/// upper right one, seen with that side level.
+struct TurnedRectangle : Rectangle {
+  Vec2 along = {1, 0};
+
+  TurnedRectangle() = default;
+  TurnedRectangle(const Rectangle& corners, Vec2 lower_side = {1, 0}) : Rectangle(corners), along(lower_side) {}
+  /// A vector by its components along the lower side and across it: the same bits where that side is level.
+  [[nodiscard]] Vec2 seen(Vec2 v) const { return {dot(along, v), cross(along, v)}; }
+  [[nodiscard]] Vec2 size() const { return seen(high - low); }
+  [[nodiscard]] double area() const { return size().x * size().y; }
+  [[nodiscard]] bool upright() const { return along == Vec2{1, 0}; }
+  bool operator==(const TurnedRectangle& other) const {
+    return low == other.low && high == other.high && along == other.along;
+  }
+};
+
 /// Discs chosen by name, for supports and loads. On the sides of a free assembly every disc also stands for a stretch
 /// of the side, over which a traction is spread.
 struct DiscGroup {
@@ -65,10 +82,9 @@ struct Assembly {
   std::vector<Contact> contacts;
   std::optional<double> gap_tolerance;  ///< by which the contacts were found (touching_discs); none: they were given
   std::optional<Vec2> period;           ///< (Lx, Ly) in m of a periodic cell; none: free boundary
-  std::optional<Rectangle>
-      box;  ///< free: the region that the cells fill; none: the smallest rectangle that holds all discs
-  std::vector<double> cell_areas;     ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
-  std::vector<double> facet_lengths;  ///< m, per contact: the edge its two cells share; empty where unknown
+  std::optional<TurnedRectangle> box;   ///< free: the region that the cells fill; none: they are not measured yet
+  std::vector<double> cell_areas;       ///< m², the Voronoi (power) cell of each disc, clipped to the sides where free
+  std::vector<double> facet_lengths;    ///< m, per contact: the edge its two cells share; empty where unknown
   std::vector<ContactArms> contact_arms;  ///< per contact; empty: all lie on the lines of centres, n = l/|l|
   std::vector<BodySection> sections;      ///< per body; empty: discs of these radii
   std::vector<double> contact_kN;         ///< Pa, per contact: overrides the springs of the case; empty: none given

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -201,6 +202,7 @@ Assembly delaunay_assembly(const DelaunayOptions& options) {
   }
   if (cells.collinear && !assembly.periodic()) refuse_collinear(assembly);
   take_network(assembly, std::move(cells));
+  if (!assembly.periodic()) assembly.box = rectangle;
   return assembly;
 }
 
@@ -222,6 +224,7 @@ DelaunayStrip delaunay_strip(const DelaunayOptions& options, const StripShare& s
     if (drop_loose_discs(result.assembly, contacts) > 0) continue;
     result.strips = std::move(found.strips);
     take_network(result.assembly, std::move(found.cells));
+    if (!result.assembly.periodic()) result.assembly.box = rectangle;
     return result;
   }
 }
@@ -235,12 +238,14 @@ void triangulate(Assembly& assembly) {
     bad_input(fmt::format("{} cannot be triangulated", counted(assembly.size(), "disc")),
               "a triangulation needs three or more", "Add discs, or list the contacts");
   }
+  if (!assembly.periodic()) assembly.box = region_of_cells(assembly);
   PowerCells cells = power_cells(assembly);
   if (cells.collinear) refuse_collinear(assembly);
   take_network(assembly, std::move(cells));
 }
 
 void measure_cells(Assembly& assembly) {
+  if (!assembly.periodic()) assembly.box = region_of_cells(assembly);
   PowerCells cells = power_cells(assembly);
   // Name every contact as the triangulation does and look it up: neighbours ascend by i, j and shift.
   const auto key = [](const Contact& c) { return std::tuple(c.i, c.j, c.shift_x, c.shift_y); };
@@ -259,6 +264,33 @@ void measure_cells(Assembly& assembly) {
   }
   assembly.cell_areas = std::move(cells.areas);
   take_sides(assembly, cells);
+}
+
+void measure_missing_cells(Assembly& assembly) {
+  const bool has_areas = !assembly.cell_areas.empty();
+  const bool has_facets = !assembly.facet_lengths.empty() || (has_areas && assembly.contacts.empty());
+  if (assembly.box) check_inside(assembly, *assembly.box);
+  if (has_areas && (assembly.box || assembly.period)) {
+    constexpr double close = 1e-6;
+    const double region = assembly.period ? assembly.period->x * assembly.period->y : assembly.box->area();
+    const double cells = std::accumulate(assembly.cell_areas.begin(), assembly.cell_areas.end(), 0.0);
+    if (!(std::abs(cells - region) <= close * region)) {
+      bad_input_at("cell_areas", fmt::format("the cells have {:.6g} m², and their region {:.6g} m²", cells, region),
+                   "they fill it: one of the two is of other discs, or in other units",
+                   "Remove the cell areas, to have them measured");
+    }
+  }
+  if (!has_areas || !has_facets) {
+    std::vector<double> areas = std::move(assembly.cell_areas), lengths = std::move(assembly.facet_lengths);
+    measure_cells(assembly);
+    if (has_areas) assembly.cell_areas = std::move(areas);
+    if (has_facets) assembly.facet_lengths = std::move(lengths);
+  } else if (!assembly.periodic()) {
+    constexpr const char* sides[] = {"left",        "right",        "bottom",   "top",
+                                     "bottom_left", "bottom_right", "top_left", "top_right"};
+    if (std::ranges::all_of(sides, [&](const char* name) { return assembly.groups.contains(name); })) return;
+    for (auto& [name, side] : measured_sides(assembly)) assembly.groups.emplace(name, std::move(side));
+  }
 }
 
 }  // namespace equidem

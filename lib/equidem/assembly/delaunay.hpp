@@ -60,16 +60,21 @@ struct DelaunayStrip {
 DelaunayStrip delaunay_strip(const DelaunayOptions& options, const StripShare& share);
 
 /// Contacts, facets, cells and, where free, sides by (regular) triangulation of given discs; `assembly` brings
-/// centres, radii and period. Cells of a free assembly fill the smallest rectangle that holds all discs. Contacts and
-/// cells are replaced; groups are added where there is none of that name.
+/// centres, radii, period and box. Cells of a free assembly fill its region, which becomes its box. Contacts and cells
+/// are replaced; groups are added where there is none of that name.
 /// \throws Error (bad_input) on duplicate centres, and where free on fewer than three discs or collinear centres
 ///         (named)
 void triangulate(Assembly& assembly);
 
 /// Voronoi (power) cell areas of given discs whose contacts are already known, and facet lengths of those contacts
-/// that are edges of the triangulation (0 for the others); where free, also the groups of sides and corners, where
-/// there is none of that name. Any number of discs, also on one line.
+/// that are edges of the triangulation (0 for the others); where free, also the box, if there is none, and the groups
+/// of sides and corners, where there is none of that name. Any number of discs, also on one line.
 /// \throws Error (bad_input) on duplicate centres (named)
 void measure_cells(Assembly& assembly);
+
+/// Measure of areas, facets and, where free, groups of sides what a file does not give: triangulating takes longer than
+/// reading.
+/// \throws Error (bad_input) as measure_cells, and where the areas given do not add up to the box or the periodic cell
+void measure_missing_cells(Assembly& assembly);
 
 }  // namespace equidem

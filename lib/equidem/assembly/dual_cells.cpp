@@ -2,6 +2,7 @@
 #include "equidem/assembly/dual_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -24,12 +25,15 @@ struct Facet {
   bool cut = false;     ///< it ends at the rectangle
   bool certain = true;  ///< no image beyond those present can take part of it
 
-  [[nodiscard]] double length() const { return std::max(0.0, high - low); }
+  /// Negative by round-off alone. The sum of all areas needs the sign: ends of facets that meet in a point cancel
+  /// there, wherever round-off puts it.
+  [[nodiscard]] double stretch() const { return high - low; }
+  [[nodiscard]] double length() const { return std::max(0.0, stretch()); }
 };
 
 class DualGeometry {
  public:
-  DualGeometry(const Sites& sites, const Strips& strips, const std::optional<Rectangle>& domain)
+  DualGeometry(const Sites& sites, const Strips& strips, const std::optional<TurnedRectangle>& domain)
       : sites_(sites), strips_(strips), domain_(domain) {}
 
   [[nodiscard]] Facet facet(const TriangulationEdge& edge) const {
@@ -39,8 +43,9 @@ class DualGeometry {
     Facet facet;
     facet.distance = norm(l);
     facet.lever = 0.5 * (facet.distance + (wa - wb) / facet.distance);
-    facet.high = edge.left < 0 ? unbounded : radical_centre(edge, edge.left, l, facet.distance);
-    facet.low = edge.right < 0 ? -unbounded : radical_centre(edge, edge.right, l, facet.distance);
+    const Vec2 s = perpendicular(l / facet.distance);
+    facet.high = edge.left < 0 ? unbounded : dot(radical_centre(edge.a, edge.b, edge.left), s);
+    facet.low = edge.right < 0 ? -unbounded : dot(radical_centre(edge.b, edge.a, edge.right), s);
     if (domain_) clip(facet, edge.a, l);
     if (!domain_ || (strips_.count() > 1 && facet.length() > 0))
       facet.certain = certain(facet, facet.high, edge.a, l) && certain(facet, facet.low, edge.a, l);
@@ -48,45 +53,46 @@ class DualGeometry {
   }
 
  private:
-  /// The place on the line of a and b, along s, at which the power of the site c is the same too. With u = b - a, v = c
-  /// - a, w = c
-  /// - b: t = |u| (v.w + (w_a - w_c) - (w_a - w_b) u.v/|u|²) / (2 u x v), for equal weights |u|/2 times the cotangent
-  /// of the angle at c. The product u x v is taken of the two shorter sides, where it loses least.
-  [[nodiscard]] double radical_centre(const TriangulationEdge& edge, std::int32_t c, Vec2 u, double length) const {
-    const Vec2 v = sites_.branch(edge.a, c);
-    const Vec2 w = sites_.branch(edge.b, c);
-    const double uu = dot(u, u);
-    const double vv = dot(v, v);
-    const double ww = dot(w, w);
-    const double twice_area = uu >= vv && uu >= ww ? cross(v, w) : vv >= ww ? cross(u, w) : cross(u, v);
-    double numerator = dot(v, w);
-    if (sites_.weighted()) {
-      const double wa = sites_.weight(edge.a);
-      numerator += (wa - sites_.weight(c)) - (wa - sites_.weight(edge.b)) * dot(u, v) / uu;
-    }
-    return length * numerator / (2 * twice_area);
+  /// The place of equal power of the corners of a counter-clockwise triangle, from its first corner. All three edges
+  /// take it from the same corner p, opposite to the longest side, where the product u x v of the sides loses least: x
+  /// u = (u² + w_p - w_q)/2 and x v likewise. Corners in a row up to round-off have it beyond all rectangles, on the
+  /// side that the triangulation has found by exact arithmetic.
+  [[nodiscard]] Vec2 radical_centre(std::int32_t a, std::int32_t b, std::int32_t c) const {
+    std::array<std::int32_t, 3> corners = {a, b, c};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    const auto side = [&](std::size_t k) { return squared(sites_.branch(corners[(k + 1) % 3], corners[(k + 2) % 3])); };
+    const std::array<double, 3> sides = {side(0), side(1), side(2)};
+    std::rotate(corners.begin(), corners.begin() + (std::max_element(sides.begin(), sides.end()) - sides.begin()),
+                corners.end());
+    const auto [p, q, r] = corners;
+    const Vec2 u = sites_.branch(p, q), v = sites_.branch(p, r);
+    const double wp = sites_.weight(p), uu = squared(u), vv = squared(v);
+    const double to_q = 0.5 * (uu + (wp - sites_.weight(q))), to_r = 0.5 * (vv + (wp - sites_.weight(r)));
+    constexpr double straight = 1e-20;
+    const double twice_area = std::max(cross(u, v), straight * std::sqrt(uu * vv));
+    return sites_.branch(a, p) + perpendicular(to_r * u - to_q * v) / twice_area;
   }
 
   /// Cut the facet at the sides of the rectangle.
   void clip(Facet& facet, std::int32_t a, Vec2 l) const {
     const Vec2 n = l / facet.distance;
-    const Vec2 s = perpendicular(n);
-    const Vec2 foot = sites_.position(a) + facet.lever * n;
-    const double low = facet.low;
-    const double high = facet.high;
-    const auto slab = [&](double from, double along, double lowest, double highest) {
-      if (along == 0) {
-        if (from < lowest || from > highest) facet.high = -unbounded;
+    const Vec2 foot = domain_->seen(sites_.position(a) - domain_->low + facet.lever * n);
+    const Vec2 along = domain_->seen(perpendicular(n)), size = domain_->size();
+    double first = -unbounded, last = unbounded;
+    const auto slab = [&](double from, double way, double width) {
+      if (way == 0) {
+        if (from < 0 || from > width) last = -unbounded;
         return;
       }
-      const double t0 = (lowest - from) / along;
-      const double t1 = (highest - from) / along;
-      facet.low = std::max(facet.low, std::min(t0, t1));
-      facet.high = std::min(facet.high, std::max(t0, t1));
+      first = std::max(first, std::min(-from / way, (width - from) / way));
+      last = std::min(last, std::max(-from / way, (width - from) / way));
     };
-    slab(foot.x, s.x, domain_->low.x, domain_->high.x);
-    slab(foot.y, s.y, domain_->low.y, domain_->high.y);
-    facet.cut = facet.low != low || facet.high != high;
+    slab(foot.x, along.x, size.x);
+    slab(foot.y, along.y, size.y);
+    facet.cut = facet.low < first || facet.high > last;
+    if (!(first < last)) first = last = 0;
+    facet.low = std::clamp(facet.low, first, last);
+    facet.high = std::clamp(facet.high, first, last);
   }
 
   /// Whether no site that was left out can have less power at the end t of the facet than a has, beyond the images or
@@ -108,13 +114,13 @@ class DualGeometry {
 
   const Sites& sites_;
   const Strips& strips_;
-  const std::optional<Rectangle>& domain_;
+  const std::optional<TurnedRectangle>& domain_;
 };
 
 }  // namespace
 
 std::optional<DualCells> cells_between(const Sites& sites, std::span<const TriangulationEdge> edges,
-                                       const Strips& strips, const std::optional<Rectangle>& domain,
+                                       const Strips& strips, const std::optional<TurnedRectangle>& domain,
                                        std::size_t discs) {
   const DualGeometry geometry(sites, strips, domain);
   constexpr std::size_t at_once = 1 << 18, grain = 8192;
@@ -135,7 +141,8 @@ std::optional<DualCells> cells_between(const Sites& sites, std::span<const Trian
       if (!facet.certain) return {};
       if (facet.cut) dual.cut.insert(dual.cut.end(), {some[k].a, some[k].b});
       const double length = facet.length();
-      const double area_a = 0.5 * facet.lever * length, area_b = 0.5 * (facet.distance - facet.lever) * length;
+      const double area_a = 0.5 * facet.lever * facet.stretch();
+      const double area_b = 0.5 * (facet.distance - facet.lever) * facet.stretch();
       const bool wide = length > smallest_facet * facet.distance;
       if (strips.chosen()) {
         if (strips.holds(some[k].b)) cells.areas[some[k].b] += area_b, dual.contacts[some[k].b] += wide ? 1 : 0;

@@ -23,10 +23,12 @@ struct DualCells {
 };
 
 /// Neighbours, facets, and the part of the areas that lies between centres and facets: half of lever times length on
-/// either side, the lever negative where the facet lies behind the centre. None where a facet is not certain. Where a
+/// either side, the lever negative where the facet lies behind the centre: they fill the rectangle together with the
+/// parts between centres and sides. None where a facet is not certain. Where a
 /// strip is chosen: neighbours that start in it, and areas of its discs.
 /// \param domain the rectangle of a free assembly
 std::optional<DualCells> cells_between(const Sites& sites, std::span<const TriangulationEdge> edges,
-                                       const Strips& strips, const std::optional<Rectangle>& domain, std::size_t discs);
+                                       const Strips& strips, const std::optional<TurnedRectangle>& domain,
+                                       std::size_t discs);
 
 }  // namespace equidem

@@ -33,8 +33,8 @@ namespace {
 using Json = nlohmann::json;
 
 const std::vector<std::string> known_keys = [] {
-  std::vector<std::string> keys{"schema",   "title",  "cell",    "box",     "discs", "sections",
-                                "contacts", "levers", "normals", "offsets", "groups"};
+  std::vector<std::string> keys{"schema", "title",   "cell",    "box",        "discs",         "sections", "contacts",
+                                "levers", "normals", "offsets", "cell_areas", "facet_lengths", "groups"};
   for (const ContactNumbers& numbers : contact_numbers) keys.emplace_back(numbers.key);
   return keys;
 }();
@@ -125,6 +125,13 @@ void read_pairs(const Json& file, const char* key, const char* names, const char
   }
 }
 
+/// "key": one number for each of `count`.
+void read_numbers(const Json& file, const char* key, const char* what, std::size_t count, std::vector<double>& to) {
+  if (!file.contains(key)) return;
+  check_list_per(what, file[key], count, key);
+  for (std::size_t k = 0; k < count; ++k) to.push_back(number(file[key][k], fmt::format("{}[{}]", key, k)));
+}
+
 void check_keys(const Json& file) {
   if (!file.is_object()) wrong_kind(file, "an object with the keys schema, discs, ...", "");
   const auto found = file.find("schema");
@@ -148,14 +155,15 @@ void read_discs(const Json& file, Assembly& assembly) {
   }
   if (file.contains("box")) {
     const Json& corners = file["box"];
-    check_row(corners, 2, "[x, y], [x, y]", "box");
+    const bool turned = corners.is_array() && corners.size() == 3;
+    if (!turned) check_row(corners, 2, "[x, y], [x, y]", "box");
     const auto corner = [&](std::size_t k) {
       const std::string entry = fmt::format("box[{}]", k);
       const Json& place = corners[k];
       check_row(place, 2, "x, y", entry);
       return Vec2{number(place[0], entry), number(place[1], entry)};
     };
-    assembly.box = Rectangle{.low = corner(0), .high = corner(1)};
+    assembly.box = TurnedRectangle({.low = corner(0), .high = corner(1)}, turned ? corner(2) : Vec2{1, 0});
   }
   const Json& discs = file["discs"];
   check_list(discs, "discs");
@@ -170,6 +178,7 @@ void read_discs(const Json& file, Assembly& assembly) {
              [&](std::size_t, double area, double moment) {
                assembly.sections.push_back({area, moment});
              });
+  read_numbers(file, "cell_areas", "disc", assembly.size(), assembly.cell_areas);
 }
 
 void read_contacts(const Json& file, double gap_tolerance, Assembly& assembly) {
@@ -216,6 +225,7 @@ void read_levers_and_springs(const Json& file, Assembly& assembly) {
     read_pairs(file, numbers.key, numbers.symbols, "contact", contacts,
                [&](std::size_t, double first, double second) { numbers.add(first, second, assembly); });
   }
+  read_numbers(file, "facet_lengths", "contact", contacts, assembly.facet_lengths);
   refuse_repeated_contacts(assembly);
 }
 
@@ -307,7 +317,7 @@ Assembly assembly_of(const Json& file, double gap_tolerance) {
     }
   }
   check(assembly);
-  measure_cells(assembly);
+  measure_missing_cells(assembly);
   return assembly;
 }
 

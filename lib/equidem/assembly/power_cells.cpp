@@ -2,17 +2,22 @@
 #include "equidem/assembly/power_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "equidem/assembly/dual_cells.hpp"
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/assembly/sites.hpp"
 #include "equidem/assembly/strips.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -97,31 +102,35 @@ SideCells cells_along(std::vector<Parabola> parabolas, double low, double high, 
   return side;
 }
 
-/// The groups left, right, bottom, top and bottom_left, ... of a free assembly in `domain`: along each side, the
-/// power diagram of the plane is that of the points of the side, which is found afresh from the candidates. Adds the
-/// part of each area that lies between centre and side, half of distance times length.
+/// The cells at the sides of a rectangle, counter-clockwise from its lower side; each runs along x or y of the
+/// rectangle. Along each side, the power diagram of the plane is that of the points of the side, which is found afresh
+/// from the candidates. Adds the part of each area that lies between centre and side, half of distance times length.
 /// \param candidates discs of which cells may reach a side, ascending
-std::map<std::string, DiscGroup> side_cells(const Assembly& assembly, std::span<const std::int32_t> candidates,
-                                            const Rectangle& domain, std::vector<double>& areas) {
-  const auto seen = [&](const auto& along, const auto& distance) {
+std::array<SideCells, 4> side_cells(const Assembly& assembly, std::span<const std::int32_t> candidates,
+                                    const TurnedRectangle& domain, std::vector<double>& areas) {
+  const auto side = [&](double length, const auto& along, const auto& distance) {
     std::vector<Parabola> parabolas;
     parabolas.reserve(candidates.size());
     for (const std::int32_t disc : candidates) {
-      const Vec2 x = assembly.centres[disc];
-      const double r = assembly.radii[disc];
-      const double d = distance(x);
-      parabolas.push_back({.disc = disc, .along = along(x), .distance = d, .excess = d * d - r * r});
+      const Vec2 from_low = domain.seen(assembly.centres[disc] - domain.low);
+      const Vec2 to_high = domain.seen(domain.high - assembly.centres[disc]);
+      const double r = assembly.radii[disc], d = distance(from_low, to_high);
+      parabolas.push_back({.disc = disc, .along = along(from_low), .distance = d, .excess = d * d - r * r});
     }
-    return parabolas;
+    return cells_along(std::move(parabolas), 0, length, areas);
   };
-  const auto x = [](Vec2 p) { return p.x; };
-  const auto y = [](Vec2 p) { return p.y; };
-  const Vec2 low = domain.low;
-  const Vec2 high = domain.high;
-  SideCells bottom = cells_along(seen(x, [&](Vec2 p) { return p.y - low.y; }), low.x, high.x, areas);
-  SideCells top = cells_along(seen(x, [&](Vec2 p) { return high.y - p.y; }), low.x, high.x, areas);
-  SideCells left = cells_along(seen(y, [&](Vec2 p) { return p.x - low.x; }), low.y, high.y, areas);
-  SideCells right = cells_along(seen(y, [&](Vec2 p) { return high.x - p.x; }), low.y, high.y, areas);
+  const auto x = [](Vec2 from_low) { return from_low.x; };
+  const auto y = [](Vec2 from_low) { return from_low.y; };
+  const Vec2 size = domain.size();
+  return {side(size.x, x, [](Vec2 from_low, Vec2) { return from_low.y; }),
+          side(size.y, y, [](Vec2, Vec2 to_high) { return to_high.x; }),
+          side(size.x, x, [](Vec2, Vec2 to_high) { return to_high.y; }),
+          side(size.y, y, [](Vec2 from_low, Vec2) { return from_low.x; })};
+}
+
+/// The groups left, right, bottom, top and bottom_left, ...
+std::map<std::string, DiscGroup> groups_of(std::array<SideCells, 4> cells) {
+  auto& [bottom, right, top, left] = cells;
   std::map<std::string, DiscGroup> sides;
   sides["bottom_left"].discs = {bottom.first};
   sides["bottom_right"].discs = {bottom.last};
@@ -136,32 +145,32 @@ std::map<std::string, DiscGroup> side_cells(const Assembly& assembly, std::span<
 
 /// The discs of which cells may reach a side, ascending: the power of a place of the side is at least the excess of a
 /// disc, and in a stretch of the side at most that of any disc above it plus the length of the stretch squared.
-std::vector<std::int32_t> discs_near_sides(const Assembly& assembly, const Rectangle& domain) {
+std::vector<std::int32_t> discs_near_sides(const Assembly& assembly, const TurnedRectangle& domain) {
   const std::size_t count = assembly.size();
   const auto stretches = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
   std::vector<std::uint8_t> near(count, 0);
-  const auto look = [&](double low, double high, const auto& along, const auto& distance) {
-    const double length = (high - low) / static_cast<double>(stretches);
+  const auto look = [&](double side, const auto& along, const auto& distance) {
+    const double length = side / static_cast<double>(stretches);
     const auto excess = [&](std::size_t disc) {
       const double d = distance(assembly.centres[disc]), r = assembly.radii[disc];
       return d * d - r * r;
     };
     std::vector<double> least(stretches, infinity);
     for (std::size_t disc = 0; disc < count; ++disc) {
-      const double stretch = std::floor((along(assembly.centres[disc]) - low) / length);
+      const double stretch = std::floor(along(assembly.centres[disc]) / length);
       double& lowest = least[static_cast<std::size_t>(std::clamp(stretch, 0.0, static_cast<double>(stretches - 1)))];
       lowest = std::min(lowest, excess(disc));
     }
     const double most = *std::max_element(least.begin(), least.end()) + 2 * length * length;
     for (std::size_t disc = 0; disc < count; ++disc) near[disc] |= excess(disc) <= most ? 1 : 0;
   };
-  const Vec2 low = domain.low, high = domain.high;
-  const auto x = [](Vec2 p) { return p.x; };
-  const auto y = [](Vec2 p) { return p.y; };
-  look(low.x, high.x, x, [&](Vec2 p) { return p.y - low.y; });
-  look(low.x, high.x, x, [&](Vec2 p) { return high.y - p.y; });
-  look(low.y, high.y, y, [&](Vec2 p) { return p.x - low.x; });
-  look(low.y, high.y, y, [&](Vec2 p) { return high.x - p.x; });
+  const auto x = [&](Vec2 p) { return domain.seen(p - domain.low).x; };
+  const auto y = [&](Vec2 p) { return domain.seen(p - domain.low).y; };
+  const Vec2 size = domain.size();
+  look(size.x, x, y);
+  look(size.x, x, [&](Vec2 p) { return domain.seen(domain.high - p).y; });
+  look(size.y, y, x);
+  look(size.y, y, [&](Vec2 p) { return domain.seen(domain.high - p).x; });
   std::vector<std::int32_t> discs;
   for (std::size_t disc = 0; disc < count; ++disc) {
     if (near[disc] != 0) discs.push_back(static_cast<std::int32_t>(disc));
@@ -169,19 +178,32 @@ std::vector<std::int32_t> discs_near_sides(const Assembly& assembly, const Recta
   return discs;
 }
 
+std::array<SideCells, 4> sides_alone(const Assembly& assembly, const TurnedRectangle& domain) {
+  std::vector<double> areas(assembly.size(), 0.0);  // unused: their parts at the sides alone
+  return side_cells(assembly, discs_near_sides(assembly, domain), domain, areas);
+}
+
+/// The rectangle of which the sides are the groups left, right, bottom and top.
+Rectangle upright_region(const Assembly& assembly) {
+  if (assembly.box && assembly.box->upright()) return *assembly.box;
+  return upright_rectangle(assembly.centres, assembly.radii);
+}
+
 /// Adds the sides. A cell that takes a stretch of a side has a facet that the side cuts, unless it is the only one.
 /// \param outermost discs with such a facet
-void add_sides(const Assembly& assembly, const Rectangle& domain, std::vector<std::int32_t> outermost,
+void add_sides(const Assembly& assembly, const TurnedRectangle& domain, std::vector<std::int32_t> outermost,
                PowerCells& cells) {
   std::sort(outermost.begin(), outermost.end());
   outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
   if (outermost.empty()) {
     for (std::size_t disc = 0; disc < assembly.size(); ++disc) outermost.push_back(static_cast<std::int32_t>(disc));
   }
-  cells.sides = side_cells(assembly, outermost, domain, cells.areas);
+  std::array<SideCells, 4> sides = side_cells(assembly, outermost, domain, cells.areas);
+  cells.sides = groups_of(domain.upright() ? std::move(sides) : sides_alone(assembly, upright_region(assembly)));
 }
 
-PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
+PowerCells free_cells(const Assembly& assembly, const TurnedRectangle& domain) {
+  check_inside(assembly, domain);
   const Sites sites(assembly);
   Strips strips(sites);
   std::optional<DualCells> dual;
@@ -191,24 +213,40 @@ PowerCells free_cells(const Assembly& assembly, const Rectangle& domain) {
   }
   PowerCells cells = std::move(dual->cells);
   add_sides(assembly, domain, std::move(dual->cut), cells);
+  const double filled = std::accumulate(cells.areas.begin(), cells.areas.end(), 0.0), area = domain.area();
+  constexpr double close = 1e-9;
+  if (!(std::abs(filled - area) <= close * area)) {
+    computation_failed(
+        fmt::format("the cells of the discs have {:.6g} m² of the {:.6g} m² of their region", filled, area),
+        "centres that nearly coincide, or lie far from each other, leave no digits for the corners of their cells",
+        "Look for discs in one place, or far from the others");
+  }
   return cells;
 }
 
 }  // namespace
 
-Rectangle region_of_cells(const Assembly& assembly) {
-  if (assembly.box) return *assembly.box;
-  Rectangle box{.low = {infinity, infinity}, .high = {-infinity, -infinity}};
-  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
-    const Vec2 x = assembly.centres[disc];
-    const double r = assembly.radii[disc];
-    box.low = {std::min(box.low.x, x.x - r), std::min(box.low.y, x.y - r)};
-    box.high = {std::max(box.high.x, x.x + r), std::max(box.high.y, x.y + r)};
-  }
-  return box;
+TurnedRectangle region_of_cells(const Assembly& assembly) {
+  return assembly.box ? *assembly.box : least_rectangle(assembly.centres, assembly.radii);
 }
 
-PowerCells power_cells(const Assembly& assembly, const std::optional<Rectangle>& domain) {
+void check_inside(const Assembly& assembly, const TurnedRectangle& region) {
+  constexpr double epsilon = 8 * std::numeric_limits<double>::epsilon();
+  const auto& [low, high] = static_cast<const Rectangle&>(region);
+  for (std::size_t d = 0; d < assembly.size(); ++d) {
+    const Vec2 x = assembly.centres[d], from_low = region.seen(x - low), to_high = region.seen(high - x);
+    const double rounding = region.upright() ? 0 : epsilon * (norm(x) + norm(low) + norm(high));
+    if (std::min({from_low.x, from_low.y, to_high.x, to_high.y}) >= -rounding) continue;
+    const std::string turned =
+        region.upright() ? "" : fmt::format(" with a side along ({:g}, {:g})", region.along.x, region.along.y);
+    bad_input(
+        fmt::format("the centre of disc {}, ({:g}, {:g}) m, lies outside the box from ({:g}, {:g}) to ({:g}, {:g}) m{}",
+                    d, x.x, x.y, low.x, low.y, high.x, high.y, turned),
+        "the cells of all discs fill the box", "Correct the box, or remove it");
+  }
+}
+
+PowerCells power_cells(const Assembly& assembly, const std::optional<TurnedRectangle>& domain) {
   assert(assembly.size() > 0 && assembly.radii.size() == assembly.size());
   PowerCells cells = assembly.periodic() ? periodic_cells(assembly)
                                          : free_cells(assembly, domain ? *domain : region_of_cells(assembly));
@@ -221,7 +259,8 @@ StripCells strip_cells(const Assembly& assembly, const Rectangle& domain, const 
   Sites sites(assembly);
   Strips strips(sites);
   strips.choose(share.strip, share.count, domain);
-  const std::optional<Rectangle> clipped = assembly.periodic() ? std::nullopt : std::optional(domain);
+  std::optional<TurnedRectangle> clipped;
+  if (!assembly.periodic()) clipped = domain;
   std::optional<DualCells> dual;
   for (;;) {
     const std::vector<TriangulationEdge> edges = strips.edges();
@@ -242,9 +281,18 @@ StripCells strip_cells(const Assembly& assembly, const Rectangle& domain, const 
 
 std::map<std::string, DiscGroup> measured_sides(const Assembly& assembly) {
   assert(!assembly.periodic() && assembly.size() > 0);
-  const Rectangle domain = region_of_cells(assembly);
-  std::vector<double> areas(assembly.size(), 0.0);  // unused: their parts at the sides alone
-  return side_cells(assembly, discs_near_sides(assembly, domain), domain, areas);
+  return groups_of(sides_alone(assembly, upright_region(assembly)));
+}
+
+std::array<RegionSide, 4> region_sides(const Assembly& assembly) {
+  assert(!assembly.periodic() && assembly.size() > 0);
+  const TurnedRectangle region = region_of_cells(assembly);
+  auto [bottom, right, top, left] = sides_alone(assembly, region);
+  const Vec2 along = region.along, across = perpendicular(along);
+  return {{{-across, std::move(bottom.group)},
+           {along, std::move(right.group)},
+           {across, std::move(top.group)},
+           {-along, std::move(left.group)}}};
 }
 
 }  // namespace equidem

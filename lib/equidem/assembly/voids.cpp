@@ -102,9 +102,12 @@ bool in_cell(Vec2 place, Vec2 period) {
 }
 
 /// The largest radius of a circle about a place that no disc reaches into; negative inside a disc or out of the box.
-double room_at(Vec2 place, const Circles& discs, const std::optional<Rectangle>& box) {
+double room_at(Vec2 place, const Circles& discs, const std::optional<TurnedRectangle>& box) {
   double room = std::numeric_limits<double>::infinity();
-  if (box) room = std::min({place.x - box->low.x, box->high.x - place.x, place.y - box->low.y, box->high.y - place.y});
+  if (box) {
+    const Vec2 from_low = box->seen(place - box->low), to_high = box->seen(box->high - place);
+    room = std::min({from_low.x, from_low.y, to_high.x, to_high.y});
+  }
   for (std::size_t d = 0; d < discs.radii.size(); ++d)
     room = std::min(room, norm(place - discs.centres[d]) - discs.radii[d]);
   return room;

@@ -2,9 +2,11 @@
 #include "equidem/homogenize/boundary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/power_cells.hpp"
 #include "equidem/contact/chosen_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
@@ -14,24 +16,24 @@
 namespace equidem {
 namespace {
 
-struct Side {
-  const char* name;
-  Vec2 outward;
-};
-constexpr Side sides[] = {{"left", {-1, 0}}, {"right", {1, 0}}, {"bottom", {0, -1}}, {"top", {0, 1}}};
-
 bool crosses(const Contact& contact) {
   return contact.shift_x != 0 || contact.shift_y != 0;
 }
 
-const DiscGroup& side_of(const Assembly& assembly, const Side& side) {
-  const auto found = assembly.groups.find(side.name);
-  if (found == assembly.groups.end() || found->second.discs.empty()) {
-    bad_input(fmt::format("the assembly has no discs in the group '{}'", side.name),
-              "the boundary of a sample that is not periodic is made of left, right, bottom and top",
-              "Define these groups, or use a periodic assembly");
-  }
-  return found->second;
+/// The sides of a free sample: its groups, or, where its region is turned, those of the region, so that the answer
+/// turns with the sample.
+std::array<RegionSide, 4> sides_of(const Assembly& assembly) {
+  if (assembly.box && !assembly.box->upright()) return region_sides(assembly);
+  const auto side = [&](const char* name, Vec2 outward) {
+    const auto found = assembly.groups.find(name);
+    if (found == assembly.groups.end() || found->second.discs.empty()) {
+      bad_input(fmt::format("the assembly has no discs in the group '{}'", name),
+                "the boundary of a sample that is not periodic is made of left, right, bottom and top",
+                "Define these groups, or use a periodic assembly");
+    }
+    return RegionSide{outward, found->second};
+  };
+  return {side("left", {-1, 0}), side("right", {1, 0}), side("bottom", {0, -1}), side("top", {0, 1})};
 }
 
 /// Add m x to every vector, m such that sum a x = area I.
@@ -140,16 +142,15 @@ TractionSample load_sides(const Assembly& assembly, const ContactSprings& spring
   TractionSample sample{assembly, springs, {}, {}};
   std::vector<Vec2> a, x;
   Vec2 sum, mean;
-  for (const Side& side : sides) {
-    const DiscGroup& discs = side_of(assembly, side);
+  for (const auto& [outward, discs] : sides_of(assembly)) {
     if (discs.tributary_lengths.empty()) {
-      bad_input(fmt::format("the discs of the group '{}' have no lengths", side.name),
+      bad_input("the discs of a side have no lengths",
                 "a stress is spread over the sides by the length that each disc stands for",
                 "Use boundary = \"displacement\", or a lattice or Delaunay assembly");
     }
     for (std::size_t k = 0; k < discs.discs.size(); ++k) {
       sample.shares.push_back({discs.discs[k], {}});
-      a.push_back(discs.tributary_lengths[k] * side.outward);
+      a.push_back(discs.tributary_lengths[k] * outward);
       x.push_back(assembly.centres[discs.discs[k]]);
       sum += a.back();
       mean += x.back();
@@ -174,8 +175,8 @@ std::vector<std::uint8_t> boundary_discs(const Assembly& assembly) {
       if (crosses(contact)) at_boundary[contact.i] = at_boundary[contact.j] = 1;
     }
   } else {
-    for (const Side& side : sides) {
-      for (const std::int32_t disc : side_of(assembly, side).discs) at_boundary[disc] = 1;
+    for (const RegionSide& side : sides_of(assembly)) {
+      for (const std::int32_t disc : side.discs.discs) at_boundary[disc] = 1;
     }
   }
   return at_boundary;

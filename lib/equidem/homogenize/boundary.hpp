@@ -29,8 +29,8 @@ struct EnumNames<Boundary> {
       {Boundary::periodic, "periodic"}, {Boundary::displacement, "displacement"}, {Boundary::traction, "traction"}};
 };
 
-/// 1 for discs at the boundary: of a free assembly those of its sides (groups left, right, bottom, top), of a periodic
-/// cell those with a contact that crosses the period.
+/// 1 for discs at the boundary: of a free assembly those of its sides (groups left, right, bottom, top; where its
+/// region is turned, the sides of the region), of a periodic cell those with a contact that crosses the period.
 /// \throws Error (bad_input) where a free assembly has no sides
 std::vector<std::uint8_t> boundary_discs(const Assembly& assembly);
 

@@ -68,7 +68,7 @@ void add_body(const GrainPacking& packing, std::size_t body, Vec2 centre, Assemb
   assembly.radii.push_back(std::sqrt(assembly.sections.back().area / std::numbers::pi));
 }
 
-/// The smallest rectangle that holds all bodies.
+/// The smallest rectangle along the walls that holds all bodies.
 Rectangle outline_of_all(const GrainPacking& packing) {
   Rectangle box{.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
   for (const Grain& grain : packing.grains) {
@@ -181,7 +181,7 @@ Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) 
   for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
   if (packing.box.periodic()) {
     assembly.period = packing.box.size;
-  } else if (packing.shape != PackingShape::Kind::disc) {
+  } else {
     assembly.box = outline_of_all(packing);
   }
   const BodyContacts contacts = contacts_of_bodies(packing, options);

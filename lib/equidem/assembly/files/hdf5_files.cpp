@@ -14,7 +14,6 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/files/hdf5_columns.hpp"
-#include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/files/hdf5.hpp"
@@ -39,7 +38,7 @@ class Reading {
     read_contacts();
     read_groups();
     check(assembly_);
-    take_cells();
+    measure_missing_cells(assembly_);
     return std::move(assembly_);
   }
 
@@ -139,8 +138,13 @@ class Reading {
     read(cell, "direction", 2, [&](std::size_t, auto row) { corners.push_back(row[0]); });
     if (!corners.empty()) assembly_.period = Vec2{corners[0], corners[1]};
     corners.clear();
-    read(box, "corner", 2, [&](std::size_t, auto row) { corners.insert(corners.end(), row.begin(), row.end()); });
-    if (!corners.empty()) assembly_.box = Rectangle{{corners[0], corners[1]}, {corners[2], corners[3]}};
+    // A third row is the direction of the lower side.
+    const bool turned = has(box.name) && rows_of(box.name, box.width, Hdf5File::Kind::real) == 3;
+    read(box, "corner", turned ? 3 : 2,
+         [&](std::size_t, auto row) { corners.insert(corners.end(), row.begin(), row.end()); });
+    if (!corners.empty())
+      assembly_.box = TurnedRectangle({{corners[0], corners[1]}, {corners[2], corners[3]}},
+                                      turned ? Vec2{corners[4], corners[5]} : Vec2{1, 0});
     const std::size_t count = rows_of(discs.name, discs.width, Hdf5File::Kind::real);
     require_memory(bytes_of_network(static_cast<double>(count)),
                    fmt::format("an assembly of {} discs needs about", grouped(static_cast<std::int64_t>(count))));
@@ -226,21 +230,6 @@ class Reading {
         for_each_row<double>(lengths, count, 0,
                              [&](std::size_t, auto row) { group.tributary_lengths.push_back(row[0]); });
       }
-    }
-  }
-
-  /// Measure what the file does not give: triangulating takes longer than reading.
-  void take_cells() {
-    constexpr const char* sides[] = {"left",        "right",        "bottom",   "top",
-                                     "bottom_left", "bottom_right", "top_left", "top_right"};
-    const auto given = [&](const char* name) { return assembly_.groups.contains(name); };
-    if (!has(cell_areas.name) || !has(facet_lengths.name)) {
-      std::vector<double> areas = std::move(assembly_.cell_areas), lengths = std::move(assembly_.facet_lengths);
-      measure_cells(assembly_);
-      if (has(cell_areas.name)) assembly_.cell_areas = std::move(areas);
-      if (has(facet_lengths.name)) assembly_.facet_lengths = std::move(lengths);
-    } else if (!assembly_.periodic() && !std::ranges::all_of(sides, given)) {
-      for (auto& [name, side] : measured_sides(assembly_)) assembly_.groups.emplace(name, std::move(side));
     }
   }
 

@@ -38,8 +38,10 @@ std::string json_of(const Assembly& assembly) {
               ? fmt::format(",\n\"cell\": [{}, {}]", shortest(assembly.period->x), shortest(assembly.period->y))
               : ",\n\"cell\": null";
   if (assembly.box) {
-    text += fmt::format(",\n\"box\": [{}, {}]", pair_of(assembly.box->low.x, assembly.box->low.y),
-                        pair_of(assembly.box->high.x, assembly.box->high.y));
+    const auto& [low, high] = static_cast<const Rectangle&>(*assembly.box);
+    const Vec2 along = assembly.box->along;
+    text += fmt::format(",\n\"box\": [{}, {}", pair_of(low.x, low.y), pair_of(high.x, high.y));
+    text += assembly.box->upright() ? "]" : fmt::format(", {}]", pair_of(along.x, along.y));
   }
   append_list(text, "discs", assembly.size(), [&](std::size_t k) {
     return fmt::format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
@@ -49,6 +51,10 @@ std::string json_of(const Assembly& assembly) {
     append_list(text, "sections", assembly.size(),
                 [&](std::size_t k) { return pair_of(assembly.sections[k].area, assembly.sections[k].polar_moment); });
   }
+  const auto append_numbers = [&](const char* key, const std::vector<double>& numbers) {
+    append_list(text, key, numbers.size(), [&](std::size_t k) { return shortest(numbers[k]); });
+  };
+  if (!assembly.cell_areas.empty()) append_numbers("cell_areas", assembly.cell_areas);
   const auto& contacts = assembly.contacts;
   append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
     return fmt::format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
@@ -67,6 +73,8 @@ std::string json_of(const Assembly& assembly) {
     append_list(text, numbers.key, contacts.size(),
                 [&](std::size_t k) { return pair_of((assembly.*numbers.first)[k], (assembly.*numbers.second)[k]); });
   }
+  if (!assembly.cell_areas.empty() && assembly.facet_lengths.size() == contacts.size())
+    append_numbers("facet_lengths", assembly.facet_lengths);
   if (!assembly.groups.empty()) {
     std::string separator = ",\n\"groups\": {\n";
     for (const auto& [name, members] : assembly.groups) {

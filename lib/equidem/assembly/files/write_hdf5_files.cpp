@@ -81,8 +81,8 @@ class Writing {
     const Assembly& a = assembly_;
     if (a.period) add<double>(cell, 2, [&a](std::size_t k, double* to) { *to = k == 0 ? a.period->x : a.period->y; });
     if (a.box) {
-      add<double>(box, 2, [&a](std::size_t k, double* to) {
-        const Vec2 corner = k == 0 ? a.box->low : a.box->high;
+      add<double>(box, a.box->upright() ? 2 : 3, [&a](std::size_t k, double* to) {
+        const Vec2 corner = k == 0 ? a.box->low : k == 1 ? a.box->high : a.box->along;
         set(to, corner.x, corner.y);
       });
     }

@@ -122,7 +122,12 @@ Assembly row_lattice(const LatticeOptions& options, const RowPattern& pattern) {
   assembly.cell_areas.assign(assembly.size(), pattern.cell_area);
   assembly.facet_lengths.assign(assembly.contacts.size(), pattern.facet_length);
   if (options.periodic) assembly.period = lattice.period();
-  if (!options.periodic) assembly.groups = row_lattice_sides(lattice);
+  if (options.periodic) return assembly;
+  assembly.groups = row_lattice_sides(lattice);
+  // As large as all cells together: as wide as the rows in the mean.
+  const double height = options.rows * pattern.row_distance, middle = options.columns * options.radius;
+  const double half = 0.5 * static_cast<double>(assembly.size()) * pattern.cell_area / height;
+  assembly.box = Rectangle{{middle - half, 0}, {middle + half, height}};
   return assembly;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/breakage/notch.hpp"
 #include "equidem/core/error.hpp"
@@ -71,7 +72,7 @@ StrengthSample::StrengthSample(Assembly assembly, ContactSprings springs, const 
   }
   for (const double length : moves.tributary_lengths) width_ += length;
   if (moves.tributary_lengths.empty()) {
-    const Rectangle extent = region_of_cells(assembly_);
+    const Rectangle extent = upright_rectangle(assembly_.centres, assembly_.radii);
     width_ = across(options_.axis, extent.high - extent.low);
   }
   assembly_.groups[kept_disc].discs = {middle_disc(assembly_, stays, options_.axis)};
