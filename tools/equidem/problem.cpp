@@ -15,6 +15,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
+#include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/choice/solve_time.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
@@ -145,10 +146,16 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
   const ExpectedSize size = expected_size(resolved.assembly);
   if (size.discs < 1) return;
   constexpr double factor = 100, loop = 450;  // bytes a disc
-  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
+  const SolverMethod method = resolved.solver.method;
+  const bool may_iterate = method == SolverMethod::multigrid || method == SolverMethod::automatic;
+  const double of_factor = factor * std::log2(std::max(size.narrow_side, 1.0));
+  const double of_grids = bytes_of_multigrid(1, 2);  // two contacts a disc: a square lattice
+  const double beside = purpose != Purpose::factorize ? loop
+                        : may_iterate                 ? std::min(of_factor, of_grids)
+                                                      : of_factor;
   require_memory(
       bytes_of_network(size.discs) + size.discs * beside,
-      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
+      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "solving a network" : "a run",
                   grouped(static_cast<std::int64_t>(size.discs))));
 }
 

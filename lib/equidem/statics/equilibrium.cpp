@@ -6,12 +6,12 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/assembly/touching.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -48,7 +48,7 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
   Stopwatch watch;
   ContactGraph graph(assembly);
   DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  check_rigidity(assembly, graph, springs, unknowns);
+  check_rigidity(assembly, graph, springs, unknowns, options.mechanisms);
   if (assembly.size() == 1 && assembly.contacts.empty()) {
     bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
               "Add discs that touch it");
@@ -100,7 +100,6 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
 /// A mechanism deforms no contact: prescribed motions do no work on it, loads may.
 void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& given, Equilibrium& result) const {
   constexpr std::int64_t most = 1000;
-  constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
   result.mechanisms = solver.factor().report().zero_pivots;
   const auto description = [&](std::int64_t k) {
     return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
@@ -109,20 +108,14 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
   if (result.mechanisms > most) {
     bad_input(
         fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
-        fmt::format("it can move at no cost: {}", result.first_mechanism),
-        fmt::format("Add contacts{}, or give the contacts tangential springs (kT > 0)", by_larger_tolerance(assembly)));
+        fmt::format("a motion has no energy: {}", result.first_mechanism),
+        remedy_of_mechanisms(assembly, springs, effects.rotation));
   }
   for (std::int64_t k = 0; k < result.mechanisms; ++k) {
-    const std::vector<double> motion = solver.factor().null_motion(k);
-    double work = 0, size = 0;
-    for (std::size_t e = 0; e < motion.size(); ++e) {
-      work += motion[e] * given.force[e];
-      size += std::abs(motion[e] * given.force[e]);
-    }
-    if (std::abs(work) <= negligible * size) continue;
-    bad_input("a load drives a mechanism", fmt::format("it moves the assembly at no cost: {}", description(k)),
-              fmt::format("Hold that motion by a support, add contacts{}, or take the load off those discs",
-                          by_larger_tolerance(assembly)));
+    if (!does_work(given.force, solver.factor().null_motion(k), solver.unknowns().per_disc)) continue;
+    bad_input("a load drives a mechanism", fmt::format("it does work on a motion that has no energy: {}", description(k)),
+              remedy_of_mechanisms(assembly, springs, effects.rotation,
+                                   {"hold that motion by a support", "take the load off those discs"}));
   }
 }
 
