@@ -208,7 +208,7 @@ Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& sp
 }
 
 SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                             const EquilibriumOptions& options) {
+                             const EquilibriumOptions& options, bool indefinite) {
   check(assembly);
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(assembly, springs, options.rotation);
@@ -220,8 +220,8 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
     result = estimate_iterations(assembly, unknowns);
   } else {
     const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
-    result = estimate(symbolic, unknowns, springs.may_be_indefinite(),
-                      tries_single_precision(options.solver, springs, symbolic));
+    result = estimate(symbolic, unknowns, indefinite || springs.may_be_indefinite(),
+                      !indefinite && tries_single_precision(options.solver, springs, symbolic));
     result.peak_bytes *= memory_factor(choice.method, options.solver.ordering);
   }
   result.method = choice.method;

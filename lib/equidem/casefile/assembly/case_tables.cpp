@@ -110,7 +110,8 @@ void bind_material(File<CaseTables>& file) {
                "G; with poisson_ratio or bulk_modulus_2d"),
            key("young_modulus", &T::given, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
            key("poisson_ratio", &T::given, &M::poisson_ratio, between(-1, 1),
-               "with shear_modulus or young_modulus; discs can show at most 1/4 in plane strain, 1/3 in plane stress"),
+               "with shear_modulus or young_modulus; lattices and the mean field show at most 1/4 in plane strain, 1/3 in plane stress; 'equidem calibrate' tells what "
+               "other assemblies show"),
            key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
                "K, mean stress of the plane over its change of area; with shear_modulus"),
            key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,

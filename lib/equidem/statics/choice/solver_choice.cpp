@@ -194,10 +194,21 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   result.factor_bytes = bytes * symbolic.panel_entries();
   result.operations = symbolic.operations;
   result.single_precision = single;
-  // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
-  // factor; L D L^T works in whole fronts and keeps the names of its rows.
-  const double front = bytes * symbolic.largest_front * symbolic.largest_front;
-  result.peak_bytes = (indefinite ? 1.25 : 1.1) * result.factor_bytes + (indefinite ? 3 : 2) * front;
+  // Beside the factor: update matrices on their way up, of which buffers are kept; L D L^T works in whole fronts.
+  double waiting = 0, largest = 0;
+  std::vector<double> of_children(symbolic.fronts(), 0.0);
+  for (std::size_t t = 0; t < symbolic.fronts(); ++t) {
+    const auto pivots = static_cast<double>(symbolic.pivots(t)), updates = static_cast<double>(symbolic.updates(t));
+    const double update = updates * updates, front = indefinite ? (pivots + updates) * (pivots + updates) : 0;
+    largest = std::max(largest, waiting + update + front);
+    waiting += update - of_children[t];
+    const std::int32_t parent = symbolic.tree.nodes[t].parent;
+    if (parent >= 0) of_children[parent] += update;
+  }
+  // K on the discs and about three contacts each, and the vectors of a solution.
+  const double b = symbolic.block, discs = static_cast<double>(symbolic.position.size());
+  const double system = sizeof(double) * discs * (4 * b * b + 12 * b);
+  result.peak_bytes = result.factor_bytes + bytes * largest + system;
   return result;
 }
 
