@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Moduli of cells whose discs roll or slide without energy, against the least energy over all motions.
+#include <Eigen/Dense>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <Eigen/Dense>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
@@ -72,8 +71,18 @@ std::vector<Cell> cells(double unit) {
                          {{0, 0, 1, 0}, {1, 1, 1, 0}, {0, 1, 0, 0}, {0, 1, -1, 0}, {1, 0, 0, 1}, {1, 0, 1, 1}}, 0.5, n,
                          n, unit));
     all.push_back(copies("kagome", {2, 2 * s}, {{0, 0}, {1, 0}, {0.5, s / 2}, {1, s}, {2, s}, {1.5, 1.5 * s}},
-                         {{0, 1, 0, 0}, {1, 0, 1, 0}, {0, 2, 0, 0}, {1, 2, 0, 0}, {3, 4, 0, 0}, {4, 3, 1, 0},
-                          {3, 5, 0, 0}, {4, 5, 0, 0}, {2, 3, 0, 0}, {2, 4, -1, 0}, {5, 0, 1, 1}, {5, 1, 0, 1}},
+                         {{0, 1, 0, 0},
+                          {1, 0, 1, 0},
+                          {0, 2, 0, 0},
+                          {1, 2, 0, 0},
+                          {3, 4, 0, 0},
+                          {4, 3, 1, 0},
+                          {3, 5, 0, 0},
+                          {4, 5, 0, 0},
+                          {2, 3, 0, 0},
+                          {2, 4, -1, 0},
+                          {5, 0, 1, 1},
+                          {5, 1, 0, 1}},
                          0.5, n, n, unit));
   }
   return all;
@@ -153,7 +162,8 @@ TEST_CASE("a_honeycomb_of_discs_that_roll_has_the_moduli_of_its_contacts_in_seri
   const Cell cell = cells(0.03)[0];
   for (const double kT : {1.0, 10.0, 1e3, 1e8}) {
     const double kN = 4e8;
-    const EffectiveModuli m = effective_moduli(effective_stiffness(cell.assembly, ContactSprings({kN, kT}), {}).stiffness);
+    const EffectiveModuli m =
+        effective_moduli(effective_stiffness(cell.assembly, ContactSprings({kN, kT}), {}).stiffness);
     CAPTURE(kT, m.bulk_modulus_2d, m.shear_modulus);
     CHECK(std::abs(m.bulk_modulus_2d - kN / (2 * std::sqrt(3.0))) < 1e-12 * kN);
     CHECK(std::abs(m.shear_modulus - kN * kT / (kN + kT) / std::sqrt(3.0)) < 1e-12 * kN);

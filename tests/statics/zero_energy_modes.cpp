@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Zero-energy modes and the work of loads on them, against singular values of all stretches and slips.
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <string>
 #include <vector>
-
-#include <Eigen/Dense>
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/random.hpp"

@@ -150,9 +150,7 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
   const bool may_iterate = method == SolverMethod::multigrid || method == SolverMethod::automatic;
   const double of_factor = factor * std::log2(std::max(size.narrow_side, 1.0));
   const double of_grids = bytes_of_multigrid(1, 2);  // two contacts a disc: a square lattice
-  const double beside = purpose != Purpose::factorize ? loop
-                        : may_iterate                 ? std::min(of_factor, of_grids)
-                                                      : of_factor;
+  const double beside = purpose != Purpose::factorize ? loop : may_iterate ? std::min(of_factor, of_grids) : of_factor;
   require_memory(
       bytes_of_network(size.discs) + size.discs * beside,
       fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "solving a network" : "a run",
@@ -344,7 +342,8 @@ Results estimate_results(const SolveEstimate& e, double resident, double solutio
                          const std::string& trust) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
-  results.line("memory").add("peak_bytes", "", std::max(peak_resident_memory(), resident + e.peak_bytes), "at the peak", {Shown::bytes})
+  results.line("memory")
+      .add("peak_bytes", "", std::max(peak_resident_memory(), resident + e.peak_bytes), "at the peak", {Shown::bytes})
       .add("solver_bytes", "", e.peak_bytes, "of it to solve", {Shown::bytes});
   if (e.factor_nonzeros > 0) {
     results.add("factor_bytes", "", e.factor_bytes, "of that for the factor", {Shown::bytes})
@@ -374,8 +373,8 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   EquilibriumOptions options = problem.options();
   if (inertia) options.solver.method = SolverMethod::multifrontal;
-  SolveEstimate estimate = estimate_solve(problem.assembly, problem.springs.springs, problem.supports, options,
-                                          inertia.has_value());
+  SolveEstimate estimate =
+      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, options, inertia.has_value());
   if (inertia) {
     const double vectors = sizeof(double) * *inertia * static_cast<double>(estimate.unknowns);
     estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + vectors);

@@ -169,8 +169,7 @@ void add_largest_void(Results& results, const Assembly& assembly);
 /// \param trust behind the time: by how much it may be wrong
 Results dry_run_results(const Problem& problem, double solutions, const Results& further = {},
                         AssemblyKeys keys = AssemblyKeys::all, double complex_solutions = 0,
-                        const std::string& trust = "mostly within a factor of two",
-                        std::optional<double> inertia = {});
+                        const std::string& trust = "mostly within a factor of two", std::optional<double> inertia = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

@@ -143,9 +143,10 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
                          const HomogenizeOptions& options) {
   const std::string strain = fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
   if (!resists_with_equal_springs(assembly, springs, options)) {
-    bad_input("the network is floppy", strain + " costs no energy beyond rounding",
-              "It has no modulus. " + remedy_of_mechanisms(assembly, springs,
-                                                           derive_effects(assembly, springs, options.rotation).rotation));
+    bad_input(
+        "the network is floppy", strain + " costs no energy beyond rounding",
+        "It has no modulus. " +
+            remedy_of_mechanisms(assembly, springs, derive_effects(assembly, springs, options.rotation).rotation));
   }
   if (springs.any_negative()) {
     computation_failed("at this kT/kN the network is at its limit of stability",

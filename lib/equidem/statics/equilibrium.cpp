@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -20,9 +21,20 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
+namespace {
+
+/// Whether sums of squares and products stay far within a double, and within a float for the grids of multigrid.
+bool in_range(double size) {
+  return size > 1e-30 && size < 1e30;
+}
+
+}  // namespace
+
 struct EquilibriumSolver::Implementation {
   const Assembly& assembly;
   const ContactSprings& springs;
+  double unit;  ///< Pa, of the springs of the solver, so that no sum of squares leaves the range of a double
+  std::optional<ContactSprings> scaled;  ///< springs over the unit, where that is not 1
   EquilibriumOptions options;
   Effects effects;
   StageTimes times;
@@ -32,6 +44,8 @@ struct EquilibriumSolver::Implementation {
                  const EquilibriumOptions& options_in)
       : assembly(assembly_in),
         springs(springs_in),
+        unit(in_range(springs_in.largest()) ? 1 : spring_unit(springs_in)),
+        scaled(unit == 1 ? std::nullopt : std::optional(scaled_springs(springs_in, 1 / unit))),
         options(options_in),
         effects(derive_effects(assembly_in, springs_in, options_in.rotation)),
         solver(build(supports)) {}
@@ -54,7 +68,9 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
               "Add discs that touch it");
   }
   times.add("check", watch.lap());
-  return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms, times};
+  return {
+      assembly, scaled ? *scaled : springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms,
+      times};
 }
 
 Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) const {
@@ -69,6 +85,16 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   const auto moves = [](double u) { return u != 0; };
   if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves))
     given.prescribed = unknowns.prescribed;
+  // Power of two: nothing is rounded.
+  double size = 0;
+  for (const std::vector<double>* all : {&given.force, &given.prescribed}) {
+    const double per = all == &given.force ? unit : 1;
+    for (const double value : *all) size = std::max(size, std::abs(value) / per);
+  }
+  const double amount = size == 0 || in_range(size) ? 1 : std::exp2(std::ilogb(size));
+  const std::vector<double> loads = given.force;
+  for (double& value : given.force) value = value / unit / amount;
+  for (double& value : given.prescribed) value /= amount;
   const std::int64_t iterations_before = solver.factor().report().iterations;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
@@ -83,9 +109,12 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
     bound_error(given, solution, result);
     result.times.add("error bound", watch.lap());
   }
+  for (std::vector<double>* part : {&solution.motion.high, &solution.motion.low}) {
+    for (double& value : *part) value *= amount;
+  }
   result.contact_forces.resize(assembly.contacts.size());
   contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
-  describe_state(given.force, solution.motion, result);
+  describe_state(loads, solution.motion, result);
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
   result.single_precision = report.single_precision;
@@ -106,14 +135,14 @@ void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& gi
   };
   if (result.mechanisms > 0) result.first_mechanism = description(0);
   if (result.mechanisms > most) {
-    bad_input(
-        fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
-        fmt::format("a motion has no energy: {}", result.first_mechanism),
-        remedy_of_mechanisms(assembly, springs, effects.rotation));
+    bad_input(fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
+              fmt::format("a motion has no energy: {}", result.first_mechanism),
+              remedy_of_mechanisms(assembly, springs, effects.rotation));
   }
   for (std::int64_t k = 0; k < result.mechanisms; ++k) {
     if (!does_work(given.force, solver.factor().null_motion(k), solver.unknowns().per_disc)) continue;
-    bad_input("a load drives a mechanism", fmt::format("it does work on a motion that has no energy: {}", description(k)),
+    bad_input("a load drives a mechanism",
+              fmt::format("it does work on a motion that has no energy: {}", description(k)),
               remedy_of_mechanisms(assembly, springs, effects.rotation,
                                    {"hold that motion by a support", "take the load off those discs"}));
   }

@@ -129,8 +129,10 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  deliver(options, "dry_run", dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size, 0,
-                          "mostly within a factor of two", vectors_of_frequencies(options.frequencies + LowestOptions{}.guards)),
+  deliver(options, "dry_run",
+          dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size, 0,
+                          "mostly within a factor of two",
+                          vectors_of_frequencies(options.frequencies + LowestOptions{}.guards)),
           problem.times);
   return 0;
 }

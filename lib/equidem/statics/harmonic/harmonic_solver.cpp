@@ -79,11 +79,10 @@ HarmonicSolver::HarmonicSolver(const SpringNetwork& geometry, const ComplexSprin
   factor_ = std::make_unique<LdltFactor<Complex>>(symbolic, on_graph, IndefiniteOptions{});
   times.add("factorize", watch.lap());
   if (factor_->report().zero_pivots > 0) {
-    computation_failed(
-        fmt::format("at this frequency {} of the stiffness matrix are lost in round-off",
-                    counted(factor_->report().zero_pivots, "pivot")),
-        "normal and tangential springs are too far apart for the digits of a double",
-        "Choose a frequency at which both are within a factor of 1e10 of each other");
+    computation_failed(fmt::format("at this frequency {} of the stiffness matrix are lost in round-off",
+                                   counted(factor_->report().zero_pivots, "pivot")),
+                       "normal and tangential springs are too far apart for the digits of a double",
+                       "Choose a frequency at which both are within a factor of 1e10 of each other");
   }
 }
 
