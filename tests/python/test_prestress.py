@@ -26,6 +26,23 @@ def test_forces_of_arrays_and_loads_buckle_a_column_alike():
     assert by_loads.buckling.displacements.shape == (32, 2)
 
 
+def test_the_stiffness_matrix_holds_the_forces_at_rest_that_the_solution_holds():
+    """u = K^-1 f of the free discs is the solution, which forces at rest change."""
+    resting = eq.Case(assembly=column(), springs=(1.0, 0.5), supports=CLAMPED, loads=PRESSED).solve()
+    carrying = column().with_forces(1e-3 * resting.contact_forces)
+    push = [{"group": [15, 31], "kind": "total", "force": [0.0, 1e-6]}]
+    solved = eq.Case(assembly=carrying, springs=(1.0, 0.5), supports=CLAMPED, loads=push).solve()
+    free = np.array([3 * d + k for d in range(32) if d not in (0, 16) for k in range(3)])
+    load = np.zeros(96)
+    load[[3 * 15 + 1, 3 * 31 + 1]] = 0.5e-6
+    motion = np.zeros(96)
+    motion[free] = np.linalg.solve(eq.stiffness_matrix(carrying, (1.0, 0.5)).toarray()[np.ix_(free, free)], load[free])
+    wrong = abs(motion.reshape(32, 3)[:, :2] - solved.displacements).max()
+    assert wrong <= 1e-9 * abs(solved.displacements).max()
+    without = eq.stiffness_matrix(column(), (1.0, 0.5)).toarray()
+    assert abs(eq.stiffness_matrix(carrying, (1.0, 0.5)).toarray() - without).max() > 1e-6
+
+
 def test_wrong_forces_are_refused():
     for wrong in ([(1.0, 1.0)], np.full((len(column().contacts), 2), np.nan)):
         with pytest.raises(eq.BadInput):

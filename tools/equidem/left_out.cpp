@@ -14,6 +14,7 @@
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
 #include "prestressed.hpp"
@@ -43,13 +44,14 @@ void hold_loaded_at_rest(const Assembly& assembly, std::vector<std::uint8_t>& he
 
 /// 1 for the bodies with a support or load of their own; on a measured side for those with two contacts or more where
 /// it is supported, with three where it is loaded, since fewer may roll.
-std::vector<std::uint8_t> held_by_the_case(const Problem& problem) {
+/// \param all those on measured sides too, whatever contacts they have
+std::vector<std::uint8_t> held_by_the_case(const Problem& problem, bool all = false) {
   const Assembly& assembly = problem.assembly;
   std::vector<int> contacts(assembly.size(), 0);
   for (const Contact& c : assembly.contacts)
     ++contacts[static_cast<std::size_t>(c.i)], ++contacts[static_cast<std::size_t>(c.j)];
   // Sides are measured only where one could matter.
-  const bool dangling = std::ranges::any_of(contacts, [](int count) { return count <= 2; });
+  const bool dangling = !all && std::ranges::any_of(contacts, [](int count) { return count <= 2; });
   const std::set<std::string> sides = dangling ? names_of_measured_sides(assembly) : std::set<std::string>{};
   std::vector<std::uint8_t> held(assembly.size(), 0);
   const auto hold = [&](const std::string& name, int enough) {
@@ -76,10 +78,16 @@ void leave_out_loose(Problem& problem) {
   const Effects effects = derive_effects(assembly, problem.springs.springs, problem.resolved.rotation);
   LoadBearingNetwork network =
       load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem), LeaveOut::loose);
+  const auto none_left = [&] { return network.part && network.part->discs.empty(); };
+  if (none_left()) {  // a row: its ends are what the case holds and loads
+    network = load_bearing_network(assembly, problem.springs.springs, effects, held_by_the_case(problem, true),
+                                   LeaveOut::loose);
+  }
   if (!network.part) return;
-  if (network.part->discs.empty())
-    bad_input_at(problem.resolved.where("assembly"), "no body is held in place by the others",
-                 "each has one contact or none", "Take a larger gap_tolerance, or pack them denser");
+  if (none_left())
+    bad_input_at(problem.resolved.where("assembly"), "no body is held in place by the others and by supports",
+                 joined(network.sentences, "; "),
+                 "Hold or load bodies by a [[group]] of their own, take a larger gap_tolerance, or pack them denser");
   std::vector<std::uint8_t> kept(assembly.size(), 0);
   for (const std::int32_t disc : network.part->discs) kept[static_cast<std::size_t>(disc)] = 1;
   for (std::size_t disc = 0; disc < kept.size(); ++disc)

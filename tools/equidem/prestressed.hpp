@@ -20,6 +20,9 @@ Problem prestressed(Problem problem);
 /// \throws Error (bad_input) as choose_prestress
 bool prestress_counts(const Problem& problem);
 
+/// Forces of the contacts with those at rest, where these count. \param changes by the loads
+std::vector<ContactForce> forces_in_total(const Problem& problem, std::vector<ContactForce> changes);
+
 /// \param taker of the springs alone
 /// \throws Error (bad_input) where the forces at rest count
 void refuse_prestress(const Problem& problem, std::string_view taker);

@@ -16,6 +16,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
+#include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/material/spring_relations.hpp"
 #include "equidem/statics/choice/solve_time.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
@@ -146,10 +147,14 @@ void require_memory_for(const Case& resolved, Purpose purpose) {
   const ExpectedSize size = expected_size(resolved.assembly);
   if (size.discs < 1) return;
   constexpr double factor = 100, loop = 450;  // bytes a disc
-  const double beside = purpose == Purpose::factorize ? factor * std::log2(std::max(size.narrow_side, 1.0)) : loop;
+  const SolverMethod method = resolved.solver.method;
+  const bool may_iterate = method == SolverMethod::multigrid || method == SolverMethod::automatic;
+  const double of_factor = factor * std::log2(std::max(size.narrow_side, 1.0));
+  const double of_grids = bytes_of_multigrid(1, 2);  // two contacts a disc: a square lattice
+  const double beside = purpose != Purpose::factorize ? loop : may_iterate ? std::min(of_factor, of_grids) : of_factor;
   require_memory(
       bytes_of_network(size.discs) + size.discs * beside,
-      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "the factor of a network" : "a run",
+      fmt::format("{} of {} discs needs at least", purpose == Purpose::factorize ? "solving a network" : "a run",
                   grouped(static_cast<std::int64_t>(size.discs))));
 }
 
@@ -331,15 +336,18 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
   }
 }
 
+/// \param resident bytes of the process before it solves
 /// \param before s of what is done beside these solutions
 /// \param memory_limit bytes; 0: what is available
-Results estimate_results(const SolveEstimate& e, double solutions, double before, double memory_limit,
+Results estimate_results(const SolveEstimate& e, double resident, double solutions, double before, double memory_limit,
                          const std::string& trust) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
-  results.line("memory").add("peak_bytes", "", e.peak_bytes, "at the peak", {Shown::bytes});
+  results.line("memory")
+      .add("peak_bytes", "", std::max(peak_resident_memory(), resident + e.peak_bytes), "at the peak", {Shown::bytes})
+      .add("solver_bytes", "", e.peak_bytes, "of it to solve", {Shown::bytes});
   if (e.factor_nonzeros > 0) {
-    results.add("factor_bytes", "", e.factor_bytes, "of it for the factor", {Shown::bytes})
+    results.add("factor_bytes", "", e.factor_bytes, "of that for the factor", {Shown::bytes})
         .add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   }
   add_memory_check(results, e, memory_limit);
@@ -361,10 +369,17 @@ Results estimate_results(const SolveEstimate& e, double solutions, double before
 }  // namespace
 
 Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys,
-                        double complex_solutions, const std::string& trust) {
+                        double complex_solutions, const std::string& trust, std::optional<double> inertia) {
+  const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+  EquilibriumOptions options = problem.options();
+  if (inertia) options.solver.method = SolverMethod::multifrontal;
   SolveEstimate estimate =
-      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, problem.options());
+      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, options, inertia.has_value());
+  if (inertia) {
+    const double vectors = sizeof(double) * *inertia * static_cast<double>(estimate.unknowns);
+    estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + vectors);
+  }
   double before = problem.times.total();
   if (complex_solutions > 0) {
     constexpr double work = 4;  // multiplications of two complex numbers over those of real ones
@@ -375,7 +390,7 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   }
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, solutions, before, problem.resolved.solver.memory_limit, trust));
+      .append(estimate_results(estimate, resident, solutions, before, problem.resolved.solver.memory_limit, trust));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -56,6 +56,14 @@ double PeakMemory::bytes() const {
   return std::max(bytes_of_process("VmHWM:") - before_, 0.0);
 }
 
+double resident_memory() {
+  return bytes_of_process("VmRSS:");
+}
+
+double peak_resident_memory() {
+  return bytes_of_process("VmHWM:");
+}
+
 double available_address_space() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)

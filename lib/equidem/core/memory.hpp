@@ -13,6 +13,10 @@ double available_memory();
 /// Bytes left within the limit of the process (ulimit -v); infinity where there is none.
 double available_address_space();
 
+/// Memory of this process that is resident now, and at its peak so far, bytes; 0 where the system does not state it.
+double resident_memory();
+double peak_resident_memory();
+
 /// Have the allocator give freed vectors of some megabytes back to the system. The C library of GNU keeps those of up
 /// to 32 MB, between which others then lie: a quarter of the peak of a static solve of 1e6 discs. For programs to call
 /// at their start.

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/assembly/touching.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
@@ -17,6 +16,7 @@
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/homogenize/stress.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
@@ -143,9 +143,10 @@ bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& 
                          const HomogenizeOptions& options) {
   const std::string strain = fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
   if (!resists_with_equal_springs(assembly, springs, options)) {
-    bad_input("the network is floppy", strain + " costs no energy beyond rounding",
-              fmt::format("It has no modulus. Add contacts{}, or give the contacts tangential springs (kT > 0)",
-                          by_larger_tolerance(assembly)));
+    bad_input(
+        "the network is floppy", strain + " costs no energy beyond rounding",
+        "It has no modulus. " +
+            remedy_of_mechanisms(assembly, springs, derive_effects(assembly, springs, options.rotation).rotation));
   }
   if (springs.any_negative()) {
     computation_failed("at this kT/kN the network is at its limit of stability",

@@ -11,54 +11,22 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
-
 constexpr std::size_t most_described = 8;
 
-/// Discs that a motion moves by more than rounding.
-std::vector<std::uint8_t> movers(const std::vector<DiscMotion>& motions, double radius) {
-  std::vector<double> size(motions.size());
-  double largest = 0;
-  for (std::size_t d = 0; d < motions.size(); ++d) {
-    size[d] = std::max(norm(motions[d].u), radius * std::abs(motions[d].theta));
-    largest = std::max(largest, size[d]);
-  }
-  std::vector<std::uint8_t> moves(motions.size());
-  for (std::size_t d = 0; d < moves.size(); ++d) moves[d] = size[d] > 1e-6 * largest ? 1 : 0;
-  return moves;
-}
-
-/// Whether the discs that move, with the contacts between them, reach around the period; or, in a free sample, whether
-/// they are more than a quarter of all.
-bool runs_through(const Assembly& assembly, const std::vector<std::uint8_t>& moves) {
-  if (!assembly.periodic()) {
-    const auto count = std::count(moves.begin(), moves.end(), std::uint8_t{1});
-    return 4 * count > static_cast<std::ptrdiff_t>(moves.size());
-  }
-  Assembly moving;
-  moving.period = assembly.period;
-  moving.centres = assembly.centres;
-  moving.radii = assembly.radii;
-  for (const Contact& contact : assembly.contacts) {
-    if (moves[contact.i] != 0 && moves[contact.j] != 0) moving.contacts.push_back(contact);
-  }
-  const UnwrappedPieces pieces = unwrap_pieces(moving, ContactGraph(moving));
-  return std::any_of(pieces.winds.begin(), pieces.winds.end(), [](std::uint8_t winds) { return winds != 0; });
-}
-
-/// Gears, and mechanisms of a few discs: no contact is deformed by them, so that the forces of any mean strain do no
-/// work on them. At most eight of each kind are described.
+/// Gears, and other zero-energy modes: no contact is deformed by them, so that the forces of any mean strain do no work
+/// on them, and moduli exist where every mean strain has energy. At most eight of each kind are described.
 /// \param name of the network for messages: "the network", "the cell, cut open at its boundary,"
-/// \throws Error (bad_input) where a mechanism runs through the sample (winds around the period, or moves a quarter of
-///         the discs of a free sample), or where there are more than 1000: the network is floppy
-std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const StiffnessSolver& solver,
-                                              const HeldMotions& held, const std::string& name) {
+/// \throws Error (bad_input) where there are more than 1000: the network is floppy
+std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const ContactSprings& springs,
+                                              const StiffnessSolver& solver, const HeldMotions& held,
+                                              const std::string& name) {
   std::vector<ZeroEnergyMode> result;
   for (const GearMode& gear : held.gears) {
     if (result.size() == most_described) break;
@@ -68,17 +36,18 @@ std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const St
   }
   const std::int64_t mechanisms = solver.factor().report().zero_pivots;
   constexpr std::int64_t too_many = 1000;
-  for (std::int64_t k = 0; k < std::min(mechanisms, too_many); ++k) {
-    const std::vector<DiscMotion> motion = disc_motions(solver.unknowns(), solver.factor().null_motion(k));
-    const bool floppy = runs_through(assembly, movers(motion, assembly.mean_radius()));
-    if (floppy || mechanisms > too_many) {
-      bad_input(mechanisms == 1 ? fmt::format("{} is a mechanism", name)
-                                : fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
-                fmt::format("it can move at no cost: {}", describe_motion(assembly, motion)),
-                fmt::format("It has no modulus. Add contacts{}, or give the contacts tangential springs (kT > 0)",
-                            by_larger_tolerance(assembly)));
-    }
-    if (static_cast<std::size_t>(k) < most_described) result.push_back({"local", describe_motion(assembly, motion)});
+  const auto description = [&](std::int64_t k) {
+    return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
+  };
+  if (mechanisms > too_many) {
+    bad_input(fmt::format("{} is floppy: it has {} mechanisms", name, mechanisms),
+              fmt::format("a motion has no energy: {}", description(0)),
+              remedy_of_mechanisms(assembly, springs, solver.unknowns().per_disc == 3));
+  }
+  for (std::int64_t k = 0; k < std::min<std::int64_t>(mechanisms, most_described); ++k) {
+    ZeroEnergyMode mode{"mechanism", description(k)};
+    const auto same = [&](const ZeroEnergyMode& other) { return other.description == mode.description; };
+    if (std::ranges::none_of(result, same)) result.push_back(std::move(mode));
   }
   return result;
 }
@@ -125,7 +94,7 @@ void SampleSolver::factorize(const std::vector<std::uint8_t>& held, bool hold_tr
   solver.right_hand_sides = 3;  // mean strains
   solver_.emplace(assembly(), springs(), std::move(graph), std::move(unknowns), solver, Mechanisms::hold, result.times);
   const FactorReport& report = solver_->factor().report();
-  result.motions = zero_energy_modes(assembly(), *solver_, held_motions_,
+  result.motions = zero_energy_modes(assembly(), springs(), *solver_, held_motions_,
                                      options_.boundary == Boundary::traction && !whole_.groups.contains("left")
                                          ? "the cell, cut open at its boundary,"
                                          : "the network");
@@ -164,14 +133,9 @@ void SampleSolver::tear_off(std::size_t disc) const {
 void SampleSolver::check_loads_on_mechanisms(const RightHandSide& given) const {
   for (std::int64_t k = 0; k < solver_->factor().report().zero_pivots; ++k) {
     const std::vector<double> motion = solver_->factor().null_motion(k);
-    double work = 0, size = 0, largest = 0;
-    std::size_t most = 0;
-    for (std::size_t e = 0; e < motion.size(); ++e) {
-      work += motion[e] * given.force[e];
-      size += std::abs(motion[e] * given.force[e]);
-      if (std::abs(motion[e]) > largest) largest = std::abs(motion[e]), most = e;
-    }
-    if (std::abs(work) > negligible * size) tear_off(most / unknowns().per_disc);
+    if (!does_work(given.force, motion, unknowns().per_disc)) continue;
+    const auto most = std::ranges::max_element(motion, {}, [](double x) { return std::abs(x); });
+    tear_off(static_cast<std::size_t>(most - motion.begin()) / unknowns().per_disc);
   }
 }
 
@@ -215,6 +179,7 @@ void SampleSolver::check_reactions(const RightHandSide& given, const Solution& s
   internal_force({assembly(), solver_->graph(), springs(), unknowns()}, solution.motion, given.gradient, internal);
   for (const std::size_t k : held_motions_.components) {
     const double load = given.force.empty() ? 0.0 : given.force[k];
+    constexpr double negligible = 1e-8;  // what rounding leaves where loads balance
     if (std::abs(internal[k] - load) <= negligible * std::max(size, std::abs(load))) continue;
     if (options_.boundary == Boundary::traction) tear_off(k / unknowns().per_disc);
     computation_failed("a motion that nothing resists is driven by the mean strain",

@@ -303,8 +303,8 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
     const Vec2 centre = (1 / total) * Vec2{first[1], first[2]}, mean = (1 / total) * Vec2{first[3], first[4]};
     for (const std::size_t disc : chosen) {
       const Vec2 dx = assembly.centres[disc] - centre;
-      second_moment += weight(disc) * outer(dx, dx);
-      covariance += weight(disc) * outer(motions[disc].u - mean, dx);
+      second_moment += (weight(disc) / total) * outer(dx, dx);
+      covariance += (weight(disc) / total) * outer(motions[disc].u - mean, dx);
     }
     double second[8];
     Tensor2* const both[] = {&second_moment, &covariance};
@@ -316,12 +316,13 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
     for (std::size_t k = 0; k < 2; ++k)
       *both[k] = {second[4 * k], second[4 * k + 1], second[4 * k + 2], second[4 * k + 3]};
   }
-  const Tensor2& s = second_moment;
+  const double trace = second_moment.xx + second_moment.yy;
+  const Tensor2 s = (1 / trace) * second_moment;
+  covariance = (1 / trace) * covariance;
   const double determinant = s.xx * s.yy - s.xy * s.yx;
-  const double trace = s.xx + s.yy;
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
-  if (!(determinant > 1e-13 * trace * trace)) {
+  if (!(determinant > 1e-13)) {
     bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
                           counted(static_cast<std::int64_t>(first[5]), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");

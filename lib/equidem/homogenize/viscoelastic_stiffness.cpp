@@ -109,9 +109,10 @@ HarmonicStiffness at_frequency(const SampleSolver& sample, const Viscoelasticity
                       spring_unit(sample.springs());
   const ComplexSprings springs = complex_springs(sample.springs(), viscoelasticity, frequency, 1 / unit);
   const StiffnessSolver& elastic = sample.solver();
-  const SpringNetwork geometry{sample.assembly(), elastic.graph(), sample.springs(), elastic.unknowns()};
-  const HarmonicSolver solver(geometry, springs, elastic.symbolic(), elastic.factor().report().zero_pivots,
-                              options.solver.memory_limit, all.times);
+  DegreesOfFreedom unknowns = elastic.unknowns();
+  for (const std::size_t k : elastic.factor().null_components()) unknowns.held[k] = DegreesOfFreedom::supported;
+  const SpringNetwork geometry{sample.assembly(), elastic.graph(), sample.springs(), unknowns};
+  const HarmonicSolver solver(geometry, springs, elastic.symbolic(), options.solver.memory_limit, all.times);
   const std::span<const Tensor2> strains(unit_gradients, 3);
   const std::vector<HarmonicMotion> motions = solver.solve(strains, options.solver.max_refinements, all.times);
   const Stopwatch watch;

@@ -56,6 +56,8 @@ class Factorization {
   /// The k-th of FactorReport::zero_pivots zero-energy modes, not normalized; they are independent. Solving
   /// holds one unknown for each of them. Empty where the method does not determine them.
   [[nodiscard]] virtual std::vector<double> null_motion(std::int64_t) const { return {}; }
+  /// The unknowns (disc * block + k) that are held for them.
+  [[nodiscard]] virtual std::vector<std::size_t> null_components() const { return {}; }
   [[nodiscard]] virtual const FactorReport& report() const = 0;
 };
 

@@ -58,7 +58,7 @@ struct EnumNames<SolverMethod> {
       {SolverMethod::umfpack,
        "umfpack",
        "SuiteSparse's unsymmetric LU in its own order",
-       {.memory_factor = 4, .factorize = factorize_by_umfpack}},
+       {.memory_factor = 2.6, .factorize = factorize_by_umfpack}},
       {SolverMethod::multigrid,
        "multigrid",
        "conjugate gradients with a multigrid cycle, for large assemblies with kT >= 0",

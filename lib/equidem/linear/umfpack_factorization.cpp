@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <future>
+#include <memory>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -13,6 +17,7 @@
 #include <umfpack.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
@@ -36,26 +41,27 @@ class UmfpackLu final : public Factorization {
     control_[UMFPACK_IRSTEP] = 0;  // refinement is done for all back ends alike
     report_.name = "UMFPACK LU";
   }
-  ~UmfpackLu() override { umfpack_dl_free_numeric(&numeric_); }
 
   /// Whether no pivot is zero.
   bool factorize(CompressedColumns k) {
     component_ = std::move(k.component);
     if (component_.empty()) return true;
-    const auto n = static_cast<Index>(component_.size());
-    std::array<double, UMFPACK_INFO> info{};
-    void* symbolic = nullptr;
-    Index status = umfpack_dl_symbolic(n, n, k.first.data(), k.rows.data(), k.values.data(), &symbolic, control_.data(),
-                                       info.data());
-    if (status < UMFPACK_OK) fail("analyzing", status);
-    status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric_, control_.data(),
-                                info.data());
-    umfpack_dl_free_symbolic(&symbolic);
-    if (status < UMFPACK_OK) fail("factorizing", status);
-    report_.nonzeros = info[UMFPACK_LNZ];
-    report_.bytes = info[UMFPACK_NUMERIC_SIZE] * info[UMFPACK_SIZE_OF_UNIT];
-    watch_pivots(k);
-    return status == UMFPACK_OK;
+    work_ = std::make_shared<Work>();
+    work_->k = std::move(k);
+    work_->control = control_;
+    work_->size = static_cast<Index>(component_.size());
+    constexpr Index small = 30000;  // less than a second
+    if (work_->size < small) {
+      work_->factorize();
+    } else {
+      run_aside();
+    }
+    if (work_->status < UMFPACK_OK) fail(work_->analyzed ? "factorizing" : "analyzing", work_->status);
+    report_.nonzeros = work_->info[UMFPACK_LNZ];
+    report_.bytes = work_->info[UMFPACK_NUMERIC_SIZE] * work_->info[UMFPACK_SIZE_OF_UNIT];
+    watch_pivots(work_->k);
+    work_->k = {};
+    return work_->status == UMFPACK_OK;
   }
 
   void solve(std::span<double> x, int right_hand_sides) const override {
@@ -67,7 +73,7 @@ class UmfpackLu final : public Factorization {
       for (std::size_t k = 0; k < free; ++k) b[k] = column[component_[k]];
       for (std::size_t k = 0; k < n; ++k) column[k] /= held_stiffness_;
       if (free == 0) continue;
-      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), numeric_,
+      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), work_->numeric,
                                             control_.data(), nullptr);
       if (status != UMFPACK_OK) fail("solving with", status);
       for (std::size_t k = 0; k < free; ++k) column[component_[k]] = y[k];
@@ -77,12 +83,56 @@ class UmfpackLu final : public Factorization {
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
+  /// What UMFPACK works on, which outlives an interrupted factorization.
+  struct Work {
+    CompressedColumns k;
+    std::array<double, UMFPACK_CONTROL> control{};
+    std::array<double, UMFPACK_INFO> info{};
+    Index size = 0, status = UMFPACK_OK;
+    bool analyzed = false;
+    void* numeric = nullptr;
+
+    Work() = default;
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+    ~Work() { umfpack_dl_free_numeric(&numeric); }
+
+    void factorize() {
+      void* symbolic = nullptr;
+      status = umfpack_dl_symbolic(size, size, k.first.data(), k.rows.data(), k.values.data(), &symbolic,
+                                   control.data(), info.data());
+      if (status < UMFPACK_OK) return;
+      analyzed = true;
+      status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric, control.data(),
+                                  info.data());
+      umfpack_dl_free_symbolic(&symbolic);
+    }
+  };
+
+  /// UMFPACK asks for no signal, and the analysis of a long strip takes minutes: a thread of its own does the work and
+  /// is left behind where the user interrupts.
+  void run_aside() {
+    std::promise<void> promise;
+    const std::future<void> done = promise.get_future();
+    std::thread aside([work = work_, promise = std::move(promise)]() mutable {
+      work->factorize();
+      promise.set_value();
+    });
+    try {
+      while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) stop_if_interrupted();
+    } catch (...) {
+      aside.detach();
+      throw;
+    }
+    aside.join();
+  }
+
   void watch_pivots(const CompressedColumns& k) {
     const std::size_t n = component_.size();
     std::vector<double> pivots(n);
     std::vector<Index> column_of(n);
     const Index status = umfpack_dl_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
-                                                column_of.data(), pivots.data(), nullptr, nullptr, numeric_);
+                                                column_of.data(), pivots.data(), nullptr, nullptr, work_->numeric);
     if (status != UMFPACK_OK) fail("reading the factor of", status);
     for (std::size_t p = 0; p < n; ++p) {
       const Index c = column_of[p];
@@ -108,7 +158,7 @@ class UmfpackLu final : public Factorization {
   double held_stiffness_;
   std::array<double, UMFPACK_CONTROL> control_{};
   std::vector<std::int64_t> component_;  // of each column
-  void* numeric_ = nullptr;
+  std::shared_ptr<Work> work_;
   FactorReport report_;
 };
 

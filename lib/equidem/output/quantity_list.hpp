@@ -62,6 +62,7 @@ inline constexpr ResultQuantity quantities[] = {
     // The solution
     {"unknowns", "", "number of unknowns"},
     {"peak_bytes", "B", "memory at the peak"},
+    {"solver_bytes", "B", "memory to solve, beside the assembly and the program"},
     {"other_peak_bytes", "B", "memory at the peak of the method not taken"},
     {"other_time_ratio", "", "estimated time of the method not taken, of that of the method taken"},
     {"factor_bytes", "B", "memory of the factor"},

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "equidem/assembly/touching.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -20,9 +21,20 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
+namespace {
+
+/// Whether sums of squares and products stay far within a double, and within a float for the grids of multigrid.
+bool in_range(double size) {
+  return size > 1e-30 && size < 1e30;
+}
+
+}  // namespace
+
 struct EquilibriumSolver::Implementation {
   const Assembly& assembly;
   const ContactSprings& springs;
+  double unit;  ///< Pa, of the springs of the solver, so that no sum of squares leaves the range of a double
+  std::optional<ContactSprings> scaled;  ///< springs over the unit, where that is not 1
   EquilibriumOptions options;
   Effects effects;
   StageTimes times;
@@ -32,6 +44,8 @@ struct EquilibriumSolver::Implementation {
                  const EquilibriumOptions& options_in)
       : assembly(assembly_in),
         springs(springs_in),
+        unit(in_range(springs_in.largest()) ? 1 : spring_unit(springs_in)),
+        scaled(unit == 1 ? std::nullopt : std::optional(scaled_springs(springs_in, 1 / unit))),
         options(options_in),
         effects(derive_effects(assembly_in, springs_in, options_in.rotation)),
         solver(build(supports)) {}
@@ -48,13 +62,15 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
   Stopwatch watch;
   ContactGraph graph(assembly);
   DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  check_rigidity(assembly, graph, springs, unknowns);
+  check_rigidity(assembly, graph, springs, unknowns, options.mechanisms);
   if (assembly.size() == 1 && assembly.contacts.empty()) {
     bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
               "Add discs that touch it");
   }
   times.add("check", watch.lap());
-  return {assembly, springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms, times};
+  return {
+      assembly, scaled ? *scaled : springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms,
+      times};
 }
 
 Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) const {
@@ -69,6 +85,16 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   const auto moves = [](double u) { return u != 0; };
   if (std::any_of(unknowns.prescribed.begin(), unknowns.prescribed.end(), moves))
     given.prescribed = unknowns.prescribed;
+  // Power of two: nothing is rounded.
+  double size = 0;
+  for (const std::vector<double>* all : {&given.force, &given.prescribed}) {
+    const double per = all == &given.force ? unit : 1;
+    for (const double value : *all) size = std::max(size, std::abs(value) / per);
+  }
+  const double amount = size == 0 || in_range(size) ? 1 : std::exp2(std::ilogb(size));
+  const std::vector<double> loads = given.force;
+  for (double& value : given.force) value = value / unit / amount;
+  for (double& value : given.prescribed) value /= amount;
   const std::int64_t iterations_before = solver.factor().report().iterations;
   Solution solution = std::move(solver.solve({&given, 1}, result.times).front());
   Stopwatch watch;
@@ -83,9 +109,12 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
     bound_error(given, solution, result);
     result.times.add("error bound", watch.lap());
   }
+  for (std::vector<double>* part : {&solution.motion.high, &solution.motion.low}) {
+    for (double& value : *part) value *= amount;
+  }
   result.contact_forces.resize(assembly.contacts.size());
   contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
-  describe_state(given.force, solution.motion, result);
+  describe_state(loads, solution.motion, result);
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
   result.single_precision = report.single_precision;
@@ -100,29 +129,22 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
 /// A mechanism deforms no contact: prescribed motions do no work on it, loads may.
 void EquilibriumSolver::Implementation::check_mechanisms(const RightHandSide& given, Equilibrium& result) const {
   constexpr std::int64_t most = 1000;
-  constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
   result.mechanisms = solver.factor().report().zero_pivots;
   const auto description = [&](std::int64_t k) {
     return describe_motion(assembly, disc_motions(solver.unknowns(), solver.factor().null_motion(k)));
   };
   if (result.mechanisms > 0) result.first_mechanism = description(0);
   if (result.mechanisms > most) {
-    bad_input(
-        fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
-        fmt::format("it can move at no cost: {}", result.first_mechanism),
-        fmt::format("Add contacts{}, or give the contacts tangential springs (kT > 0)", by_larger_tolerance(assembly)));
+    bad_input(fmt::format("the assembly is floppy: it has {} mechanisms", result.mechanisms),
+              fmt::format("a motion has no energy: {}", result.first_mechanism),
+              remedy_of_mechanisms(assembly, springs, effects.rotation));
   }
   for (std::int64_t k = 0; k < result.mechanisms; ++k) {
-    const std::vector<double> motion = solver.factor().null_motion(k);
-    double work = 0, size = 0;
-    for (std::size_t e = 0; e < motion.size(); ++e) {
-      work += motion[e] * given.force[e];
-      size += std::abs(motion[e] * given.force[e]);
-    }
-    if (std::abs(work) <= negligible * size) continue;
-    bad_input("a load drives a mechanism", fmt::format("it moves the assembly at no cost: {}", description(k)),
-              fmt::format("Hold that motion by a support, add contacts{}, or take the load off those discs",
-                          by_larger_tolerance(assembly)));
+    if (!does_work(given.force, solver.factor().null_motion(k), solver.unknowns().per_disc)) continue;
+    bad_input("a load drives a mechanism",
+              fmt::format("it does work on a motion that has no energy: {}", description(k)),
+              remedy_of_mechanisms(assembly, springs, effects.rotation,
+                                   {"hold that motion by a support", "take the load off those discs"}));
   }
 }
 
@@ -215,7 +237,7 @@ Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& sp
 }
 
 SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                             const EquilibriumOptions& options) {
+                             const EquilibriumOptions& options, bool indefinite) {
   check(assembly);
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(assembly, springs, options.rotation);
@@ -227,8 +249,8 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
     result = estimate_iterations(assembly, unknowns);
   } else {
     const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
-    result = estimate(symbolic, unknowns, springs.may_be_indefinite(),
-                      tries_single_precision(options.solver, springs, symbolic));
+    result = estimate(symbolic, unknowns, indefinite || springs.may_be_indefinite(),
+                      !indefinite && tries_single_precision(options.solver, springs, symbolic));
     result.peak_bytes *= memory_factor(choice.method, options.solver.ordering);
   }
   result.method = choice.method;

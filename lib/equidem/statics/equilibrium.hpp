@@ -107,9 +107,10 @@ class EquilibriumSolver {
 };
 
 /// Order and analyze, without assembling or factorizing: what a solve will take.
+/// \param indefinite by L D L^T, whatever the springs
 /// \throws Error (bad_input) as EquilibriumSolver does for supports
 SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
-                             const EquilibriumOptions& options = {});
+                             const EquilibriumOptions& options = {}, bool indefinite = false);
 
 /// One load case.
 Equilibrium solve_equilibrium(const Assembly& assembly, const ContactSprings& springs,

@@ -47,9 +47,11 @@ struct HeldSystem {
 
 MechanismReport find_mechanisms(const Assembly& assembly, const ContactSprings& springs, Rotation rotation,
                                 std::span<const Support> supports) {
-  const ContactSprings positive = springs.changed([](SpringConstants k) {
+  // Without prestress the modes do not depend on the sizes of springs (zero_energy_modes.hpp).
+  const ContactSprings positive = springs.prestressed() ? springs.changed([](SpringConstants k) {
     return SpringConstants{k.kN, std::abs(k.kT)};
-  });
+  })
+                                                        : equal_springs(springs, assembly.mean_radius());
   HeldSystem system(assembly, positive, rotation, supports);
   if (!grows_rigid(assembly, system.graph, positive, system.unknowns.per_disc)) system.factorize(assembly, positive);
   MechanismReport report;

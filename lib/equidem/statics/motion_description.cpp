@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
+#include "equidem/assembly/touching.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"
@@ -314,6 +316,21 @@ std::string describe_direction(Vec2 direction) {
 
 std::string describe_disc(const Assembly& assembly, std::size_t disc) {
   return fmt::format("disc {} at ({:.6g}, {:.6g})", disc, assembly.centres[disc].x, assembly.centres[disc].y);
+}
+
+std::string remedy_of_mechanisms(const Assembly& assembly, const ContactSprings& springs, bool rotation,
+                                 std::vector<std::string> before) {
+  std::vector<std::string> ways = std::move(before);
+  ways.push_back("add contacts" + by_larger_tolerance(assembly));
+  bool slides = false;
+  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) slides |= springs[c].kT == 0;
+  if (slides) ways.emplace_back("give the contacts tangential springs (kT > 0)");
+  if (rotation && !springs.bends()) ways.emplace_back("give the contacts bending springs (kM > 0)");
+  if (rotation) ways.emplace_back("restrain rotation");
+  std::string text = ways.front();
+  for (std::size_t k = 1; k < ways.size(); ++k) text += (k + 1 < ways.size() ? ", " : ", or ") + ways[k];
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
 }
 
 double elastic_energy(const Assembly& assembly, const ContactSprings& springs, std::span<const DiscMotion> motions) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
@@ -26,6 +27,12 @@ std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion
 std::string describe_direction(Vec2 direction);
 /// "disc 17 at (0.02, 0.01)".
 std::string describe_disc(const Assembly& assembly, std::size_t disc);
+
+/// "Add contacts, give the contacts bending springs (kM > 0), or restrain rotation": what leaves a network fewer
+/// zero-energy modes, of what it does not have yet.
+/// \param rotation whether discs turn \param before what else helps: "hold that motion by a support"
+std::string remedy_of_mechanisms(const Assembly& assembly, const ContactSprings& springs, bool rotation,
+                                 std::vector<std::string> before = {});
 
 /// Elastic energy of a motion, N (J/m per m): sum over contacts of kN dn²/2 + kT ds²/2, and
 /// kM (theta_j - theta_i)²/2.

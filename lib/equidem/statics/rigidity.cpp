@@ -135,7 +135,7 @@ void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
   if (gears.empty()) return;
   const GearMode& first = gears.front();
   const auto more = static_cast<std::int64_t>(gears.size()) - 1;
-  bad_input(fmt::format("{} around {} can counter-rotate like gears at no cost{}", counted(first.discs, "disc"),
+  bad_input(fmt::format("{} around {} can counter-rotate like gears without energy{}", counted(first.discs, "disc"),
                         describe_disc(assembly, first.first_disc),
                         more > 0 ? fmt::format(", and so can {} more such {}", more, more > 1 ? "groups" : "group")
                                  : std::string()),
@@ -146,14 +146,14 @@ void check_gears(const Assembly& assembly, const std::vector<GearMode>& gears) {
 }  // namespace
 
 void check_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                    const DegreesOfFreedom& unknowns) {
+                    const DegreesOfFreedom& unknowns, Mechanisms mechanisms) {
   if (assembly.size() == 0) {
     bad_input("the assembly has no discs", "there is nothing to solve for", "Give it discs");
   }
   const FreeMotions motions = find_free_motions(assembly, graph, springs, unknowns);
   check_discs_without_contacts(assembly, motions.pieces);
   check_pieces(assembly, motions.pieces);
-  check_gears(assembly, motions.gears);
+  if (mechanisms == Mechanisms::refuse) check_gears(assembly, motions.gears);
 }
 
 }  // namespace equidem

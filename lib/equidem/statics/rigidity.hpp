@@ -10,6 +10,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
@@ -17,8 +18,8 @@ namespace equidem {
 /// Refuse an assembly that can move without resistance.
 /// \throws Error (bad_input) where there is no disc, a single free disc, a disc without contacts that is not held, a
 ///         piece that is not held, a rigid motion (named) that the supports leave free, or discs that can
-///         counter-rotate
+///         counter-rotate, where mechanisms are refused
 void check_rigidity(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
-                    const DegreesOfFreedom& unknowns);
+                    const DegreesOfFreedom& unknowns, Mechanisms mechanisms = Mechanisms::refuse);
 
 }  // namespace equidem

@@ -244,7 +244,7 @@ LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, 
     return {};
   }
   if (a.size() <= options.dense_limit) return lowest_of_all(a, null, iterations.wanted);
-  const double columns_kept = 7.0 * static_cast<double>(iterations.wanted + iterations.guards);
+  const double columns_kept = vectors_of_frequencies(static_cast<double>(iterations.wanted + iterations.guards));
   require_memory(sizeof(double) * columns_kept * static_cast<double>(a.size()), "natural frequencies need about",
                  "Ask for fewer frequencies, or take a machine with more memory");
   const SymmetricOperator k{

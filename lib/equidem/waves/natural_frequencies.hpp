@@ -39,6 +39,11 @@ struct NaturalFrequencies {
   int iterations = 0;                  ///< 0: the whole spectrum was computed
 };
 
+/// Vectors that the search for the lowest eigenvalues keeps, those of zero-energy modes aside.
+constexpr double vectors_of_frequencies(double sought) {
+  return 7 * sought;
+}
+
 /// Expects no negative spring. Zero-energy modes are those that hold_free_motions finds and those of zero pivots.
 /// \param unknowns of the assembly with its supports; in a periodic cell the motions repeat with it
 /// \throws Error of kind interrupted

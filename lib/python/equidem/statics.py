@@ -149,7 +149,8 @@ def stiffness_matrix(assembly: Assembly, springs: Any, *, rotation: str = "from_
     """The assembled stiffness matrix without supports (Abe 1996, section 3), as scipy.sparse.
 
     Rows and columns are u_x, u_y (m) and, where rotations are unknowns, theta (rad) of disc 0, then of disc 1, ...:
-    forces in N/m per m in Pa, moments in N.
+    forces in N/m per m in Pa, moments in N. Forces at rest of the assembly count where `solve` takes them
+    (effects.prestress = "auto").
     """
     from scipy.sparse import bsr_matrix
 

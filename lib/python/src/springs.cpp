@@ -7,6 +7,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -39,7 +40,6 @@ py::array springs_at_contacts(const Assembly& assembly, double kN, double kT, co
 /// K without supports as blocks in compressed rows: data (blocks, b, b), column of each block, first block of each row.
 /// Rotations in rad: rows and columns of a theta times a.
 py::tuple stiffness_matrix(const Assembly& assembly, const Floats& springs, const std::string& rotation) {
-  const ContactSprings k = springs_of(springs);
   StiffnessMatrix matrix;
   DegreesOfFreedom unknowns;
   std::vector<double> data;
@@ -47,6 +47,8 @@ py::tuple stiffness_matrix(const Assembly& assembly, const Floats& springs, cons
   {
     const LongWork working;
     check(assembly);
+    ContactSprings k = springs_of(springs);
+    if (const auto prestress = choose_prestress(assembly, k, PrestressChoice::automatic)) k = prestress->springs;
     const ContactGraph graph(assembly);
     unknowns = number_unknowns(assembly, k, derive_effects(assembly, k, enum_from<Rotation>(rotation)), {});
     // rotations that nothing resists have rows of zeros, not of a unit matrix

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"
@@ -71,8 +72,10 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
 Results memory_results(RunJob& job) {
   const std::string body = job.body_name();
   const double each = job.simulation().bytes_per_body();
+  // A dry run makes the scene and its lists as a run does.
   return Results()
       .line("memory")
+      .add("peak_bytes", "", peak_resident_memory(), "so far;", {Shown::bytes})
       .add("bytes_per_" + body, "", each, "bytes a " + body + " in the loop", {Shown::decimals, 0})
       .add("loop_bytes", "", each * static_cast<double>(job.simulation().motions().size()), "in all", {Shown::bytes});
 }

@@ -37,11 +37,12 @@ void check_solution_files(const CommonOptions& options, const Case& resolved) {
 
 void write_state_of(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
                     const LoadCase& loads, const SolvedCase& result) {
+  const std::vector<ContactForce> forces = forces_in_total(problem, result.equilibrium.contact_forces);
   std::vector<Tensor2> stresses;
-  if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, result.equilibrium.contact_forces);
+  if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, forces);
   const AssemblyState state{.assembly = problem.assembly,
                             .motions = result.equilibrium.motions,
-                            .contact_forces = result.equilibrium.contact_forces,
+                            .contact_forces = forces,
                             .stresses = stresses,
                             .bending_moments = result.equilibrium.bending_moments};
   write_state(options, wanted, suffix_of(result.name), state);

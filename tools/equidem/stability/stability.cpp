@@ -13,6 +13,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/waves/natural_frequencies.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
@@ -128,7 +129,10 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  deliver(options, "dry_run", dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size),
+  deliver(options, "dry_run",
+          dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size, 0,
+                          "mostly within a factor of two",
+                          vectors_of_frequencies(options.frequencies + LowestOptions{}.guards)),
           problem.times);
   return 0;
 }

@@ -63,6 +63,17 @@ std::vector<Number> LdltFactor<Number>::motion_of(std::int64_t unknown) const {
 }
 
 template <typename Number>
+std::vector<std::size_t> LdltFactor<Number>::null_components() const {
+  const auto b = static_cast<std::size_t>(symbolic_->block);
+  std::vector<std::size_t> components;
+  for (const std::int64_t unknown : null_) {
+    const auto position = static_cast<std::size_t>(unknown);
+    components.push_back(static_cast<std::size_t>(symbolic_->tree.order[position / b]) * b + position % b);
+  }
+  return components;
+}
+
+template <typename Number>
 void LdltFactor<Number>::factorize(const MatrixOnGraphOf<Number>& k) {
   std::vector<LargeVector<Number>> updates(fronts_.size());  // Schur complements that wait for their parents
   Progress progress("factorizing");

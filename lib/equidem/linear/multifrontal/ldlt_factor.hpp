@@ -38,6 +38,7 @@ class LdltFactor {
   [[nodiscard]] std::vector<Number> softest_motion() const { return motion_of(softest_); }
   /// The k-th of FactorReport::zero_pivots zero-energy modes.
   [[nodiscard]] std::vector<Number> null_motion(std::int64_t k) const { return motion_of(null_.at(k)); }
+  [[nodiscard]] std::vector<std::size_t> null_components() const;
   /// Complex numbers have no sign: negative_pivots is -1 for them.
   [[nodiscard]] const FactorReport& report() const { return report_; }
 

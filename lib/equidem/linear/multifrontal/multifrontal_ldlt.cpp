@@ -14,6 +14,7 @@ class Ldlt final : public Factorization {
   void solve(std::span<double> x, int right_hand_sides) const override { factor_.solve(x, right_hand_sides); }
   [[nodiscard]] std::vector<double> softest_motion() const override { return factor_.softest_motion(); }
   [[nodiscard]] std::vector<double> null_motion(std::int64_t k) const override { return factor_.null_motion(k); }
+  [[nodiscard]] std::vector<std::size_t> null_components() const override { return factor_.null_components(); }
   [[nodiscard]] const FactorReport& report() const override { return factor_.report(); }
 
  private:

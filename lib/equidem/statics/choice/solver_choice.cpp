@@ -17,7 +17,7 @@
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/choice/hold_mechanism.hpp"
+#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {
@@ -51,17 +51,20 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
   return std::abs(sum) < 1e-3 * size;
 }
 
-/// A motion that elimination found to resist no more than round-off: a mechanism, or too soft for a double.
-[[noreturn]] void report_singular(const System& system, const std::vector<double>& softest) {
+}  // namespace
+
+void report_singular(const System& system, const std::vector<double>& softest) {
   const double spread = spring_spread(system.k.assembly, system.springs);
-  if (spread > enough_digits) refuse_spread(spread);
   const std::vector<DiscMotion> motions = disc_motions(system.unknowns, softest);
   const std::string motion = describe_motion(system.k.assembly, motions);
-  if (costs_no_energy(system, softest)) {
-    bad_input("the assembly is a mechanism", fmt::format("it can move at no cost: {}", motion),
-              system.springs.any_tangential()
-                  ? "Hold that motion by a support, or add contacts"
-                  : "Hold that motion by a support, add contacts, or give the contacts tangential springs (kT > 0)");
+  const bool far_apart = spread > enough_digits;
+  const ContactSprings judged =
+      far_apart ? equal_springs(system.springs, system.k.assembly.mean_radius()) : system.springs;
+  if (far_apart && !costs_no_energy(system, judged, softest)) refuse_spread(spread);
+  if (costs_no_energy(system, judged, softest)) {
+    bad_input("the assembly is a mechanism", fmt::format("a motion has no energy: {}", motion),
+              remedy_of_mechanisms(system.k.assembly, system.springs, system.unknowns.per_disc == 3,
+                                   {"hold that motion by a support"}));
   }
   if (system.springs.prestressed()) {
     computation_failed("under its forces at rest the assembly is at its limit of stability",
@@ -79,6 +82,8 @@ bool springs_cancel(const System& system, const std::vector<DiscMotion>& motions
                          ? "Give it more contacts, or larger tangential springs (kT)"
                          : "Hold that motion by a support; a slender assembly needs to be held in more places");
 }
+
+namespace {
 
 /// K is singular where the softest motion that elimination met costs, or with kT < 0 yields, no more energy than its
 /// own round-off.
@@ -100,24 +105,6 @@ void check_null_motions(const System& system, const Factorization& factor) {
   }
 }
 
-std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms);
-
-/// Factorizes K without the component that moves most in a mechanism, for which elimination took a pivot that rounding
-/// has left. K must be positive semidefinite: what costs no energy then moves without a force.
-std::unique_ptr<Factorization> hold_softest(const System& system, std::vector<double> softest) {
-  const auto most = std::ranges::max_element(softest, {}, [](double x) { return std::abs(x); });
-  const auto component = static_cast<std::size_t>(most - softest.begin());
-  DegreesOfFreedom unknowns = system.unknowns;
-  unknowns.held[component] = DegreesOfFreedom::supported;
-  --unknowns.unknowns;
-  const StiffnessMatrix matrix = assemble_stiffness(system.k.assembly, system.k.graph, system.springs, unknowns);
-  const MatrixOnGraph k{matrix, system.k.assembly, system.k.graph};
-  return hold_mechanism(
-      indefinite({k, system.springs, unknowns, system.symbolic, system.max_iterations, system.options},
-                 Mechanisms::hold),
-      component, std::move(softest));
-}
-
 std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mechanisms) {
   auto factor = multifrontal_ldlt(system.symbolic, system.k);
   if (mechanisms == Mechanisms::hold && is_mechanism(system, *factor)) {
@@ -128,20 +115,32 @@ std::unique_ptr<Factorization> indefinite(const System& system, Mechanisms mecha
     if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
     check_null_motions(system, *factor);
   } else if (is_mechanism(system, *factor)) {
-    if (mechanisms == Mechanisms::refuse || system.springs.may_be_indefinite())
-      report_singular(system, factor->softest_motion());
-    return hold_softest(system, factor->softest_motion());
+    report_singular(system, factor->softest_motion());
   }
   return factor;
 }
 
+/// A share of a stiffness that is round-off where springs are far apart: elimination adds the soft ones to stiff ones.
+double suspicious_share(const System& system) {
+  constexpr double rounding = 1e-13;
+  return std::max(suspicious, rounding * spring_spread(system.k.assembly, system.springs));
+}
+
 std::unique_ptr<Factorization> multifrontal(const System& system, Mechanisms mechanisms) {
   if (system.springs.may_be_indefinite()) return indefinite(system, mechanisms);
-  if (auto factor = multifrontal_cholesky(system.symbolic, system.k)) {
-    if (!is_mechanism(system, *factor)) return factor;
-    if (mechanisms == Mechanisms::refuse) report_singular(system, factor->softest_motion());
-  }
-  return indefinite(system, mechanisms);  // no spring is negative: a pivot that is not positive is round-off of zero
+  auto factor = multifrontal_cholesky(system.symbolic, system.k);
+  if (factor && factor->report().smallest_pivot > suspicious_share(system)) return factor;
+  ZeroEnergyModes modes(system);
+  if (modes.components().empty()) return factor ? std::move(factor) : indefinite(system, Mechanisms::refuse);
+  if (mechanisms == Mechanisms::refuse) report_singular(system, modes.motion(0));
+  factor.reset();
+  const DegreesOfFreedom& held = modes.held_unknowns();
+  const StiffnessMatrix matrix = assemble_stiffness(system.k.assembly, system.k.graph, system.springs, held);
+  const MatrixOnGraph k{matrix, system.k.assembly, system.k.graph};
+  const System rest{k, system.springs, held, system.symbolic, system.max_iterations, system.options};
+  factor = multifrontal_cholesky(rest.symbolic, rest.k);
+  if (!factor) factor = indefinite(rest, Mechanisms::refuse);
+  return hold_modes(std::move(factor), std::move(modes));
 }
 
 /// The factorizations of other libraries do not name mechanisms: where one failed or met a pivot near zero, K is
@@ -195,10 +194,21 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   result.factor_bytes = bytes * symbolic.panel_entries();
   result.operations = symbolic.operations;
   result.single_precision = single;
-  // Beside the factor: update matrices on their way up, about two of the largest front and a tenth of the
-  // factor; L D L^T works in whole fronts and keeps the names of its rows.
-  const double front = bytes * symbolic.largest_front * symbolic.largest_front;
-  result.peak_bytes = (indefinite ? 1.25 : 1.1) * result.factor_bytes + (indefinite ? 3 : 2) * front;
+  // Beside the factor: update matrices on their way up, of which buffers are kept; L D L^T works in whole fronts.
+  double waiting = 0, largest = 0;
+  std::vector<double> of_children(symbolic.fronts(), 0.0);
+  for (std::size_t t = 0; t < symbolic.fronts(); ++t) {
+    const auto pivots = static_cast<double>(symbolic.pivots(t)), updates = static_cast<double>(symbolic.updates(t));
+    const double update = updates * updates, front = indefinite ? (pivots + updates) * (pivots + updates) : 0;
+    largest = std::max(largest, waiting + update + front);
+    waiting += update - of_children[t];
+    const std::int32_t parent = symbolic.tree.nodes[t].parent;
+    if (parent >= 0) of_children[parent] += update;
+  }
+  // K on the discs and about three contacts each, and the vectors of a solution.
+  const double b = symbolic.block, discs = static_cast<double>(symbolic.position.size());
+  const double system = sizeof(double) * discs * (4 * b * b + 12 * b);
+  result.peak_bytes = result.factor_bytes + bytes * largest + system;
   return result;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -41,6 +42,10 @@ void check_memory(const SolveEstimate& estimate, double memory_limit);
 ///         an apparent mechanism is none
 std::unique_ptr<Factorization> factorize(const System& system, SolverMethod method, Mechanisms mechanisms,
                                          StageTimes& times);
+
+/// A motion that elimination found to resist no more than round-off: a mechanism, or too soft for a double.
+/// \throws Error (bad_input, computation_failed) that names it
+[[noreturn]] void report_singular(const System& system, const std::vector<double>& softest);
 
 /// Negative eigenvalues that the rotations bring by themselves: those of the rotational block of K (Haynsworth: the
 /// inertia of K is that of this block and of the stiffness with rotations eliminated); -1 where the block is singular.

@@ -62,8 +62,8 @@ SolveEstimate estimate_harmonic(const Assembly& assembly, const ContactSprings& 
 }
 
 HarmonicSolver::HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
-                               const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms,
-                               double memory_limit, StageTimes& times)
+                               const std::shared_ptr<const SymbolicFactor>& symbolic, double memory_limit,
+                               StageTimes& times)
     : geometry_(geometry), springs_(springs) {
   Stopwatch watch;
   check_memory(estimate_complex(*symbolic, geometry.unknowns), memory_limit);
@@ -76,19 +76,13 @@ HarmonicSolver::HarmonicSolver(const SpringNetwork& geometry, const ComplexSprin
   for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] += of_loss[k];
   times.add("assemble", watch.lap());
   const MatrixOnGraphOf<Complex> on_graph{matrix, assembly, graph};
-  // By the usual threshold a pivot that is zero may outgrow its round-off: a larger one is tried then.
-  for (const double threshold : {IndefiniteOptions{}.threshold, 0.1}) {
-    factor_.reset();
-    factor_ = std::make_unique<LdltFactor<Complex>>(symbolic, on_graph, IndefiniteOptions{threshold});
-    if (factor_->report().zero_pivots == mechanisms) break;
-  }
+  factor_ = std::make_unique<LdltFactor<Complex>>(symbolic, on_graph, IndefiniteOptions{});
   times.add("factorize", watch.lap());
-  if (factor_->report().zero_pivots != mechanisms) {
-    computation_failed(
-        fmt::format("at this frequency {} of the stiffness matrix are lost in round-off, where {} have no stiffness",
-                    counted(factor_->report().zero_pivots, "pivot"), mechanisms),
-        "normal and tangential springs are too far apart for the digits of a double",
-        "Choose a frequency at which both are within a factor of 1e10 of each other");
+  if (factor_->report().zero_pivots > 0) {
+    computation_failed(fmt::format("at this frequency {} of the stiffness matrix are lost in round-off",
+                                   counted(factor_->report().zero_pivots, "pivot")),
+                       "normal and tangential springs are too far apart for the digits of a double",
+                       "Choose a frequency at which both are within a factor of 1e10 of each other");
   }
 }
 

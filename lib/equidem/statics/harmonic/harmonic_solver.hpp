@@ -42,13 +42,12 @@ SolveEstimate estimate_harmonic(const Assembly& assembly, const ContactSprings& 
 /// exp(-i pi/4) K has a positive definite real part wherever no mechanism is, and K is singular for mechanisms alone.
 class HarmonicSolver {
  public:
-  /// \param geometry discs, contacts and unknowns; its springs are not used, and it must outlive this object
+  /// \param geometry discs, contacts and unknowns, which hold all zero-energy modes; its springs are not used, and it
+  ///        must outlive this object
   /// \param springs must outlive this object
-  /// \param mechanisms zero-energy modes that the elastic matrix has beyond those held by unknowns: as many are held
-  /// \throws Error (computation_failed) where K is singular beyond that, or the factor would not fit into memory
+  /// \throws Error (computation_failed) where K is singular, or the factor would not fit into memory
   HarmonicSolver(const SpringNetwork& geometry, const ComplexSprings& springs,
-                 const std::shared_ptr<const SymbolicFactor>& symbolic, std::int64_t mechanisms, double memory_limit,
-                 StageTimes& times);
+                 const std::shared_ptr<const SymbolicFactor>& symbolic, double memory_limit, StageTimes& times);
 
   /// Solves and refines against the contact law, evaluated in extended precision.
   /// \param gradients of the mean displacement
