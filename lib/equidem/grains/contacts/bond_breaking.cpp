@@ -103,6 +103,7 @@ std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<co
 }
 
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options) {
+  for (const GrainBond& bond : scene.bonds) check_bond(scene, bond);
   Assembly network;
   for (const Grain& grain : scene.grains) network.radii.push_back(grain.radius);
   for (const GrainBond& bond : scene.bonds)
