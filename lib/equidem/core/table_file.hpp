@@ -14,8 +14,6 @@
 #include <unordered_map>
 #include <vector>
 
-#include "equidem/core/units.hpp"
-
 namespace equidem {
 
 /// The number that a text is as a whole; none where it is no number.
@@ -26,6 +24,18 @@ std::optional<Number> number_from(std::string_view text) {
   if (problem != std::errc() || end != text.data() + text.size()) return {};
   return number;
 }
+
+/// What a unit measures.
+enum class Quantity { length, time, frequency, share, angle, speed, spin, density, mass, stress };
+
+/// Value of a unit in SI: 1e-3 of "mm", 0.01 of "%"; none where it is no unit of the quantity, or of any.
+std::optional<double> unit_factor(std::string_view unit, std::optional<Quantity> quantity = {});
+
+/// "m, dm, cm, mm, um, nm, km": the units of a quantity, for messages.
+std::string units_of(Quantity quantity);
+
+/// Metres of a unit of length, or of a length such as "2.5 mm"; none where it is no length.
+std::optional<double> length_unit(std::string_view text);
 
 /// Takes a row of a table off the text, without its line break: LF, CRLF or CR; within quotes a line break is text.
 struct TableRecord {

@@ -11,8 +11,8 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/units.hpp"
 
 namespace equidem {
 namespace {

@@ -12,7 +12,6 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/units.hpp"
 
 namespace equidem {
 namespace {
