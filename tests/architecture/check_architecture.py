@@ -53,6 +53,11 @@ MACHINE_PATH = re.compile(r"(?<![\w./\-~$}{])/(?:%s)\b" % "|".join(["work", "tmp
 NAMESPACE = re.compile(r"(?:inline )?namespace ?([\w:]*) \{$")
 TYPE = re.compile(r"(?:template .*> )?(?:class|struct|enum class) (?:\[\[\w+\]\] |alignas\(\w+\) )?(\w+)\b"
                   r"(?!.*;\s*$|<|::)")
+# Numbers that depend on the locale of the process: 0.25 is read as 0 where a comma is the decimal sign.
+LOCALE = re.compile(r"std::sto(?:f|d|ld|i|l|ll|ul|ull)\(|\b(?:std::)?(?:atof|atoi|atol|strto(?:d|f|ld|l|ll|ul|ull)|v?s?n?scanf)\("
+                    r"|\b(?:std::)?[fsv]*n?printf\([^;]*%[-+ #0-9.*]*l?[aefgAEFG]|std::to_string\([^)]*\.[0-9]"
+                    r"|\bstd::[io]?stringstream\b|std::locale\b|\bsetlocale\(|std::(?:basic_)?regex\b")
+LOCALE_PY = re.compile(r"^\s*(?:import locale\b|from locale\b)|locale\.(?:setlocale|atof|str|format_string)\(|\{\w*:[^{}: ]*n\}")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 
 
@@ -109,6 +114,17 @@ def check_foreign_include(path, header, used):
                     return f"<{header}> is included in more than {most} file(s): {', '.join(sorted(used[pattern]))}"
             return None
     return f"<{header}> is no part that check_architecture.py knows; give it one place in PARTS"
+
+
+def check_locale(path, text):
+    """Numbers of the library and the programs are read by from_chars and written by fmt."""
+    if not path.startswith(("lib/", "tools/")) or path.startswith("tools/bench/"):
+        return
+    pattern = LOCALE_PY if path.endswith(".py") else LOCALE
+    for number, line in enumerate(text.splitlines(), 1):
+        found = pattern.search(line.split("//")[0])
+        if found:
+            yield number, f"'{found.group().strip()}' depends on the locale: use number_from or fmt"
 
 
 def check_source(path, text, rooms, used):
@@ -218,7 +234,7 @@ def violations(root):
         if is_source(path) and not has_licence(path, text):
             yield path, 1, f"the first line is not '{SPDX}'"
         if path.endswith(SOURCES):
-            for number, wrong in check_source(path, text, rooms, used):
+            for number, wrong in (*check_source(path, text, rooms, used), *check_locale(path, text)):
                 yield path, number, wrong
         if path.startswith(("lib/", "tools/")) and not path.startswith("tools/bench/") and path.endswith(".hpp"):
             for number, wrong in check_types(path, text, types):

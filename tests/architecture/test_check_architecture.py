@@ -67,6 +67,14 @@ class TheCheck(unittest.TestCase):
     def test_rejects_an_include_that_hides_its_room(self):
         self.fails_with({"lib/equidem/core/error.cpp": '#include "../contact/spring.hpp"\n'}, "must be written as")
 
+    def test_rejects_numbers_that_depend_on_the_locale(self):
+        for text in ("double x = std::stod(word);", "double x = atof(word);", "double x = strtod(word, nullptr);",
+                     'snprintf(text, 9, "%.3g", x);', "std::istringstream in(text);", "std::ostringstream out;"):
+            self.fails_with({"lib/equidem/core/a.cpp": f"// {SPDX}\n{text}\n"}, "a.cpp:2", "depends on the locale")
+        self.fails_with({"lib/python/a.py": f"# {SPDX}\nimport locale\n"}, "a.py:2", "depends on the locale")
+        fine = 'fprintf(stderr, "%s", text);\nstd::to_string(count);\nto_string(kind);\n'
+        self.assertEqual(violations_of({"tools/a.cpp": f"// {SPDX}\n{fine}"}), [])
+
     def test_rejects_a_part_outside_its_place(self):
         self.fails_with({"lib/equidem/contact/law.cpp": "#include <fmt/format.h>\n"},
                         "<fmt/format.h> may be included only in lib/equidem/core/text.hpp")

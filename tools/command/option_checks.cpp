@@ -5,19 +5,16 @@
 #include <optional>
 #include <string_view>
 
-#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
-namespace {
 
-template <class Number>
-std::optional<Number> number_given(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  return number_from<Number>(text);
+PointsInNumbers::PointsInNumbers() : numbers_(newlocale(LC_NUMERIC_MASK, "C", nullptr)), before_(uselocale(numbers_)) {}
+
+PointsInNumbers::~PointsInNumbers() {
+  uselocale(before_);
+  if (numbers_ != nullptr) freelocale(numbers_);
 }
-
-}  // namespace
 
 OptionCheck whole_number(std::int64_t least, std::int64_t most) {
   return [=](const std::string& given) {

@@ -3,12 +3,37 @@
 /// Checks of the values of options, for CLI::Option::check.
 #pragma once
 
+#include <clocale>
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
+
+#include "equidem/core/table_file.hpp"
 
 namespace equidem {
+
+/// While it lives, numbers of options have a decimal point in this thread, whatever locale the process is in: CLI11
+/// reads them by strtold.
+class PointsInNumbers {
+ public:
+  PointsInNumbers();
+  ~PointsInNumbers();
+  PointsInNumbers(const PointsInNumbers&) = delete;
+  PointsInNumbers& operator=(const PointsInNumbers&) = delete;
+
+ private:
+  locale_t numbers_, before_;
+};
+
+/// The number that the value of an option is; none where it is none.
+template <class Number>
+std::optional<Number> number_given(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return number_from<Number>(text);
+}
 
 /// Returns what is wrong with a value, or nothing.
 using OptionCheck = std::function<std::string(const std::string& given)>;

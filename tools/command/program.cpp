@@ -25,6 +25,7 @@
 #include "command.hpp"
 #include "completion.hpp"
 #include "man_page.hpp"
+#include "option_checks.hpp"
 
 namespace equidem {
 namespace {
@@ -168,6 +169,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   }
 
   try {
+    const PointsInNumbers points;
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     const bool of_verb = verb != commands.end() && (*verb)->parsed();

@@ -10,6 +10,8 @@
 #include "equidem/core/text.hpp"
 #include "equidem/study/evaluate.hpp"
 
+#include "option_checks.hpp"
+
 namespace equidem {
 namespace {
 
@@ -29,8 +31,8 @@ Results json_of(const AccuracySetting& setting) {
 
 void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, const std::string& what) {
   const auto wrong = [](const std::string& given) -> std::string {
-    double value = 0;
-    const bool right = CLI::detail::lexical_cast(given, value) && value >= 1e-15 && value < 1;
+    const auto value = number_given<double>(given);
+    const bool right = value && *value >= 1e-15 && *value < 1;
     return right ? "" : fmt::format("'{}' is not a number of at least 1e-15 and below 1, such as 0.01", given);
   };
   command.add_option("--accuracy", accuracy, what)->check(wrong)->type_name("X");

@@ -71,6 +71,33 @@ void add_found_contacts(Results& results, const Assembly& assembly) {
   if (!larger.empty()) results.note("; " + larger);
 }
 
+/// Warns of discs of a file that lie almost on each other, as rows that are there twice do.
+void add_deep_overlap(Results& results, const Assembly& assembly) {
+  constexpr double deep = 0.5;  // of the smaller radius
+  if (!assembly.sections.empty() || !assembly.gap_tolerance || assembly.kind != "file") return;
+  const auto overlap_of = [&](const Contact& contact) {
+    const double ri = assembly.radii[contact.i], rj = assembly.radii[contact.j];
+    return (ri + rj - norm(assembly.branch(contact))) / std::min(ri, rj);
+  };
+  const auto deepest = std::ranges::max_element(assembly.contacts, {}, overlap_of);
+  if (deepest == assembly.contacts.end()) return;
+  const double overlap = overlap_of(*deepest);
+  if (!(overlap > 0)) return;
+  results.line("").note(fmt::format("overlap at most {:.3g} of the smaller radius", overlap));
+  if (overlap <= deep) return;
+  const auto count = std::ranges::count_if(assembly.contacts, [&](const Contact& c) { return overlap_of(c) > deep; });
+  const auto place = [&](std::int32_t disc) {
+    const Vec2 x = assembly.centres[static_cast<std::size_t>(disc)];
+    return fmt::format("{} at ({:.6g}, {:.6g}) m", disc, x.x, x.y);
+  };
+  results.set("overlapping_discs",
+              std::vector<double>{static_cast<double>(deepest->i), static_cast<double>(deepest->j)});
+  results.line("warning", fmt::format("{} of discs overlap by more than half a radius, most of all discs {} and {}, "
+                                      "counted from 0 in the order of their ids: one may be there twice, or the unit "
+                                      "of the radii wrong",
+                                      counted(count, "pair"), place(deepest->i), place(deepest->j)));
+}
+
 /// Says where contacts join discs that do not just touch, as edges of a triangulation do.
 void add_gaps(Results& results, const GapRange& gaps, bool found) {
   constexpr double noticeable = 0.01;
@@ -277,6 +304,7 @@ Results problem_results(const Problem& problem, const Effects& effects, Assembly
                   "the outlines of the bodies are not known.");
   }
   add_found_contacts(of_whole, a);
+  add_deep_overlap(of_whole, a);
   constexpr std::size_t most_discs = 200000;  // beyond them the void costs as much as the solution
   if (problem.resolved.assembly.kind == AssemblyKind::packing && a.sections.empty() && a.size() <= most_discs)
     add_largest_void(of_whole, a);

@@ -6,6 +6,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 
+#include "option_checks.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -38,6 +39,7 @@ VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::ranges::reverse(arguments);
   try {
+    const PointsInNumbers points;
     command_.parse(arguments);
   } catch (const CLI::ParseError& error) {
     bad_input(error.what(), "", "See 'equidem help'");

@@ -361,6 +361,7 @@ Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOpti
   const bool is_hdf5 = is_hdf5_name(path);
   if (is_hdf5) check_readable(path);
   const std::string text = is_hdf5 ? std::string() : read_file(path);
+  refuse_utf16(text, path.string());
   require_text(text, path);
   const ParticleFormat format = is_hdf5 || path.extension() == ".json" ? ParticleFormat::none : particle_format(text);
   if (format != ParticleFormat::none) {

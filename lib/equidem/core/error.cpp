@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/error.hpp"
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "equidem/core/text.hpp"
@@ -8,15 +10,20 @@
 namespace equidem {
 namespace {
 
-/// Control characters of the user's files as \xHH, which a terminal does not obey.
-std::string without_controls(const std::string& text) {
+/// Control characters of the user's files, which a terminal does not obey, and bytes that are no UTF-8, as \xHH.
+std::string printable(std::string_view text) {
   std::string plain;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7f)
-      plain += fmt::format("\\x{:02x}", code);
-    else
-      plain += c;
+  while (!text.empty()) {
+    const std::size_t wrong = std::min(place_of_wrong_byte(text).value_or(text.size()), text.size());
+    for (const char c : text.substr(0, wrong)) {
+      const auto code = static_cast<unsigned char>(c);
+      if (code < 0x20 || code == 0x7f)
+        plain += fmt::format("\\x{:02x}", code);
+      else
+        plain += c;
+    }
+    if (wrong < text.size()) plain += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[wrong]));
+    text.remove_prefix(std::min(wrong + 1, text.size()));
   }
   return plain;
 }
@@ -27,7 +34,7 @@ std::string sentence(const std::string& problem, const std::string& why, const s
   if (!why.empty()) text += " (" + why + ")";
   text += ".";
   if (!remedy.empty()) text += " " + remedy + (remedy.ends_with('?') ? "" : ".");
-  return with_short_words(without_controls(text));
+  return with_short_words(printable(text));
 }
 
 }  // namespace
@@ -35,10 +42,10 @@ std::string sentence(const std::string& problem, const std::string& why, const s
 Error::Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where)
     : std::runtime_error(sentence(problem, why, remedy, where)),
       kind_(kind),
-      problem_(std::move(problem)),
-      why_(std::move(why)),
-      remedy_(std::move(remedy)),
-      where_(std::move(where)) {}
+      problem_(printable(problem)),
+      why_(printable(why)),
+      remedy_(printable(remedy)),
+      where_(printable(where)) {}
 
 Error Error::at(const std::string& where) const {
   return where_.empty() && kind_ != ErrorKind::interrupted ? Error(kind_, problem_, why_, remedy_, where) : *this;

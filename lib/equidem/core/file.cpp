@@ -74,9 +74,16 @@ std::string read_file(const fs::path& path) {
   if (const auto given = Given<std::string>::find(path)) return *given;
   check_readable(path);
   std::ifstream file(path, std::ios::binary);
-  std::string content((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  errno = 0;
+  std::string content;
+  try {
+    content.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  } catch (const std::ios_base::failure&) {
+    file.setstate(std::ios_base::badbit);  // /proc/self/mem, a broken disk: the buffer throws by itself
+  }
   if (!file || file.bad()) {
-    bad_input(fmt::format("cannot read '{}'", path.string()), std::strerror(errno), "Check that you may read it");
+    bad_input(fmt::format("cannot read '{}'", path.string()), std::strerror(errno != 0 ? errno : EIO),
+              "Check that you may read it");
   }
   return content;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "equidem/core/error.hpp"
+
 namespace equidem {
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator) {
@@ -77,6 +79,48 @@ std::string_view trimmed(std::string_view text) {
 
 std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = line.find_first_not_of(" \t\r"); begin != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(" \t\r", end);
+  }
+  return words;
+}
+
+std::optional<std::size_t> place_of_wrong_byte(std::string_view text) {
+  for (std::size_t k = 0; k < text.size();) {
+    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
+    const unsigned first = byte(k), second = byte(k + 1);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xC2 ? 0
+                               : first < 0xE0 ? 2
+                               : first < 0xF0 ? 3
+                               : first < 0xF5 ? 4
+                                              : 0;
+    bool good = length > 0;
+    for (std::size_t more = 1; more < length; ++more) good = good && (byte(k + more) & 0xC0U) == 0x80U;
+    // Overlong forms, halves of pairs of UTF-16, and what lies above U+10FFFF.
+    good = good && !(first == 0xE0 && second < 0xA0) && !(first == 0xED && second >= 0xA0) &&
+           !(first == 0xF0 && second < 0x90) && !(first == 0xF4 && second >= 0x90);
+    if (!good) return k;
+    k += length;
+  }
+  return {};
+}
+
+void refuse_utf16(std::string_view text, const std::string& name) {
+  const bool little = text.starts_with("\xFF\xFE"), big = text.starts_with("\xFE\xFF");
+  const std::string_view begin = text.substr(0, text.find('\n'));
+  const bool unmarked = begin.size() > 3 && ((begin[0] == 0 && begin[1] != 0 && begin[2] == 0) ||
+                                             (begin[1] == 0 && begin[0] != 0 && begin[3] == 0));
+  if (!little && !big && !unmarked) return;
+  bad_input_at(name.empty() ? "line 1" : name + ":1", "the text is UTF-16, not UTF-8",
+               fmt::format("byte 1 of the line is 0x{:02x}", static_cast<unsigned char>(text[0])),
+               "Save the file as UTF-8 (in spreadsheets: CSV UTF-8)");
 }
 
 bool is_plain_name(std::string_view text) {

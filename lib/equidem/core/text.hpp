@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <string_view>
@@ -55,6 +56,16 @@ std::string_view trimmed(std::string_view text);
 
 /// Without the mark that some programs put before a UTF-8 text.
 std::string_view without_byte_order_mark(std::string_view text);
+
+/// The words between blanks: spaces, tabs and carriage returns.
+std::vector<std::string_view> words_of(std::string_view line);
+
+/// The first byte that is of no UTF-8 character; none where there is none.
+std::optional<std::size_t> place_of_wrong_byte(std::string_view text);
+
+/// \param name of its file
+/// \throws Error (bad_input) where the text is of UTF-16
+void refuse_utf16(std::string_view text, const std::string& name);
 
 /// Whether the text consists of letters, digits, '_' and '-' only.
 bool is_plain_name(std::string_view text);

@@ -175,22 +175,28 @@ Schedule delayed(Schedule schedule, double time) {
 }
 
 void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column) {
-  TableFile file(path);
+  const std::vector<std::string> of_time = {"time", "t"}, of_value = {std::string(column)};
+  TableFile file(path, {of_time, of_value});
+  if (file.width() == 0)
+    bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+  std::size_t first = 0, second = 1;
+  if (!file.names().empty()) {
+    const std::string why = "a schedule has times and values";
+    first = file.need(of_time, why);
+    second = file.need(of_value, why);
+  }
+  const double seconds = file.factor(first, Quantity::time).value_or(1), unit = file.factor(second, {}).value_or(1);
   while (file.next()) {
-    const auto& cells = file.cells();
-    const bool pair = cells.size() == 2;
-    if (file.is_first() && pair && cells[0] == "time" && cells[1] == column) continue;
-    const auto time = number_from<double>(cells.front()), value = number_from<double>(cells.back());
-    if (!pair || !time || !value || !std::isfinite(*time) || !std::isfinite(*value)) {
+    if (file.names().empty() && file.width() != 2)
       file.fail("this row is not a time and a value", "two numbers with a comma are needed",
                 fmt::format("Write it like 0.5,1.0; the first row may be time,{}", column));
-    }
-    if (!table.times.empty() && *time <= table.times.back()) {
-      file.fail(fmt::format("the time {} s comes after {} s", *time, table.times.back()),
+    const double time = seconds * file.number(first, "time"), value = unit * file.number(second, column);
+    if (!table.times.empty() && time <= table.times.back()) {
+      file.fail(fmt::format("the time {} s comes after {} s", time, table.times.back()),
                 "times ascend, and a value cannot jump", "Order the rows and leave out repeated times");
     }
-    table.times.push_back(*time);
-    table.values.push_back(*value);
+    table.times.push_back(time);
+    table.values.push_back(value);
   }
   if (table.times.empty())
     bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");

@@ -39,6 +39,7 @@ inline constexpr ResultQuantity quantities[] = {
     {"forces_at_rest/mean", "N/m", "mean force at rest of those contacts"},
     {"forces_at_rest/imbalance", "",
      "what the forces at rest lack of balance on one body at most, walls and weight not counted, over their mean"},
+    {"overlapping_discs", "", "the two discs of a file that overlap most, where they do by more than half a radius"},
     {"left_out", "", "numbers of the bodies that are not solved for"},
     {"kN", "Pa", "normal stiffness of the springs kN"},
     {"kT", "Pa", "tangential stiffness of the springs kT"},

@@ -137,17 +137,27 @@ void check(const SizeDistribution& sizes) {
 }
 
 std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
-  TableFile file(path);
+  const std::vector<std::string> diameters = {"diameter", "d", "sieve", "size", "sieve_size", "grain_size", "opening"};
+  const std::vector<std::string> shares = {"passing", "finer", "share", "share_passing", "cumulative"};
+  TableFile file(path, {diameters, shares});
+  std::size_t diameter = 0, passing = 1;
+  if (!file.names().empty()) {
+    const std::string why = "a sieve curve has the diameters and the share of the mass that passes";
+    diameter = file.need(diameters, why);
+    passing = file.need(shares, why);
+  }
+  const double metres = file.factor(diameter, Quantity::length).value_or(1);
+  const double share = file.factor(passing, Quantity::share).value_or(1);
   std::vector<Sieve> sieves;
   while (file.next()) {
-    const auto diameter = number_from<double>(file.cells()[0]);
-    const auto passing = file.cells().size() == 2 ? number_from<double>(file.cells()[1]) : std::nullopt;
-    if (diameter && passing) {
-      sieves.push_back({*diameter, *passing});
-    } else if (!file.is_first()) {  // which may name the columns
-      file.fail(fmt::format("'{}' is no point of a sieve curve", file.row()),
+    if (file.names().empty() && file.width() != 2) {
+      file.refuse_decimal_commas();
+      file.fail(fmt::format("the row has {}", counted(std::ssize(file.cells()), "cell")),
                 "a diameter in m and a share passing are needed", "Write two numbers with a comma between them");
     }
+    // 100 % is 1 to the last bit.
+    const double passes = file.number(passing, "share passing");
+    sieves.push_back({metres * file.number(diameter, "diameter"), share < 1 ? passes / 100 : passes});
   }
   try {
     check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = sieves});

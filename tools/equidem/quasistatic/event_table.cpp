@@ -6,6 +6,7 @@
 
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -19,7 +20,11 @@ std::string numbers_of(const std::vector<std::int32_t>& discs) {
 std::vector<std::int32_t> discs_of(const std::string& text) {
   std::vector<std::int32_t> discs;
   if (text.empty()) return discs;
-  for (const std::string_view word : parts_of(text, ' ')) discs.push_back(std::stoi(std::string(word)));
+  for (const std::string_view word : words_of(text)) {
+    const auto disc = number_from<std::int32_t>(word);
+    if (!disc) bad_input(fmt::format("'{}' is no number of a disc", word), "the events name discs", "Start afresh");
+    discs.push_back(*disc);
+  }
   return discs;
 }
 

@@ -17,6 +17,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/page/page.hpp"
 
@@ -76,7 +77,7 @@ void check_keys(const SweepOptions& options, const SweepPlan& plan, const CaseDo
     CommonOptions first = options.common;
     if (key.name != "ratio") refuse_misspelt_ratio(key);
     if (key.name == SweepPlan::seed) {
-      first.seed = std::stoll(key.values.front());
+      first.seed = number_from<std::int64_t>(key.values.front());
     } else if (key.name == "ratio") {
       const TomlValue* const springs = base.document.find("springs");
       if (springs == nullptr || !springs->is_table() || springs->find("kN") == nullptr)
@@ -141,7 +142,7 @@ Results results_of_keys(const SweepPlan& plan) {
     one.set("key", key.name).set("unit", key.unit);
     if (key.numeric()) {
       std::vector<double> numbers;
-      for (const std::string& value : key.values) numbers.push_back(std::stod(value));
+      for (const std::string& value : key.values) numbers.push_back(number_from<double>(value).value());
       one.set("values", numbers, "", "values of the key, in its unit");
     } else {
       one.set("values", key.values);

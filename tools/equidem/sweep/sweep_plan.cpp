@@ -51,7 +51,8 @@ std::vector<std::string> values_of_range(double from, double to, int steps) {
     // The decimal number that is meant, 0.3 and not 0.30000000000000004; and a spring that is absent, not one
     // that is almost absent.
     const double rounding = 1e-13 * std::max(std::abs(from), std::abs(to));
-    const double meant = std::abs(value) <= rounding ? 0 : std::stod(fmt::format("{:.12g}", value));
+    const double meant =
+        std::abs(value) <= rounding ? 0 : number_from<double>(fmt::format("{:.12g}", value)).value_or(INFINITY);
     if (!std::isfinite(meant))
       bad_input("the values from --from to --to overflow", "a sweep needs finite numbers", "Give smaller ones");
     values.push_back(number_text(meant));
@@ -74,6 +75,10 @@ SweptKey swept_key(const KeyOptions& given) {
   if (range) key.values = values_of_range(*given.from, *given.to, given.steps);
   for (const std::string& list : given.values)
     for (const std::string_view part : parts_of(list, ',')) key.values.push_back(value_from(part, list));
+  const auto word = std::ranges::find_if(key.values, [](const std::string& v) { return !number_from<double>(v); });
+  if (key.name == "ratio" && word != key.values.end())
+    bad_input_at("--values", fmt::format("'{}' is among the values of ratio", *word), "kT/kN is a number",
+                 "Leave it out, or correct it");
   return key;
 }
 
@@ -120,7 +125,7 @@ void check_size(const SweepPlan& plan) {
 /// [springs] with kT at the given ratio to kN, whatever file they were read from.
 std::string springs_of_ratio(const TomlValue& base, const std::string& ratio) {
   const TomlValue& springs = *base.find("springs");
-  const double kT = std::stod(ratio) * springs.find("kN")->real;
+  const double kT = number_from<double>(ratio).value() * springs.find("kN")->real;
   std::string entries;
   for (const TomlEntry& entry : springs.entries) {
     const TomlValue& value = entry.value;

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "equidem/assembly/files/file_keys.hpp"
-#include "equidem/assembly/import/length_unit.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -101,6 +102,13 @@ void check_plane(const std::vector<Particle>& particles) {
   const auto [low, high] = std::ranges::minmax_element(particles, {}, &Particle::z);
   const double largest = std::ranges::max_element(particles, {}, &Particle::radius)->radius;
   if (high->z - low->z <= rounding * largest) return;
+  const auto [near, far] = std::ranges::minmax_element(particles, {}, &Particle::y);
+  if (far->y - near->y <= rounding * largest)
+    bad_input_at(at_line(high->line),
+                 fmt::format("the sample lies in the plane x-z: every y is {:.6g}, and z goes from {:.6g} to {:.6g}",
+                             near->y, low->z, high->z),
+                 "discs lie in the plane x-y here, y upwards",
+                 "Exchange the columns y and z, and in the box of a LAMMPS file the bounds of y and z");
   bad_input_at(at_line(high->line),
                fmt::format("the particles are three-dimensional: z goes from {:.6g} to {:.6g}", low->z, high->z),
                "discs lie in one plane", "Export a two-dimensional packing, all of it with one z");
@@ -117,6 +125,23 @@ Assembly discs_of(const std::vector<Particle>& particles, double unit) {
     assembly.radii.push_back(unit * particle.radius);
   }
   return assembly;
+}
+
+/// A particle that stands twice in the file, perhaps with other digits.
+void refuse_particles_in_one_place(const std::vector<Particle>& particles, const Assembly& assembly,
+                                   std::span<const Contact> touching) {
+  constexpr double digits = 1e-6, most = 0.01;  // of the coordinates; of the smaller radius
+  for (const Contact& contact : touching) {
+    const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+    const double radius = std::min(assembly.radii[i], assembly.radii[j]), distance = norm(assembly.branch(contact));
+    const double size = std::max({radius, std::abs(assembly.centres[i].x), std::abs(assembly.centres[i].y)});
+    if (distance > std::min(most * radius, digits * size)) continue;
+    const auto [first, second] =
+        std::minmax(particles[i], particles[j], [](const Particle& a, const Particle& b) { return a.line < b.line; });
+    bad_input_at(at_line(second.line), fmt::format("particles {} and {} lie in one place", first.id, second.id),
+                 fmt::format("their centres are {:.3g} m apart; the other stands at line {}", distance, first.line),
+                 "Keep one of them");
+  }
 }
 
 std::int32_t disc_of(const std::vector<Particle>& particles, std::int64_t id, int line) {
@@ -224,6 +249,8 @@ Assembly imported_assembly(const std::filesystem::path& path, std::string_view t
     unit = unit_of_rows(rows, options.unit_of_length);
     return discs_of(rows, unit, options);
   });
+  if (options.contacts || rows.contacts)
+    within_file(path, [&] { refuse_particles_in_one_place(rows.particles, assembly, touching_discs(assembly)); });
   if (options.contacts) {
     within_file(*options.contacts, [&] {
       add_contacts(read_contact_rows(read_file(*options.contacts)), rows, unit, ContactPoint::by_radii, assembly);
@@ -239,6 +266,7 @@ Assembly imported_assembly(const std::filesystem::path& path, std::string_view t
     }
     assembly.gap_tolerance = options.gap_tolerance;
     assembly.contacts = touching_discs(assembly, options.gap_tolerance);
+    refuse_particles_in_one_place(rows.particles, assembly, assembly.contacts);
     for (Contact& contact : assembly.contacts) divide_by_radii(assembly, contact);
   });
   return assembly;

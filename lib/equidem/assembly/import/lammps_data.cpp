@@ -3,7 +3,6 @@
 #include <array>
 #include <map>
 
-#include "equidem/assembly/import/length_unit.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/assembly/import/text_lines.hpp"
 #include "equidem/core/error.hpp"
@@ -18,7 +17,7 @@ struct AtomStyle {
   std::string_view name;
   std::size_t columns, diameter, x;
 };
-constexpr AtomStyle atom_styles[] = {{"sphere", 7, 2, 4}, {"bpm/sphere", 8, 3, 5}};
+constexpr AtomStyle atom_styles[] = {{"sphere", 7, 2, 4}, {"granular", 7, 2, 4}, {"bpm/sphere", 8, 3, 5}};
 
 /// Sections with the count of the header that says how many lines they have.
 struct DataSection {
@@ -136,6 +135,8 @@ class DataReader {
     const std::int64_t count = counts_[std::string(section->count)];
     const bool atoms = name == "Atoms", bonds = name == "Bonds";
     const AtomStyle* of_atoms = atoms ? &style_of(style) : nullptr;
+    const int heading_line = lines_.number();
+    bool sized = !style.empty();  // else the style is one of as many numbers
     if (bonds) result_.contacts.emplace();
     for (std::int64_t k = 0; k < count; ++k) {
       if (!next() || !is_row())
@@ -143,8 +144,10 @@ class DataReader {
                     "Get the whole file");
       const auto cells = words_of(without_comment(lines_.line()));
       if (atoms) read_atom(*of_atoms, cells);
+      sized = sized || (atoms && cells[of_atoms->diameter].find_first_of(".e") != std::string_view::npos);
       if (bonds) read_bond(cells);
     }
+    if (atoms && !sized && count > 0) refuse_style(style, heading_line);
     atoms_read_ = atoms_read_ || atoms;
     if (!next()) return {};
     if (is_row())
@@ -159,13 +162,20 @@ class DataReader {
     return (first >= '0' && first <= '9') || first == '-' || first == '+';
   }
 
+  /// Older files name no style: seven numbers are those of sphere, or of full, where the third one is whole.
   [[nodiscard]] const AtomStyle& style_of(const std::string& name) const {
     for (const AtomStyle& style : atom_styles)
-      if (style.name == name) return style;
-    lines_.fail(name.empty() ? "the section Atoms does not name its atom style"
-                             : fmt::format("the atoms are of style {}, which has no diameter here", name),
-                "every disc has a size, and columns differ from style to style",
-                "Use atom style sphere or bpm/sphere; write_data then begins the section by \"Atoms # sphere\"");
+      if (style.name == name || name.empty()) return style;
+    refuse_style(name, lines_.number());
+  }
+
+  [[noreturn]] static void refuse_style(const std::string& name, int line) {
+    bad_input_at(
+        fmt::format("line {}", line),
+        name.empty() ? "the section Atoms does not name its atom style"
+                     : fmt::format("the atoms are of style {}, which has no diameter here", name),
+        "every disc has a size, and columns differ from style to style",
+        "Use atom style sphere or bpm/sphere, and begin the section by \"Atoms # sphere\", as write_data does");
   }
 
   void read_atom(const AtomStyle& style, const std::vector<std::string_view>& cells) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <functional>
 
-#include "equidem/assembly/import/length_unit.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/assembly/import/text_lines.hpp"
 #include "equidem/core/error.hpp"

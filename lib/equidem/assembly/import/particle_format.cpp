@@ -12,7 +12,19 @@ bool counts_atoms(std::string_view line) {
   return words.size() == 2 && words[1] == "atoms" && words[0].find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+struct LammpsUnits {
+  std::string_view name;
+  double metres;
+};
+constexpr LammpsUnits lammps_units[] = {{"si", 1}, {"cgs", 0.01}, {"micro", 1e-6}, {"nano", 1e-9}};
+
 }  // namespace
+
+std::optional<double> lammps_length_unit(std::string_view name) {
+  for (const LammpsUnits& units : lammps_units)
+    if (units.name == name) return units.metres;
+  return {};
+}
 
 ParticleFormat particle_format(std::string_view text) {
   constexpr int lines_of_header = 30;

@@ -20,6 +20,10 @@ enum class ParticleFormat { none, lammps_data, lammps_dump, table };
 /// The format of a text, by its first lines; none: none of them.
 ParticleFormat particle_format(std::string_view text);
 
+/// Metres of the unit of length of LAMMPS' systems of units: si, cgs, micro, nano; none of others, whose length is the
+/// user's (lj) or not that of grains.
+std::optional<double> lammps_length_unit(std::string_view units);
+
 /// Two particles that touch, by their ids.
 struct ContactRow {
   std::int64_t i = 0, j = 0;
@@ -57,10 +61,9 @@ ParticleRows read_lammps_dump(std::string_view text, std::optional<std::int64_t>
 /// The sections Atoms, of a style with a diameter, and Bonds.
 /// \throws Error (bad_input) likewise; an atom style without a diameter, one that is not named
 ParticleRows read_lammps_data(std::string_view text);
-/// A table with the columns x, y and radius or diameter, also z and id: with commas or spaces between them, named in
-/// its first line, in a comment before the rows, or by "#format" of YADE; without names x y r or x y z r. A name may
-/// end in a unit: "x_mm", "x [mm]". The columns period_x and period_y are the period.
-/// \throws Error (bad_input) likewise; bodies that are no discs
+/// A table (TableFile) with the columns x, y and radius or diameter, also z and id, named in its first line, in a
+/// comment before the rows, or by "#format" of YADE; without names x y r or x y z r. The columns period_x and period_y
+/// are the period. \throws Error (bad_input) likewise; bodies that are no discs
 ParticleRows read_particle_table(std::string_view text);
 
 /// A table with the columns i and j, also shift_x, shift_y, lever_i, lever_j, normal_x, normal_y, offset_i, offset_j;

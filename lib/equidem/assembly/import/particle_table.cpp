@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
-#include "equidem/assembly/import/length_unit.hpp"
-#include "equidem/assembly/import/number_table.hpp"
 #include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -17,19 +21,41 @@ const std::vector<std::string> id_names = {"id", "grain", "disc", "particle"}, x
 using ColumnPlace = std::optional<std::size_t>;
 
 struct ParticleColumns {
-  std::size_t x = 0, y = 1, size = 2;
-  ColumnPlace z = {}, id = {}, period_x = {}, period_y = {};
-  bool is_diameter = false;
+  std::size_t x = 0, y = 1;
+  ColumnPlace z = {}, id = {}, radius = {}, diameter = {}, period_x = {}, period_y = {};
+
+  /// Those that are lengths and there.
+  [[nodiscard]] std::vector<std::size_t> lengths() const {
+    std::vector<std::size_t> all{x, y};
+    for (const ColumnPlace place : {z, radius, diameter, period_x, period_y})
+      if (place) all.push_back(*place);
+    return all;
+  }
 };
 
-ParticleColumns particle_columns(const NumberTable& table) {
+/// The columns of YADE's export.textExt.
+std::optional<std::string> columns_of_yade(const TableFile& table, std::string_view comment) {
+  constexpr std::string_view format = "format ";
+  if (!comment.starts_with(format)) return {};
+  const std::string_view name = trimmed(comment.substr(format.size()));
+  if (name == "x_y_z_r" || name == "x_y_z_r_attrs") return "x y z r";
+  if (name == "x_y_z_r_matId") return "x y z r matId";
+  if (name == "id_x_y_z_r_matId") return "id x y z r matId";
+  table.fail(fmt::format("'{}' is no format of places and radii", name),
+             "those of export.textExt are x_y_z_r, x_y_z_r_matId, x_y_z_r_attrs and id_x_y_z_r_matId",
+             "Export it with one of them");
+}
+
+ParticleColumns particle_columns(const TableFile& table) {
   ParticleColumns c;
   if (table.names().empty()) {
-    if (table.width() != 3 && table.width() != 4)
-      bad_input_at(fmt::format("line {}", table.line()),
-                   fmt::format("the table has {} columns without names", table.width()),
-                   "without names three are x y r, and four x y z r", "Name them in a first line: x y radius");
-    if (table.width() == 4) c = {.size = 3, .z = 2};
+    if (table.width() != 3 && table.width() != 4) {
+      table.refuse_decimal_commas();
+      table.fail(fmt::format("the table has {} columns without names", table.width()),
+                 "without names three are x y r, and four x y z r", "Name them in a first line: x y radius");
+    }
+    c.radius = table.width() - 1;
+    if (table.width() == 4) c.z = 2;
     return c;
   }
   const std::string why = "every disc has a place and a size";
@@ -37,66 +63,74 @@ ParticleColumns particle_columns(const NumberTable& table) {
   c.y = table.need(y_names, why);
   c.z = table.find(z_names);
   c.id = table.find(id_names);
-  c.is_diameter = !table.find(radius_names) && table.find(diameter_names);
-  c.size = table.need(c.is_diameter ? diameter_names : radius_names, why);
+  c.diameter = table.find(diameter_names);
+  c.radius = c.diameter ? table.find(radius_names) : table.need(radius_names, why);
   c.period_x = table.find({"period_x"});
   c.period_y = table.find({"period_y"});
+  if (c.period_x.has_value() != c.period_y.has_value())
+    table.fail_at_names("only one of period_x and period_y is there", "a cell is periodic along both",
+                        "Give both, or none");
   return c;
 }
 
 /// The unit that the names of all lengths carry; none where none does.
-std::optional<double> unit_of_columns(const NumberTable& table, const ParticleColumns& columns) {
-  if (table.names().empty()) return {};
-  std::string unit = table.names()[columns.x].unit;
-  for (const ColumnPlace place :
-       {ColumnPlace(columns.y), ColumnPlace(columns.size), columns.z, columns.period_x, columns.period_y}) {
-    if (!place || table.names()[*place].unit == unit) continue;
-    bad_input_at(fmt::format("line {}", table.line_of_names()),
-                 fmt::format("the columns '{}' and '{}' are in different units", table.names()[columns.x].name,
-                             table.names()[*place].name),
-                 "places, sizes and periods have one unit", "Convert one of them");
+std::optional<double> unit_of_columns(const TableFile& table, const ParticleColumns& columns) {
+  const std::vector<std::size_t> lengths = columns.lengths();
+  const auto unit = table.factor(columns.x, Quantity::length);
+  for (const std::size_t column : lengths) {
+    if (table.factor(column, Quantity::length) != unit)
+      table.fail_at_names(fmt::format("the columns '{}' and '{}' are in different units", table.names()[columns.x].text,
+                                      table.names()[column].text),
+                          "places, sizes and periods have one unit", "Convert one of them");
   }
-  return unit.empty() ? std::nullopt : length_unit(unit);
+  return unit;
+}
+
+/// The radius, in the unit of the file. Where the diameter is there, too, both agree.
+double radius_of_row(const TableFile& table, const ParticleColumns& columns) {
+  constexpr double rounding = 1e-5;  // of numbers with six digits
+  const double radius = columns.radius ? table.number(*columns.radius, "radius") : 0;
+  if (!columns.diameter) return radius;
+  const double half = 0.5 * table.number(*columns.diameter, "diameter");
+  if (columns.radius && std::abs(half - radius) > rounding * std::abs(radius))
+    table.fail(fmt::format("the radius is {} and the diameter {}", radius, 2 * half), "one is not half of the other",
+               "Take one of the columns out");
+  return columns.radius ? radius : half;
 }
 
 /// Ellipses and clumps of files of grains.
-void refuse_other_shapes(const NumberTable& table) {
-  for (const char* name : {"short_half_axis", "discs"}) {
-    const auto place = table.find({name});
-    if (!place || table.cells()[*place].empty()) continue;
-    bad_input_at(fmt::format("line {}", table.line()), fmt::format("the body has the column '{}'", name),
-                 "it is no disc, and its contacts do not follow from a radius",
-                 "Name the assembly.json that 'equidem pack' writes beside grains.csv");
+void refuse_other_shapes(const TableFile& table, std::span<const std::size_t> columns) {
+  for (const std::size_t column : columns) {
+    if (table.cells()[column].empty()) continue;
+    table.fail(fmt::format("the body has the column '{}'", table.names()[column].name),
+               "it is no disc, and its contacts do not follow from a radius",
+               "Name the assembly.json that 'equidem pack' writes beside grains.csv");
   }
 }
 
 }  // namespace
 
 ParticleRows read_particle_table(std::string_view text) {
-  NumberTable table(text);
+  TableFile table(text, {}, {x_names, y_names}, columns_of_yade);
+  if (!table.next()) bad_input("the table has no rows", "every row is a particle", "Write it again");
   const ParticleColumns columns = particle_columns(table);
-  ParticleRows result{.format = table.by_yade() ? "a text export of YADE" : "a table of particles"};
+  ParticleRows result{.format = table.names_by_format() ? "a text export of YADE" : "a table of particles"};
   result.unit = unit_of_columns(table, columns);
-  const auto number = [&](std::size_t column, std::string_view name) {
-    return finite_number(table.cells()[column], name, table.line());
-  };
-  if (columns.period_x.has_value() != columns.period_y.has_value())
-    bad_input_at(fmt::format("line {}", table.line_of_names()), "only one of period_x and period_y is there",
-                 "a cell is periodic along both", "Give both, or none");
+  std::vector<std::size_t> other_shapes;
+  for (const char* name : {"short_half_axis", "discs"})
+    if (const auto place = table.find({name})) other_shapes.push_back(*place);
   if (columns.period_x) {
-    const Vec2 size{number(*columns.period_x, "period_x"), number(*columns.period_y, "period_y")};
+    const Vec2 size{table.number(*columns.period_x, "period_x"), table.number(*columns.period_y, "period_y")};
     result.box = ParticleRows::Box{.low = {}, .high = size, .periodic_x = true, .periodic_y = true};
   }
   do {
-    refuse_other_shapes(table);
-    const double size = number(columns.size, columns.is_diameter ? "diameter" : "radius");
-    result.particles.push_back(
-        {.id = columns.id ? whole_number(table.cells()[*columns.id], "id", table.line()) : std::ssize(result.particles),
-         .x = number(columns.x, "x"),
-         .y = number(columns.y, "y"),
-         .z = columns.z ? number(*columns.z, "z") : 0,
-         .radius = columns.is_diameter ? 0.5 * size : size,
-         .line = table.line()});
+    refuse_other_shapes(table, other_shapes);
+    result.particles.push_back({.id = columns.id ? table.whole(*columns.id, "id") : std::ssize(result.particles),
+                                .x = table.number(columns.x, "x"),
+                                .y = table.number(columns.y, "y"),
+                                .z = columns.z ? table.number(*columns.z, "z") : 0,
+                                .radius = radius_of_row(table, columns),
+                                .line = table.line()});
   } while (table.next());
   return result;
 }

@@ -20,26 +20,17 @@ std::string_view without_plus(std::string_view text) {
 
 bool TextLines::next() {
   if (rest_.empty()) return false;
-  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
   line_ = trimmed(rest_.substr(0, end));
   is_whole_ = end < rest_.size();
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  rest_.remove_prefix(end);
+  rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
   ++number_;
   return true;
 }
 
 void TextLines::fail(std::string problem, std::string why, std::string remedy) const {
   bad_input_at(fmt::format("line {}", number_), std::move(problem), std::move(why), std::move(remedy));
-}
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = line.find_first_not_of(" \t\r"); begin != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(" \t\r", end);
-  }
-  return words;
 }
 
 double finite_number(std::string_view text, std::string_view column, int line) {

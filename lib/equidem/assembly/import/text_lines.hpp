@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace equidem {
 
@@ -34,9 +33,6 @@ class TextLines {
   int number_ = 0;
   bool is_whole_ = true;
 };
-
-/// The words between spaces and tabs.
-std::vector<std::string_view> words_of(std::string_view line);
 
 /// A finite number. \throws Error (bad_input) at "line N", naming the column
 double finite_number(std::string_view text, std::string_view column, int line);

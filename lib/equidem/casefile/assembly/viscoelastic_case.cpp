@@ -2,6 +2,7 @@
 #include "equidem/casefile/assembly/viscoelastic_case.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -18,21 +19,22 @@ constexpr const char* table_header = "frequency,kN_storage,kN_loss,kT_storage,kT
 
 std::vector<ViscoelasticCase::Row> read_spring_table(const std::filesystem::path& path) {
   constexpr std::size_t columns = 5;
-  TableFile file(path);
+  TableFile::Names names;
+  for (const std::string_view name : parts_of(table_header, ',')) names.push_back({std::string(name)});
+  TableFile file(path, names);
+  std::array<std::size_t, columns> places{};
+  std::array<double, columns> units{};
+  for (std::size_t c = 0; c < columns; ++c) {
+    places[c] = file.names().empty() ? c : file.need(names[c], fmt::format("the columns are {}", table_header));
+    units[c] = file.factor(places[c], c == 0 ? Quantity::frequency : Quantity::stress).value_or(1);
+  }
   std::vector<ViscoelasticCase::Row> rows;
   while (file.next()) {
-    if (file.is_first() && file.row() == table_header) continue;
-    double numbers[columns] = {};
-    bool good = file.cells().size() == columns;
-    for (std::size_t c = 0; good && c < columns; ++c) {
-      const auto number = number_from<double>(file.cells()[c]);
-      good = number && std::isfinite(*number);
-      if (good) numbers[c] = *number;
-    }
-    if (!good) {
+    if (file.cells().size() < columns)
       file.fail(fmt::format("this row is not of the columns {}", table_header), "five numbers with commas are needed",
                 "Write it like 10,1.0e9,2.0e7,0.5e9,1.0e7: Hz and Pa");
-    }
+    std::array<double, columns> numbers{};
+    for (std::size_t c = 0; c < columns; ++c) numbers[c] = units[c] * file.number(places[c]);
     if (!(numbers[0] > 0)) {
       file.fail(fmt::format("the frequency {} Hz is not above 0", numbers[0]),
                 "the springs of a frequency are those of motions that change as exp(i 2 pi frequency t)",

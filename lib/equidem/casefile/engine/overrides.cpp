@@ -42,6 +42,8 @@ TomlValue value_from(const std::string& text, const std::string& source) {
   try {
     parsed = parse_toml("value = " + text, source);
   } catch (const Error& error) {
+    if (const auto advice = number_advice(text))
+      bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), advice->why, advice->remedy);
     if (is_bare_word(text)) {
       TomlValue word;
       word.type = TomlValue::Type::text;

@@ -105,6 +105,24 @@ std::string reason_of(const toml::parse_error& error) {
   return shortened(in_one_line(reason), 200);
 }
 
+/// Advice on the first number of a line that TOML does not take.
+std::optional<NumberAdvice> advice_on_line(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  for (std::size_t at = line.find('='); at != std::string_view::npos; at = line.find('=', at + 1)) {
+    std::string_view value = line.substr(at + 1);
+    if (const auto advice = number_advice(trimmed(value))) return advice;
+    const std::size_t end = value.find_first_of("}=");
+    value = value.substr(0, end);
+    for (const std::string_view part : parts_of(value, ',')) {
+      std::string_view item = part;
+      while (!item.empty() && (item.front() == '[' || item.front() == ' ')) item.remove_prefix(1);
+      while (!item.empty() && (item.back() == ']' || item.back() == ' ')) item.remove_suffix(1);
+      if (const auto advice = number_advice(item)) return advice;
+    }
+  }
+  return {};
+}
+
 /// A value as TOML, texts and lists cut to these lengths; tables and dates only named.
 std::string written(const TomlValue& value, std::size_t longest_text, std::size_t most_items) {
   switch (value.type) {
@@ -231,9 +249,44 @@ TomlValue parse_toml(std::string_view text, const std::string& source) {
                    json ? "Name an assembly as path in [assembly], with kind = \"file\""
                         : "Name a table of grains as path in [grains], a sieve curve in [packing.radii]");
     }
-    bad_input_at(fmt::format("{}:{}", source, error.source().begin.line), "this is not TOML", reason_of(error),
+    const auto line = error.source().begin.line;
+    std::string_view rest = text;
+    for (toml::source_index k = 1; k < line && !rest.empty(); ++k)
+      rest.remove_prefix(std::min(rest.find('\n'), rest.size() - 1) + 1);
+    const std::string where = fmt::format("{}:{}", source, line);
+    if (const auto advice = advice_on_line(trimmed(rest.substr(0, rest.find('\n')))))
+      bad_input_at(where, "this is not TOML", advice->why, advice->remedy);
+    bad_input_at(where, "this is not TOML", reason_of(error),
                  "Correct the line; 'equidem help case' shows a case file");
   }
+}
+
+std::optional<NumberAdvice> number_advice(std::string_view text) {
+  const std::string_view sign = text.substr(0, text.find_first_not_of("+-") == 1 ? 1 : 0);
+  std::string number(text.substr(sign.size()));
+  std::string why;
+  if (const std::size_t blank = number.find(' '); blank != std::string::npos) {
+    const std::string unit(trimmed(std::string_view(number).substr(blank)));
+    const bool has_digits = unit.find_first_of("0123456789") != std::string::npos && !unit_factor(unit);
+    number.resize(blank);
+    if (has_digits || !number_from<double>(number) || unit.find_first_of(".,=[]{}\"'") != std::string::npos) return {};
+    why = fmt::format("a number stands without its unit, here {}", unit);
+  } else if (const std::size_t comma = number.find(','); comma != std::string::npos) {
+    number[comma] = '.';
+    why = "numbers have a decimal point, not a comma";
+  }
+  if (number.starts_with('.')) {
+    number.insert(0, 1, '0');
+    if (why.empty()) why = "a digit stands before the point";
+  }
+  const std::size_t point = number.find('.');
+  if (point != std::string::npos &&
+      (point + 1 == number.size() || number[point + 1] == 'e' || number[point + 1] == 'E')) {
+    number.insert(point + 1, 1, '0');
+    if (why.empty()) why = "a digit stands behind the point";
+  }
+  if (why.empty() || number.empty() || number[0] < '0' || number[0] > '9' || !number_from<double>(number)) return {};
+  return NumberAdvice{"TOML: " + why, fmt::format("Write {}{}", sign == "-" ? "-" : "", number)};
 }
 
 std::string toml_parser() {

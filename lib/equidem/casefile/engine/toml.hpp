@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -89,6 +90,11 @@ TomlValue parse_toml(std::string_view text, const std::string& source);
 /// \param folder of the new file: paths are written relative to it
 std::string to_toml(TomlValue document, const std::filesystem::path& folder);
 
+/// How to write a number that TOML does not take as it is: ".7e8", "7.e8", "0,25", "1e8 Pa"; none of other texts.
+struct NumberAdvice {
+  std::string why, remedy;
+};
+std::optional<NumberAdvice> number_advice(std::string_view text);
 /// Name and version of the parser, "toml++ 3.3.0".
 std::string toml_parser();
 

@@ -116,6 +116,8 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
     read.places.push_back(fmt::format("{}: bond", table.where()));
   }
   tables.scene.bonds = std::move(read.bonds);
+  const auto place = [&](std::size_t bond) { return read.places[bond]; };
+  check_bonds(tables.scene, place);  // before their grains are looked up
   if (tables.strength) {
     const TomlValue& table = *root.find("strength");
     if (tables.scene.bonds.empty() && !bonds_later)
@@ -132,7 +134,7 @@ void complete_bonds(const TomlValue& root, GrainTables& tables) {
     fail_at(*root.find("bonds"), "bonds.path", "the file gives strengths, and the case has no [strength]",
             "bonds without that table never break", "Add [strength], or take the columns tension and shear out");
   }
-  check_bonds(tables.scene, [&](std::size_t bond) { return read.places[bond]; });
+  check_bonds(tables.scene, place);
 }
 
 }  // namespace equidem::casefile

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
@@ -16,11 +15,8 @@ namespace {
 /// "a, b" as {"a", "b"}.
 std::vector<std::string> separated(const std::string& text) {
   std::vector<std::string> words;
-  std::istringstream in(text);
-  for (std::string word; std::getline(in >> std::ws, word, ',');) {
-    while (word.ends_with(' ')) word.pop_back();
-    words.push_back(word);
-  }
+  for (const std::string_view word : parts_of(text, ','))
+    if (!word.empty()) words.emplace_back(word);
   return words;
 }
 

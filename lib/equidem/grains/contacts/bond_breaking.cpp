@@ -103,6 +103,12 @@ std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<co
 }
 
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options) {
+  for (const GrainBond& bond : scene.bonds) {
+    if (std::max(bond.i, bond.j) < scene.grains.size()) continue;
+    bad_input(fmt::format("a bond ties grain {}", std::max(bond.i, bond.j)),
+              fmt::format("there are {}, counted from 0", counted(std::ssize(scene.grains), "grain")),
+              "Correct the number");
+  }
   Assembly network;
   for (const Grain& grain : scene.grains) network.radii.push_back(grain.radius);
   for (const GrainBond& bond : scene.bonds)

@@ -2,10 +2,13 @@
 #include "equidem/grains/scene/bond_file.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
+#include <array>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
@@ -27,11 +30,36 @@ constexpr BondProperty properties_of_bonds[] = {
      "kM, moment by the rotation of one disc against the other; a parallel bond of width w has normal_spring w²/12"},
 };
 
-std::size_t grain_number(std::string_view cell, const TableFile& file) {
-  const auto number = number_from<std::size_t>(cell);
+/// Columns that a run writes and this reader passes over.
+constexpr std::array others = {"distance_drift", "slip_drift", "roll"};
+
+std::size_t grain_number(std::size_t column, const TableFile& file) {
+  const auto number = number_from<std::size_t>(file.cells()[column]);
   if (!number)
-    file.fail(fmt::format("'{}' is no number of a grain", cell), "grains are counted 0, 1, 2, ...", "Correct it");
+    file.fail(fmt::format("'{}' is no number of a grain", file.cells()[column]), "grains are counted 0, 1, 2, ...",
+              "Correct it");
   return *number;
+}
+
+/// A name that is nearly one of those that are read is taken for a typing error: its bonds would never break.
+void refuse_near_names(const TableFile& file) {
+  std::vector<std::string> known = names_in(properties_of_bonds);
+  known.insert(known.end(), {"tension", "shear"});
+  for (const ColumnName& column : file.names()) {
+    const auto is_name = [&](const std::string& name) { return column.name == name; };
+    if (std::ranges::any_of(others, is_name) || column.name.size() < 4) continue;
+    const auto with_unit = std::ranges::find_if(known, [&](const std::string& name) {
+      return column.name.starts_with(name + "_") || (column.name == name && !column.unit.empty());
+    });
+    if (with_unit != known.end())
+      file.fail_at_names(fmt::format("the column '{}' is in a unit of its own", column.text),
+                         "springs and strengths are in N/m, dashpots in N s/m",
+                         fmt::format("Convert it, and name it '{}'", *with_unit));
+    if (std::ranges::any_of(known, is_name)) continue;
+    if (const auto meant = nearest(column.name, known))
+      file.fail_at_names(fmt::format("there is no column '{}' of bonds", column.text), "it is nearly one that is read",
+                         fmt::format("Did you mean '{}'?", *meant));
+  }
 }
 
 }  // namespace
@@ -41,29 +69,42 @@ std::span<const BondProperty> bond_properties() {
 }
 
 BondRows read_bonds(const std::filesystem::path& path, const GrainBond& common) {
+  struct Column {
+    std::size_t place;
+    std::string_view name;
+    double GrainBond::*property;
+    std::optional<double> BondRows::Strength::*strength;
+  };
   BondRows result;
-  TableFile file(path);
-  if (!file.next()) return result;
-  const std::vector<std::string> names(file.cells().begin(), file.cells().end());
-  if (names.size() < 2 || names[0] != "i" || names[1] != "j")
-    file.fail("the first two columns are not i and j", "they say which grains are tied", "Begin the file with i,j");
+  TableFile file(path, {{"i"}, {"j"}});
+  if (file.width() == 0) return result;
+  const auto i = file.find({"i"}), j = file.find({"j"});
+  if (!i || !j)
+    file.fail_at_names("there are no columns i and j", "they say which grains are tied", "Begin the file with i,j");
+  refuse_near_names(file);
+  std::vector<Column> columns;
+  for (const BondProperty& property : properties_of_bonds)
+    if (const auto place = file.find({property.name}))
+      columns.push_back({*place, property.name, property.value, nullptr});
+  if (const auto place = file.find({"tension"}))
+    columns.push_back({*place, "tension", nullptr, &BondRows::Strength::tension});
+  if (const auto place = file.find({"shear"}))
+    columns.push_back({*place, "shear", nullptr, &BondRows::Strength::shear});
   while (file.next()) {
-    const auto& cells = file.cells();
     GrainBond bond = common;
     BondRows::Strength own;
-    bond.i = grain_number(cells[0], file);
-    bond.j = grain_number(cells.size() > 1 ? cells[1] : "", file);
-    for (std::size_t c = 2; c < std::min(cells.size(), names.size()); ++c) {
-      const auto property = std::ranges::find(properties_of_bonds, names[c], &BondProperty::name);
-      const bool strength = names[c] == "tension" || names[c] == "shear";
-      if ((property == std::end(properties_of_bonds) && !strength) || cells[c].empty()) continue;
-      const auto value = number_from<double>(cells[c]);
-      if (!value || !std::isfinite(*value) || *value < 0)
-        file.fail(fmt::format("'{}' is no {}", cells[c], names[c]), "a number >= 0 is needed", "Correct it");
-      if (strength)
-        (names[c] == "tension" ? own.tension : own.shear) = *value;
+    bond.i = grain_number(*i, file);
+    bond.j = grain_number(*j, file);
+    for (const Column& column : columns) {
+      if (file.cells()[column.place].empty()) continue;
+      const double value = file.number(column.place, column.name);
+      if (value < 0)
+        file.fail(fmt::format("'{}' is no {}", file.cells()[column.place], column.name), "a number >= 0 is needed",
+                  "Correct it");
+      if (column.strength != nullptr)
+        own.*column.strength = value;
       else
-        bond.*property->value = *value;
+        bond.*column.property = value;
     }
     result.strengths.push_back(own);
     result.bonds.push_back(bond);

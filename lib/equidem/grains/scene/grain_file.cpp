@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "equidem/core/error.hpp"
@@ -19,35 +20,19 @@ namespace {
 enum GrainColumn { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
 constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                            "spin", "angle", "density", "discs",           "group"};
+constexpr std::array<std::optional<Quantity>, columns> quantities = {
+    Quantity::length, Quantity::length, Quantity::length,  Quantity::length, Quantity::speed, Quantity::speed,
+    Quantity::spin,   Quantity::angle,  Quantity::density, Quantity::length, std::nullopt};
 /// Columns that a run also writes, ignored by this reader.
-constexpr std::array ignored = {"grain", "number", "mass_kg", "mass_kg_per_m"};
+constexpr std::array ignored = {"grain", "number", "mass"};
 
 /// The columns of a packing that is periodic.
-constexpr std::array period = {"period_x_m", "period_y_m"};
+constexpr std::array period = {"period_x", "period_y"};
 
-/// Columns as written by a run.
-constexpr std::array<const char*, columns> with_units = {"x_m",
-                                                         "y_m",
-                                                         "radius_m",
-                                                         "short_half_axis_m",
-                                                         "vx_m_per_s",
-                                                         "vy_m_per_s",
-                                                         "spin_rad_per_s",
-                                                         "angle_rad",
-                                                         "density_kg_per_m3",
-                                                         "discs_m",
-                                                         "group"};
-
-/// The column of a name with or without its unit; `columns` where there is none.
-std::size_t column_of(std::string_view name) {
-  std::size_t c = 0;
-  while (c < columns && name != column_names[c] && name != with_units[c]) ++c;
-  return c;
-}
-
-/// "x y r; x y r": the discs of a clump in one cell of a table, m.
+/// "x y r; x y r": the discs of a clump in one cell of a table.
+/// \param unit m
 /// \throws Error (bad_input) where the text is something else
-std::vector<Clump::Disc> clump_from(std::string_view text) {
+std::vector<Clump::Disc> clump_from(std::string_view text, double unit) {
   const auto fail = [&] {
     bad_input(fmt::format("'{}' are no discs of a clump", text),
               "three numbers for each, x y r in m, and ; between them", "Write it like 0 0 0.01; 0.015 0 0.01");
@@ -58,7 +43,7 @@ std::vector<Clump::Disc> clump_from(std::string_view text) {
   const char* const end = at + text.size();
   const auto finish = [&] {
     if (numbers.size() != 3) fail();
-    discs.push_back({{numbers[0], numbers[1]}, numbers[2]});
+    discs.push_back({{unit * numbers[0], unit * numbers[1]}, unit * numbers[2]});
     numbers.clear();
   };
   while (at != end) {
@@ -81,10 +66,11 @@ std::vector<Clump::Disc> clump_from(std::string_view text) {
 /// Reads a file of grains row by row.
 class GrainFile {
  public:
-  GrainFile(const std::filesystem::path& path, const std::optional<Vec2>& cell) : file_(path), cell_(cell) {}
+  GrainFile(const std::filesystem::path& path, const std::optional<Vec2>& cell)
+      : file_(path, {{"x"}, {"y"}}), cell_(cell) {}
 
   void read(std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) {
-    if (!file_.next())
+    if (file_.names().empty())
       file_.fail("the file has no row of names", "x, y and radius are needed", "Begin it with x,y,radius");
     read_heading();
     while (file_.next()) read_grain(common_density, shapes, bodies);
@@ -92,64 +78,71 @@ class GrainFile {
 
  private:
   void read_heading() {
-    const auto& cells = file_.cells();
-    width_ = cells.size();
-    at_.fill(width_);
-    for (std::size_t c = 0; c < width_; ++c) {
-      if (std::find(ignored.begin(), ignored.end(), cells[c]) != ignored.end()) continue;
-      if (const auto at = std::find(period.begin(), period.end(), cells[c]); at != period.end()) {
-        if (!cell_)
-          file_.fail(fmt::format("the column '{}' says that these bodies were packed in a periodic cell", cells[c]),
-                     "the case has none: those at its sides would lose their neighbours",
-                     "Add [cell] of that size, pack with sides = \"walls\", or delete the columns of the period to let "
-                     "them go as they lie");
-        period_at_[static_cast<std::size_t>(at - period.begin())] = c;
-        continue;
-      }
-      const std::size_t column = column_of(cells[c]);
-      if (column == columns) {
-        const std::size_t bare = column_of(cells[c].substr(0, cells[c].find('_')));
-        if (bare != columns)
-          file_.fail(fmt::format("the column '{}' is in a unit of its own", cells[c]),
-                     "lengths are in m, times in s, angles in rad",
-                     fmt::format("Convert it, and name it '{}'", column_names[bare]));
-        const auto meant = nearest(cells[c], std::vector<std::string>(column_names.begin(), column_names.end()));
-        file_.fail(
-            fmt::format("'{}' is no column of grains", cells[c]),
-            fmt::format("they are {}", joined(std::vector<std::string>(column_names.begin(), column_names.end()))),
-            meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
-      }
-      std::size_t& at = at_[column];
-      if (at != width_) file_.fail(fmt::format("the column '{}' is there twice", column_names[column]), "", "Keep one");
-      at = c;
+    for (const ColumnName& name : file_.names()) check_name(name);
+    for (std::size_t k = 0; k < period.size(); ++k) period_at_[k] = file_.find({period[k]});
+    for (std::size_t c = 0; c < columns; ++c) {
+      at_[c] = file_.find({column_names[c]});
+      if (!at_[c]) continue;
+      const auto factor = file_.factor(*at_[c], quantities[c]);
+      units_[c] = factor.value_or(1);
     }
     for (const GrainColumn needed : {x, y, radius}) {
-      if (at_[needed] != width_ || (needed == radius && at_[discs] != width_)) continue;
-      file_.fail(fmt::format("the column '{}' is missing", column_names[needed]), "every grain has a place and a size",
-                 "Add it");
+      if (at_[needed] || (needed == radius && at_[discs])) continue;
+      file_.fail_at_names(fmt::format("the column '{}' is missing", column_names[needed]),
+                          "every grain has a place and a size", "Add it");
+    }
+    check_units_of_lengths();
+  }
+
+  void check_name(const ColumnName& column) const {
+    const auto is_name = [&](const char* name) { return column.name == name; };
+    if (column.text.empty() || std::ranges::any_of(ignored, is_name)) return;
+    if (std::ranges::any_of(period, is_name)) {
+      if (cell_) return;
+      file_.fail_at_names(
+          fmt::format("the column '{}' says that these bodies were packed in a periodic cell", column.text),
+          "the case has none: those at its sides would lose their neighbours",
+          "Add [cell] of that size, pack with sides = \"walls\", or delete the columns of the period to let them go as "
+          "they lie");
+    }
+    if (std::ranges::any_of(column_names, is_name)) return;
+    const std::string bare = column.name.substr(0, column.name.find('_'));
+    if (std::ranges::find(column_names, bare) != column_names.end())
+      file_.fail_at_names(fmt::format("the column '{}' is in a unit of its own", column.text),
+                          "lengths are in m, mm or um, times in s, angles in rad",
+                          fmt::format("Convert it, and name it '{}'", bare));
+    const std::vector<std::string> known(column_names.begin(), column_names.end());
+    const auto meant = nearest(column.text, known);
+    file_.fail_at_names(fmt::format("'{}' is no column of grains", column.text),
+                        fmt::format("they are {}", joined(known)),
+                        meant ? fmt::format("Did you mean '{}'?", *meant) : "Name the columns in the first row");
+  }
+
+  /// Lengths without a unit are in m; beside one in mm they may not be meant so.
+  void check_units_of_lengths() const {
+    const auto is_length = [&](std::size_t c) { return at_[c] && quantities[c] == Quantity::length; };
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (!is_length(c) || units_[c] == 1) continue;
+      for (std::size_t other = 0; other < columns; ++other) {
+        if (!is_length(other) || !file_.names()[*at_[other]].unit.empty()) continue;
+        file_.fail_at_names(
+            fmt::format("the column '{}' says no unit, and '{}' one", column_names[other], file_.names()[*at_[c]].text),
+            "it may be in that unit, too, or in m",
+            fmt::format("Name it '{}_m', or with its unit", column_names[other]));
+      }
     }
   }
 
   [[nodiscard]] double number(GrainColumn column, double otherwise) const {
-    if (at_[column] == width_) return otherwise;
-    std::string_view text = cell(column);
-    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-    const auto value = number_from<double>(text);
-    if (!value || !std::isfinite(*value))
-      file_.fail(fmt::format("'{}' is no {}", text, column_names[column]), "a finite number is needed", "Correct it");
-    return *value;
+    return at_[column] ? units_[column] * file_.number(*at_[column], column_names[column]) : otherwise;
   }
 
   /// The text of a cell; empty where the column is not there.
   [[nodiscard]] std::string_view cell(GrainColumn column) const {
-    return at_[column] == width_ ? std::string_view() : file_.cells()[at_[column]];
+    return at_[column] ? file_.cells()[*at_[column]] : std::string_view();
   }
 
   void read_grain(std::optional<double> common_density, GrainShapes& shapes, GrainRows& bodies) const {
-    if (const auto count = std::ssize(file_.cells()); static_cast<std::size_t>(count) != width_)
-      file_.fail(fmt::format("the row has {}", counted(count, "cell")),
-                 fmt::format("the first row names {}", counted(static_cast<long long>(width_), "column")),
-                 "Correct it");
     check_period();
     Grain grain;
     grain.position = {number(x, 0), number(y, 0)};
@@ -158,7 +151,7 @@ class GrainFile {
     grain.angle = number(angle, 0);
     const double own = number(density, common_density.value_or(0));
     if (!(own > 0)) {
-      if (at_[density] != width_) file_.fail(fmt::format("the density {} is not positive", own), "", "Correct it");
+      if (at_[density]) file_.fail(fmt::format("the density {} is not positive", own), "", "Correct it");
       file_.fail("the density of the grains is missing", "motion needs their mass",
                  "Add density = ... in kg/m³ to [grains], or a column of that name");
     }
@@ -178,11 +171,10 @@ class GrainFile {
     constexpr double tolerance = 1e-9;
     for (std::size_t k = 0; k < period.size(); ++k) {
       if (!period_at_[k]) continue;
-      const std::string_view text = file_.cells()[*period_at_[k]];
       const double wanted = k == 0 ? cell_->x : cell_->y;
-      const auto value = number_from<double>(text);
-      if (value && std::abs(*value - wanted) <= tolerance * wanted) continue;
-      file_.fail(fmt::format("these bodies were packed in a cell with {} = {} m", k == 0 ? "width" : "height", text),
+      const double value = file_.factor(*period_at_[k], Quantity::length).value_or(1) * file_.number(*period_at_[k]);
+      if (std::abs(value - wanted) <= tolerance * wanted) continue;
+      file_.fail(fmt::format("these bodies were packed in a cell with {} = {} m", k == 0 ? "width" : "height", value),
                  fmt::format("[cell] has {} m", wanted), "Give [cell] that size, or delete the columns of the period");
     }
   }
@@ -198,7 +190,7 @@ class GrainFile {
       if (half_axis == 0) return shapes.make_disc(grain, size, own_density);
       return shapes.make_ellipse(grain, size, half_axis, own_density);
     }
-    shapes.make_clump(grain, clump_from(cell(discs)), own_density);
+    shapes.make_clump(grain, clump_from(cell(discs), units_[discs]), own_density);
     if (cell(radius).empty()) return;
     constexpr double tolerance = 1e-9;
     const double size = number(radius, 0);
@@ -222,8 +214,8 @@ class GrainFile {
   TableFile file_;
   std::optional<Vec2> cell_;
   std::array<std::optional<std::size_t>, 2> period_at_{};  ///< columns
-  std::size_t width_ = 0;
-  std::array<std::size_t, columns> at_{};
+  std::array<std::optional<std::size_t>, columns> at_{};
+  std::array<double, columns> units_{};
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cstdint>
 #include <span>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/files/hdf5.hpp"
 #include "equidem/core/files/open_file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"
 
@@ -179,9 +179,17 @@ std::string text_of(const std::vector<FileMark>& files) {
 
 std::vector<FileMark> marks_in(const std::string& text) {
   std::vector<FileMark> files;
-  std::istringstream words(text);
-  for (FileMark mark; words >> mark.name >> std::dec >> mark.length >> std::hex >> mark.checksum;)
+  const std::vector<std::string_view> words = words_of(text);
+  for (std::size_t k = 0; k + 2 < words.size(); k += 3) {
+    FileMark mark{.name = std::string(words[k])};
+    const std::string_view sum = words[k + 2];
+    const auto length = number_from<std::uint64_t>(words[k + 1]);
+    if (!length ||
+        std::from_chars(sum.data(), sum.data() + sum.size(), mark.checksum, 16).ptr != sum.data() + sum.size())
+      break;
+    mark.length = *length;
     files.push_back(mark);
+  }
   return files;
 }
 
@@ -221,9 +229,9 @@ OpenFile open_whole(const std::filesystem::path& path) {
 }
 
 Hdf5Layout find_arrays(const std::filesystem::path& path) {
-  std::istringstream listed(read_hdf5_layout(path, {}).attributes["arrays"]);
+  const std::string listed = read_hdf5_layout(path, {}).attributes["arrays"];
   std::vector<std::string> names{"case", "step"};
-  for (std::string name; listed >> name;) names.push_back(name);
+  for (const std::string_view name : words_of(listed)) names.emplace_back(name);
   return read_hdf5_layout(path, names);
 }
 

@@ -13,6 +13,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -120,45 +121,13 @@ void write_csv(const std::filesystem::path& path, const Table& table, bool overw
   write_file(path, table.csv(), overwrite);
 }
 
-namespace {
-
-template <typename Number>
-std::optional<Number> whole_cell(const std::string& cell) {
-  Number value = 0;
-  const auto [end, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (problem != std::errc() || end != cell.data() + cell.size()) return {};
-  return value;
-}
-
-}  // namespace
-
 std::vector<std::vector<std::string>> csv_cells(const std::string& text) {
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> row(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    const char c = text[k];
-    if (quoted) {
-      if (c == '"' && k + 1 < text.size() && text[k + 1] == '"') {
-        row.back() += '"';
-        ++k;
-      } else if (c == '"') {
-        quoted = false;
-      } else {
-        row.back() += c;
-      }
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == ',') {
-      row.emplace_back();
-    } else if (c == '\n') {
-      rows.push_back(std::move(row));
-      row.assign(1, {});
-    } else if (c != '\r') {
-      row.back() += c;
-    }
+  TableCells cells;
+  for (std::string_view rest = text; !rest.empty();) {
+    cells.split(take_record(rest), ',');
+    rows.emplace_back(cells.all().begin(), cells.all().end());
   }
-  if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
   return rows;
 }
 
@@ -187,11 +156,11 @@ void write_samples(const std::filesystem::path& path, Table table) {
 }
 
 std::optional<double> csv_number(const std::string& cell) {
-  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : whole_cell<double>(cell);
+  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : number_from<double>(cell);
 }
 
 std::optional<std::int64_t> csv_integer(const std::string& cell) {
-  return whole_cell<std::int64_t>(cell);
+  return number_from<std::int64_t>(cell);
 }
 
 StoredTable::StoredTable(std::filesystem::path path, const Table& like, const std::string& of, std::string remedy,
