@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results are saved as the page that the program writes."""
 
+import pathlib
 import pickle
 
 import pytest
 
 import equidem as eq
 
+CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
 BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
 CELL = eq.hexagonal(columns=4, rows=4, radius=1e-3, periodic=True)
 SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
@@ -24,11 +26,13 @@ def result_of(verb):
     if verb == "pack":
         return eq.pack({"grains": 30, "box": [0.1, 0.1], "radii": {"smallest": 4e-3, "largest": 6e-3},
                         "method": "growth", "overlap": 1e-3, "sides": "periodic"}, (1e8, 0.5e8))
+    if verb == "quasistatic":
+        return eq.Case(CASES / "notched_plate.toml").quasistatic()
     return eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}],
                   run={"duration": 1e-4})
 
 
-@pytest.mark.parametrize("verb", ["solve", "homogenize", "stability", "calibrate", "pack", "run"])
+@pytest.mark.parametrize("verb", ["solve", "homogenize", "stability", "calibrate", "pack", "run", "quasistatic"])
 def test_a_result_is_saved_as_a_page(verb, tmp_path):
     result = result_of(verb)
     page = tmp_path / "page.html"

@@ -100,7 +100,41 @@ def test_a_run_that_fails_raises_its_sentence():
                velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
 
 
-@pytest.mark.parametrize("backward", [-1])
-def test_time_goes_forward(backward):
-    with pytest.raises(eq.BadInput, match="forward"):
-        pulse().advance(backward)
+@pytest.mark.parametrize("steps", [-1, 1.5, "2", None])
+def test_steps_are_whole_numbers(steps):
+    simulation = pulse()
+    with pytest.raises(eq.BadInput, match="steps = .*whole number, 0 or more"):
+        simulation.advance(steps)
+    if steps is not None:
+        with pytest.raises(eq.BadInput, match="whole number"):
+            simulation.run(steps=steps)
+    assert simulation.step == 0
+
+
+@pytest.mark.parametrize("every", [0, -1, 2.5])
+def test_at_least_one_step_lies_between_two_calls(every):
+    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
+        pulse().run(every=every)
+    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
+        pulse().frames(every=every)
+
+
+def test_a_case_that_goes_to_rest_is_no_simulation():
+    with pytest.raises(eq.BadInput, match="goes to rest"):
+        eq.Case(CASES / "run_tension.toml").simulation()
+
+
+FALLING = dict(grain=[{"x": 0.0, "y": 1.0, "radius": 0.1, "group": "stays"}, {"x": 1.0, "y": 1.0, "radius": 0.1,
+                                                                             "group": "goes"}],
+               collisions={"law": "linear_dashpot", "stiffness": 1e5, "restitution": 0.5}, run={"time_step": 1e-4},
+               stage=[{"name": "both", "duration": 1e-3},
+                      {"name": "one", "duration": 1e-3, "remove": [{"group": "goes"}]}])
+
+
+def test_bodies_that_a_stage_removed_are_not_drawn():
+    pytest.importorskip("matplotlib")
+    simulation = eq.simulation(**FALLING).run()
+    assert np.isnan(simulation.positions).any(axis=1).tolist() == [False, True]
+    axes = simulation.plot(values=np.array([1.0, 2.0]))
+    assert np.allclose(axes.collections[0].get_offsets(), simulation.positions[:1])
+    assert axes.collections[0].get_array().tolist() == [1.0]

@@ -41,6 +41,8 @@ inline constexpr ResultQuantity quantities[] = {
      "what the forces at rest lack of balance on one body at most, walls and weight not counted, over their mean"},
     {"left_out", "", "numbers of the bodies that are not solved for"},
     {"kN", "Pa", "normal stiffness of the springs kN"},
+    {"bond_width", "", "width of a bond over the diameter of its smaller disc"},
+    {"springs/density", "kg/m³", "density of the discs that the springs are for"},
     {"kT", "Pa", "tangential stiffness of the springs kT"},
     {"ratio", "", "kT/kN"},
     {"engines/depth", "m", "depth for which other programs take the springs"},

@@ -25,10 +25,12 @@ def value(given: Any, key: str) -> str:
         return repr(number) if math.isfinite(number) else str(number)
     if isinstance(given, (str, os.PathLike)):
         return json.dumps(os.fspath(given), ensure_ascii=False)
+    if isinstance(given, np.ndarray) and given.ndim == 0 and not np.ma.is_masked(given):
+        return value(given.item(), key)
     if isinstance(given, Mapping):
         entries = (f"{json.dumps(str(k))} = {value(v, f'{key}.{k}')}" for k, v in given.items() if v is not None)
         return "{ " + ", ".join(entries) + " }"
-    if isinstance(given, (Sequence, np.ndarray)):
+    if isinstance(given, (Sequence, np.ndarray)) and not np.ma.is_masked(given):
         return "[" + ", ".join(value(v, f"{key}.{k}") for k, v in enumerate(given)) + "]"
     raise BadInput(f"a value of type {type(given).__name__}",
                    "a case holds numbers, text, true, false, lists and tables", "Give one of these", key)
