@@ -124,16 +124,18 @@ def test_a_case_that_goes_to_rest_is_no_simulation():
         eq.Case(CASES / "run_tension.toml").simulation()
 
 
-FALLING = dict(grain=[{"x": 0.0, "y": 1.0, "radius": 0.1, "group": "stays"}, {"x": 1.0, "y": 1.0, "radius": 0.1,
-                                                                             "group": "goes"}],
-               collisions={"law": "linear_dashpot", "stiffness": 1e5, "restitution": 0.5}, run={"time_step": 1e-4},
-               stage=[{"name": "both", "duration": 1e-3},
-                      {"name": "one", "duration": 1e-3, "remove": [{"group": "goes"}]}])
+def two_stages():
+    """Two discs, of which the second stage removes one."""
+    discs = [{"position": [k, 1.0], "radius": 0.1, "density": 1000.0, "group": group}
+             for k, group in enumerate(("stays", "goes"))]
+    return eq.simulation(grain=discs, collisions={"restitution": 0.5, "stiffness": 1e5}, run={"time_step": 1e-4},
+                         stage=[{"name": "both", "duration": 1e-3},
+                                {"name": "one", "duration": 1e-3, "remove": [{"group": "goes"}]}])
 
 
 def test_bodies_that_a_stage_removed_are_not_drawn():
     pytest.importorskip("matplotlib")
-    simulation = eq.simulation(**FALLING).run()
+    simulation = two_stages().run()
     assert np.isnan(simulation.positions).any(axis=1).tolist() == [False, True]
     axes = simulation.plot(values=np.array([1.0, 2.0]))
     assert np.allclose(axes.collections[0].get_offsets(), simulation.positions[:1])
