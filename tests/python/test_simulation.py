@@ -133,6 +133,29 @@ def two_stages():
                                 {"name": "one", "duration": 1e-3, "remove": [{"group": "goes"}]}])
 
 
+def test_steps_go_on_through_stages():
+    at_once, in_parts = two_stages(), two_stages()
+    at_once.advance(15)
+    in_parts.run(every=4, steps=15)
+    assert at_once.step == in_parts.step == 15
+    assert np.array_equal(at_once.positions, in_parts.positions, equal_nan=True)
+    assert [frame.step for frame in two_stages().frames(every=8)] == [0, 8, 16, 20]
+    assert at_once.run().step == at_once.steps == 20
+
+
+def test_a_run_ends_with_its_last_stage():
+    discs = [{"position": [0.0, 1.0], "radius": 0.1, "density": 1000.0}]
+    simulation = eq.simulation(grain=discs, collisions={"restitution": 0.5, "stiffness": 1e5}, run={"time_step": 1e-4},
+                               wall=[{"name": "lid", "point": [0.0, 3.0], "normal": [0.0, -1.0]}],
+                               stage=[{"name": "moves", "duration": 1.0, "wall": [{"name": "lid", "velocity": [0.0, -0.1]}],
+                                       "until": {"wall": "lid", "displacement": 1e-2}}])
+    called = []
+    simulation.run(called.append, every=1000)
+    assert 0 < simulation.step < simulation.steps and len(called) <= 1 + simulation.step // 1000
+    simulation.advance(5)
+    assert simulation.step < simulation.steps
+
+
 def test_bodies_that_a_stage_removed_are_not_drawn():
     pytest.importorskip("matplotlib")
     simulation = two_stages().run()

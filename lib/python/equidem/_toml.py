@@ -25,12 +25,14 @@ def value(given: Any, key: str) -> str:
         return repr(number) if math.isfinite(number) else str(number)
     if isinstance(given, (str, os.PathLike)):
         return json.dumps(os.fspath(given), ensure_ascii=False)
-    if isinstance(given, np.ndarray) and given.ndim == 0 and not np.ma.is_masked(given):
+    if np.ma.is_masked(given):
+        raise BadInput("masked entries", "every number is used", "Fill them, or leave them out", key)
+    if isinstance(given, np.ndarray) and given.ndim == 0:
         return value(given.item(), key)
     if isinstance(given, Mapping):
         entries = (f"{json.dumps(str(k))} = {value(v, f'{key}.{k}')}" for k, v in given.items() if v is not None)
         return "{ " + ", ".join(entries) + " }"
-    if isinstance(given, (Sequence, np.ndarray)) and not np.ma.is_masked(given):
+    if isinstance(given, (Sequence, np.ndarray)):
         return "[" + ", ".join(value(v, f"{key}.{k}") for k, v in enumerate(given)) + "]"
     raise BadInput(f"a value of type {type(given).__name__}",
                    "a case holds numbers, text, true, false, lists and tables", "Give one of these", key)

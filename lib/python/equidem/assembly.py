@@ -83,7 +83,11 @@ class Assembly:
         return f"<Assembly of {len(self)} discs, {len(self.contacts)} contacts{cell}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Assembly._of, (self._native,)
+        return Assembly._of_json, (self._native.json(),)
+
+    @staticmethod
+    def _of_json(text: str) -> Assembly:
+        return Assembly._of(_core.from_json(text))
 
     def with_strengths(self, strengths: npt.ArrayLike) -> Assembly:
         """The same assembly whose contacts have strengths of their own, for `Case.quasistatic`.

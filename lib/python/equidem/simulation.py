@@ -122,7 +122,7 @@ class Simulation:
         return self._steps.energy()
 
     def advance(self, steps: int) -> None:
-        """Make that many steps.
+        """Make that many steps, or those until the last stage ends.
 
         Raises
         ------
@@ -151,15 +151,22 @@ class Simulation:
 
     def _frames(self, parts: Iterable[int]) -> Iterator[Frame]:
         yield self.frame
-        for part in parts:
-            self.advance(part)
+        for _ in parts:
             yield self.frame
 
     def _parts(self, every: int, steps: int | None) -> Iterator[int]:
-        """The steps between two stops."""
+        """Make the steps, and stop after each `every` of them."""
         between = whole("every", every, 1)
         left = max(0, self.steps - self.step) if steps is None else whole("steps", steps, 0)
-        return (min(between, left - done) for done in range(0, left, between))
+        return self._stops(self.step + left, between)
+
+    def _stops(self, end: int, between: int) -> Iterator[int]:
+        before = -1
+        while before < self.step < end:
+            before = self.step
+            self.advance(min(between, end - before))
+            if self.step > before:
+                yield self.step
 
     def plot(self, ax: Axes | None = None, *, frame: Frame | None = None, **options: Any) -> Axes:
         """Draw the discs at present, or at a frame, with matplotlib.
@@ -181,8 +188,7 @@ class Simulation:
     def run(self, callback: Callable[[Simulation], object] | None = None, every: int = 100,
             steps: int | None = None) -> Simulation:
         """Make all steps. The callback is called after each `every` of them; where it returns False the run ends."""
-        for part in self._parts(every, steps):
-            self.advance(part)
+        for _ in self._parts(every, steps):
             if callback is not None and callback(self) is False:
                 break
         return self

@@ -151,10 +151,7 @@ void bind_assembly(py::module_& module) {
       .def("with_springs", with_pairs<&Assembly::contact_kN, &Assembly::contact_kT>)
       .def("with_strengths", with_pairs<&Assembly::contact_tension, &Assembly::contact_shear>)
       .def("with_forces", with_pairs<&Assembly::contact_normal_force, &Assembly::contact_tangential_force>)
-      .def("__reduce__", [](const py::object& a) {
-        return py::make_tuple(py::module_::import("equidem._core").attr("from_json"),
-                              py::make_tuple(json_of(a.cast<const Assembly&>())));
-      });
+      .def("json", json_of);
 
   module.def("from_arrays", from_arrays);
   module.def("from_json", from_text);

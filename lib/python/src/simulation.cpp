@@ -41,10 +41,11 @@ class Steps {
     const LongWork working;
     const std::lock_guard lock(mutex_);
     constexpr std::int64_t at_once = 100;
-    for (std::int64_t done = 0; done < steps; done += at_once) {
+    AnySimulation& stepped = simulation();
+    for (const std::int64_t end = stepped.step() + steps; stepped.step() < end && !stepped.over();) {
       stop_if_interrupted();
-      job_->simulation().advance(std::min(at_once, steps - done));
-      if (plan_.watch) plan_.watch(job_->simulation().energy());
+      stepped.advance(std::min(at_once, end - stepped.step()));
+      if (plan_.watch) plan_.watch(stepped.energy());
     }
   }
 
