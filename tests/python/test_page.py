@@ -61,6 +61,19 @@ def test_the_page_is_that_of_the_folder(tmp_path):
     assert without_report(tmp_path / "page.html") == without_report(tmp_path / "out" / "index.html")
 
 
+def test_the_page_of_a_path_is_that_of_the_folder(tmp_path):
+    result = eq.Case(CASES / "notched_plate.toml").quasistatic(out=tmp_path / "out")
+    result.save_page(tmp_path / "page.html")
+    text = without_report(tmp_path / "page.html")
+    assert text == without_report(tmp_path / "out" / "index.html") and text.count("<figure>") == 2
+
+
+def test_the_page_of_bodies_with_probes_has_their_paths(tmp_path):
+    case = eq.Case(CASES / "grains_piston.toml").set("run.duration", 0.1).set("probe.0.quantities", ["position"])
+    case.run().save_page(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text(encoding="utf-8").count("<figure>") >= 3
+
+
 def test_the_page_is_that_of_the_case_as_it_was(tmp_path):
     case = eq.Case(assembly=BLOCK, springs=SPRINGS, test={"kind": "uniaxial_tension", "stress": 1e6})
     result = case.solve()

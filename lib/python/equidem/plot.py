@@ -104,6 +104,7 @@ def curve(result: Result, ax: Axes | None = None) -> Axes:
     by_strain = result.units.get("events.load") == "Pa"
     axes.set_xlabel("mean strain" if by_strain else "motion, m")
     axes.set_ylabel("stress, Pa" if by_strain else "load, N/m")
+    axes.ticklabel_format(scilimits=(-2, 4))
     axes.legend(frameon=False)
     return axes
 
@@ -117,6 +118,7 @@ def energies(result: Result, ax: Axes | None = None) -> Axes:
             axes.plot(result.energies.time_s, column, label=re.sub("_J(_per_m)?$", "", name).replace("_", " "))
     axes.set_xlabel("time, s")
     axes.set_ylabel("energy, J/m" if any(name.endswith("_per_m") for name in terms) else "energy, J")
+    axes.ticklabel_format(scilimits=(-2, 4))
     axes.legend(frameon=False)
     return axes
 
