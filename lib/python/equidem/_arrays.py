@@ -28,7 +28,7 @@ def _check_shape(name: str, array: npt.NDArray[Any], shapes: tuple[tuple[int | N
 
 
 def _check_mask(name: str, value: Any) -> None:
-    if np.ma.is_masked(value):
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise BadInput(f"{name} has masked entries", "every number is used", "Fill them, or leave them out")
 
 

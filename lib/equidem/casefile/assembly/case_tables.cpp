@@ -105,26 +105,26 @@ void bind_material(File<CaseTables>& file) {
   using T = MaterialCase;
   using M = ElasticMaterial;
   file.table("material", &CaseTables::material, "the continuum that the springs shall stand for, instead of [springs]")
-      .keys(
-          {key("shear_modulus", &T::given, &M::shear_modulus, unit("Pa"), positive,
-               "G; with poisson_ratio or bulk_modulus_2d"),
-           key("young_modulus", &T::given, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
-           key("poisson_ratio", &T::given, &M::poisson_ratio, between(-1, 1),
-               "with shear_modulus or young_modulus; discs can show at most 1/4 in plane strain, 1/3 in plane stress"),
-           key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
-               "K, mean stress of the plane over its change of area; with shear_modulus"),
-           key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,
-               "Vp; with s_wave_speed and density: K + G = density Vp²"),
-           key("s_wave_speed", &T::given, &M::s_wave_speed, unit("m/s"), positive,
-               "Vs; with p_wave_speed and density: G = density Vs²"),
-           key("density", &T::given, &M::density, unit("kg/m³"), positive,
-               "density of the continuum, that is of discs and voids together: the discs have density / solid "
-               "fraction"),
-           key("plane", &T::given, &M::plane, required,
-               "how Poisson's ratio and Young's modulus are meant: plane strain or plane stress; wave speeds and the "
-               "two-dimensional moduli are the same in both"),
-           key("static_only", &T::static_only,
-               "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
+      .keys({key("shear_modulus", &T::given, &M::shear_modulus, unit("Pa"), positive,
+                 "G; with poisson_ratio or bulk_modulus_2d"),
+             key("young_modulus", &T::given, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
+             key("poisson_ratio", &T::given, &M::poisson_ratio, between(-1, 1),
+                 "with shear_modulus or young_modulus; lattices and the mean field reach at most 1/4 in plane strain, "
+                 "1/3 in plane stress; calibrate finds the range of an assembly"),
+             key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
+                 "K, mean stress of the plane over its change of area; with shear_modulus"),
+             key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,
+                 "Vp; with s_wave_speed and density: K + G = density Vp²"),
+             key("s_wave_speed", &T::given, &M::s_wave_speed, unit("m/s"), positive,
+                 "Vs; with p_wave_speed and density: G = density Vs²"),
+             key("density", &T::given, &M::density, unit("kg/m³"), positive,
+                 "density of the continuum, that is of discs and voids together: the discs have density / solid "
+                 "fraction"),
+             key("plane", &T::given, &M::plane, required,
+                 "how Poisson's ratio and Young's modulus are meant: plane strain or plane stress; wave speeds and the "
+                 "two-dimensional moduli are the same in both"),
+             key("static_only", &T::static_only,
+                 "allow kT < 0 for larger Poisson's ratios: no dynamics with such springs")});
   file.table("material")
       .keys({key_in<CaseTables>("weighting", &Case::weighting, "as in [springs]"),
              key_in<CaseTables>("bond_width", &Case::bending, &BendingOptions::bond_width, not_negative,
@@ -209,7 +209,7 @@ void bind_run(File<CaseTables>& file) {
 
 void bind_breakage(File<CaseTables>& file) {
   bind_strength_file(file);
-  file.table("strength", &CaseTables::strength, "strengths of the contacts, for the verb quasistatic")
+  file.table("strength", &CaseTables::strength, "strengths of the contacts, for quasistatic and calibrate")
       .keys(strength_keys());
   file.table("strength_target", &CaseTables::strength_target,
              "strengths of the material, for which calibrate finds those of the contacts")
