@@ -34,7 +34,7 @@ WRONG = {
     "a_frame_that_does_not_exist": (lambda: eq.read(PACKINGS / "packing.dump", frame=7), "no frame of time step 7"),
     "an_unknown_kind": (lambda: eq.assembly(kind="hexagnal"), 'Did you mean "hexagonal"'),
     "an_unknown_key": (lambda: eq.hexagonal(colums=4), "columns"),
-    "no_springs": (lambda: eq.tension_test(BLOCK), "springs"),
+    "no_springs": (lambda: eq.tension_test(BLOCK), "Give springs with kN and kT"),
     "springs_of_a_file_that_does_not_exist": (lambda: eq.solve(BLOCK, "stiff", supports=HELD), "no such file"),
     "springs_of_one_number": (lambda: eq.solve(BLOCK, 1e9, supports=HELD), "springs of type float"),
     "a_negative_normal_spring": (lambda: eq.tension_test(BLOCK, (-1.0, 0.0)), "kN"),

@@ -231,7 +231,8 @@ def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_le
     period : (float, float), optional
         Width and height in m of the periodic cell of such a file without a box.
     """
-    return Assembly._of(_core.read_assembly(os.fspath(path), share("gap_tolerance", gap_tolerance), unit_of_length, frame,
+    tolerance = share("gap_tolerance", gap_tolerance)
+    return Assembly._of(_core.read_assembly(os.fspath(path), tolerance, unit_of_length, frame,
                                             None if contacts is None else os.fspath(contacts), periodic_box, period))
 
 
