@@ -189,6 +189,17 @@ def test_histories_are_those_of_the_folder(tmp_path):
         assert np.array_equal(files.history[name], table[:, k], equal_nan=True)
 
 
+def test_measures_of_a_box_are_a_history_too():
+    discs = [{"position": [x, y], "radius": 0.1, "density": 1000.0} for x in (0.15, 0.4, 0.7) for y in (0.15, 0.45)]
+    walls = [{"name": "floor", "point": [0, 0], "normal": [0, 1]}, {"name": "left", "point": [0, 0], "normal": [1, 0]},
+             {"name": "right", "point": [0.9, 0], "normal": [-1, 0]}]
+    result = eq.run(grain=discs, wall=walls, collisions={"restitution": 0.5, "stiffness": 1e5},
+                    run={"duration": 0.1, "gravity": [0, -9.81]}, measures={}, output={"probe_interval": 0.01})
+    history = result.measures_history
+    assert history.time_s[0] == 0 and len(history.void_ratio) == len(history.time_s) == len(result.history.time_s)
+    assert list(result.measures.void_ratio) == ["before", "after"]
+
+
 def test_pictures_are_drawn(tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")

@@ -147,7 +147,8 @@ def test_a_run_ends_with_its_last_stage():
     discs = [{"position": [0.0, 1.0], "radius": 0.1, "density": 1000.0}]
     simulation = eq.simulation(grain=discs, collisions={"restitution": 0.5, "stiffness": 1e5}, run={"time_step": 1e-4},
                                wall=[{"name": "lid", "point": [0.0, 3.0], "normal": [0.0, -1.0]}],
-                               stage=[{"name": "moves", "duration": 1.0, "wall": [{"name": "lid", "velocity": [0.0, -0.1]}],
+                               stage=[{"name": "moves", "duration": 1.0,
+                                       "wall": [{"name": "lid", "velocity": [0.0, -0.1]}],
                                        "until": {"wall": "lid", "displacement": 1e-2}}])
     called = []
     simulation.run(called.append, every=1000)

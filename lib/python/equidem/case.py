@@ -245,7 +245,7 @@ class Case:
 
         Arrays: ``energies.time_s``, ``energies.kinetic_J_per_m``, ... over the run; with ``output.probe_interval`` the
         columns of history.csv as ``history.time_s``, ...: probes, walls, the periodic cell and energies; with the table
-        `measures` those of measures.csv as ``measures.time_s``, ...
+        `measures` those of measures.csv as ``measures_history.time_s``, ...
         """
         return self.run_verb("run", **options)
 

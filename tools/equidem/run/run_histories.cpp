@@ -60,7 +60,7 @@ std::vector<ResultArray> HistoryFolder::arrays(const std::vector<EnergySample>& 
   std::vector<ResultArray> arrays;
   if (path_) {
     add_columns(arrays, "history/", history());
-    add_columns(arrays, "measures/", text_of(*path_ / "measures.csv"));
+    add_columns(arrays, "measures_history/", text_of(*path_ / "measures.csv"));
   }
   const std::vector<std::string> names = energy_columns(family, body);
   std::vector<double> times;

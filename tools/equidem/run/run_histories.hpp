@@ -29,7 +29,7 @@ class HistoryFolder {
   [[nodiscard]] bool is_temporary() const { return temporary_; }
   /// The text of history.csv; empty: none was written.
   [[nodiscard]] std::string history() const;
-  /// history/COLUMN and measures/COLUMN of the tables that were written, energies/COLUMN of the samples.
+  /// history/COLUMN and measures_history/COLUMN of the tables that were written, energies/COLUMN of the samples.
   [[nodiscard]] std::vector<ResultArray> arrays(const std::vector<EnergySample>& energies, BodyFamily family,
                                                 Body body) const;
 
