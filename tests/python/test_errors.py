@@ -9,6 +9,7 @@ import pytest
 import equidem as eq
 
 PACKINGS = pathlib.Path(__file__).resolve().parents[2] / "data/packings"
+CASES = PACKINGS.parent / "cases"
 CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
 BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
 HELD = [{"group": "left", "ux": 0, "uy": 0}]
@@ -33,10 +34,21 @@ WRONG = {
     "a_frame_that_does_not_exist": (lambda: eq.read(PACKINGS / "packing.dump", frame=7), "no frame of time step 7"),
     "an_unknown_kind": (lambda: eq.assembly(kind="hexagnal"), 'Did you mean "hexagonal"'),
     "an_unknown_key": (lambda: eq.hexagonal(colums=4), "columns"),
-    "no_springs": (lambda: eq.tension_test(BLOCK), "springs"),
-    "springs_of_words": (lambda: eq.solve(BLOCK, "stiff", supports=HELD), "springs of type str"),
+    "no_springs": (lambda: eq.tension_test(BLOCK), "Give springs with kN and kT"),
+    "springs_of_a_file_that_does_not_exist": (lambda: eq.solve(BLOCK, "stiff", supports=HELD), "no such file"),
+    "springs_of_one_number": (lambda: eq.solve(BLOCK, 1e9, supports=HELD), "springs of type float"),
     "a_negative_normal_spring": (lambda: eq.tension_test(BLOCK, (-1.0, 0.0)), "kN"),
     "springs_of_too_few_contacts": (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(3), np.ones(3))), "shape"),
+    "springs_with_a_misspelt_key": (lambda: eq.tension_test(BLOCK, {"kN": 1.0, "kT": 0.5, "kMM": 1.0}), "'kM'"),
+    "springs_with_two_bending_stiffnesses":
+        (lambda: eq.tension_test(BLOCK, {"kN": 1.0, "kT": 0.5, "kM": 1.0, "bond_width": 1.0}), "both given"),
+    "springs_without_kT": (lambda: eq.tension_test(BLOCK, {"kN": 1.0}), "kT"),
+    "springs_of_a_result_that_has_none":
+        (lambda: eq.tension_test(BLOCK, eq.tension_test(BLOCK, (1e9, 0.5e9))), "a result without springs"),
+    "a_weighting_of_springs_of_each_contact":
+        (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(120), 0.5, weighting="voronoi")), "springs of each contact"),
+    "a_matrix_of_springs_with_a_misspelt_key":
+        (lambda: eq.stiffness_matrix(BLOCK, {"kN": 1.0, "kt": 0.5}), "'kT'"),
     "a_negative_bond_width": (lambda: eq.tension_test(BLOCK, eq.Springs(1.0, 0.5, bond_width=-1)), "bond_width"),
     "a_bond_width_beside_springs_of_each_contact":
         (lambda: eq.tension_test(BLOCK, eq.Springs(np.ones(120), 0.5, bond_width=1)), "springs of each contact"),
@@ -53,8 +65,23 @@ WRONG = {
     "loads_of_too_few_discs": (lambda: eq.factorize(BLOCK, (1.0, 0.5), HELD).solve(np.ones((3, 3))), "shape"),
     "a_support_of_a_factor_on_no_disc":
         (lambda: eq.factorize(BLOCK, (1.0, 0.5), [{"group": [999], "ux": 0}]), "999"),
-    "an_unknown_option": (lambda: eq.Case("case.toml").solve(acuracy=1), "acuracy"),
-    "a_file_that_does_not_exist": (lambda: eq.Case("nowhere.toml").solve(), "no such file"),
+    "an_unknown_option": (lambda: eq.Case(CASES / "abe1996_fig6.toml").solve(acuracy=1), "acuracy"),
+    "a_case_file_that_does_not_exist": (lambda: eq.Case("nowhere.toml"), "no such file"),
+    "a_study_that_does_not_exist": (lambda: eq.study("nowhere.toml"), "nowhere.toml"),
+    "complex_places": (lambda: eq.Assembly(np.array(CENTRES) + 1e-3j, 1.0), "numbers are real"),
+    "places_as_text": (lambda: eq.Assembly([["0", "0"], ["2", "0"]], 1.0), "no array of numbers"),
+    "masked_places":
+        (lambda: eq.Assembly(np.ma.masked_greater(np.array(CENTRES), 1.9), 1.0), "masked"),
+    "masked_contacts": (lambda: eq.Assembly(CENTRES, 1.0, np.ma.masked_equal([[0, 1]], 1)), "masked"),
+    "masked_components_of_a_force":
+        (lambda: eq.solve(BLOCK, (1.0, 0.5), supports=HELD,
+                          loads=[{"group": "right", "force": np.ma.masked_equal([1.0, 0.0], 0.0)}]), "masked"),
+    "a_gap_tolerance_beyond_one": (lambda: eq.Assembly(CENTRES, 1.0, gap_tolerance=1e9), "0 to 1"),
+    "a_gap_tolerance_of_a_file_beyond_one":
+        (lambda: eq.read(PACKINGS / "packing.dump", gap_tolerance=-0.1), "0 to 1"),
+    "threads_beyond_all_machines": (lambda: eq.set_threads(10**9), "1 to 1024"),
+    "half_a_thread": (lambda: eq.set_threads(1.5), "whole number"),
+    "no_threads": (lambda: eq.set_threads(0), "1 to 1024"),
     "a_free_assembly_homogenized_as_a_cell":
         (lambda: eq.homogenize(BLOCK, (1e9, 0.5e9), homogenize={"boundary": "periodic"}), "periodic"),
     "a_poisson_ratio_out_of_reach":
@@ -79,3 +106,57 @@ def test_wrong_input_is_refused_with_a_sentence(what):
 def test_a_matrix_that_is_singular_is_a_failed_computation_or_bad_input():
     with pytest.raises(eq.EquidemError):
         eq.solve(BLOCK, (1.0, -0.9), supports=HELD, loads=[{"group": "right", "force": (1, 0)}], require_stable=True)
+
+
+PUBLIC = {
+    "Assembly": lambda **more: eq.Assembly(CENTRES, 1.0, **more),
+    "Case": lambda **more: eq.Case(assembly=BLOCK, springs=(1.0, 0.5), **more).solve(),
+    "Springs": lambda **more: eq.Springs(1.0, 0.5, **more),
+    "assembly": lambda **more: eq.assembly(kind="square", columns=4, rows=4, radius=1.0, **more),
+    "calibrate": lambda **more: eq.calibrate(BLOCK, young_modulus=1e9, poisson_ratio=0.1, **more),
+    "delaunay": lambda **more: eq.delaunay(discs=20, radius=1.0, **more),
+    "factorize": lambda **more: eq.factorize(BLOCK, (1.0, 0.5), HELD, **more),
+    "hexagonal": lambda **more: eq.hexagonal(columns=4, rows=4, radius=1.0, **more),
+    "homogenize": lambda **more: eq.homogenize(BLOCK, (1.0, 0.5), **more),
+    "pack": lambda **more: eq.pack({"grains": 9, "box": [1, 1], "radii": {"smallest": 0.1, "largest": 0.1}}, **more),
+    "read": lambda **more: eq.read(PACKINGS / "packing.dump", **more),
+    "run": lambda **more: eq.run(BLOCK, (1.0, 0.5), density=1.0, run={"duration": 1e-6}, **more),
+    "simulation": lambda **more: eq.simulation(BLOCK, (1.0, 0.5), density=1.0, run={"duration": 1e-6}, **more),
+    "solve": lambda **more: eq.solve(BLOCK, (1.0, 0.5), supports=HELD, **more),
+    "square": lambda **more: eq.square(columns=4, rows=4, radius=1.0, **more),
+    "stability": lambda **more: eq.stability(BLOCK, (1.0, 0.5), **more),
+    "stiffness_matrix": lambda **more: eq.stiffness_matrix(BLOCK, (1.0, 0.5), **more),
+    "study": lambda **more: eq.study("integrators", **more),
+    "sweep": lambda **more: eq.sweep(eq.Case(assembly=BLOCK, springs=(1.0, 0.5)), {"springs.kT": [0.1]}, **more),
+    "tension_test": lambda **more: eq.tension_test(BLOCK, (1.0, 0.5), **more),
+    "set_threads": lambda **more: eq.set_threads(1, **more),
+    "show_progress": lambda **more: eq.show_progress(True, **more),
+    "threads": lambda **more: eq.threads(**more),
+}
+NOT_CALLED = {"Factor", "Frame", "Result", "Simulation", "plot", "BadInput", "ComputationFailed", "EquidemError",
+              "Interrupted"}
+
+
+def test_the_list_of_public_functions_is_complete():
+    assert set(PUBLIC) | NOT_CALLED == set(eq.__all__)
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_every_public_function_refuses_unknown_keywords(name):
+    with pytest.raises((eq.BadInput, TypeError), match="unknwon"):
+        PUBLIC[name](unknwon=1)
+
+
+@pytest.mark.parametrize("verb", ["solve", "homogenize", "calibrate", "stability", "pack", "run", "quasistatic"])
+def test_every_verb_refuses_unknown_options(verb):
+    with pytest.raises(eq.BadInput, match="unknwon"):
+        eq.Case(CASES / "abe1996_fig6.toml").run_verb(verb, unknwon=1)
+
+
+@pytest.mark.parametrize("name", ["Assembly", "Factor", "Steps", "Delivered"])
+def test_objects_of_the_compiled_part_are_made_there_alone(name):
+    made = getattr(eq._core, name)
+    with pytest.raises(TypeError):
+        made()
+    with pytest.raises(TypeError):
+        made.__new__(made)

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results are saved as the page that the program writes."""
 
+import pathlib
 import pickle
 
 import pytest
 
 import equidem as eq
 
+CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
 BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
 CELL = eq.hexagonal(columns=4, rows=4, radius=1e-3, periodic=True)
 SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
@@ -24,11 +26,13 @@ def result_of(verb):
     if verb == "pack":
         return eq.pack({"grains": 30, "box": [0.1, 0.1], "radii": {"smallest": 4e-3, "largest": 6e-3},
                         "method": "growth", "overlap": 1e-3, "sides": "periodic"}, (1e8, 0.5e8))
+    if verb == "quasistatic":
+        return eq.Case(CASES / "notched_plate.toml").quasistatic()
     return eq.run(BLOCK, SPRINGS, density=2000.0, loads=[{"group": "right", "force": (1.0, 0.0)}],
                   run={"duration": 1e-4})
 
 
-@pytest.mark.parametrize("verb", ["solve", "homogenize", "stability", "calibrate", "pack", "run"])
+@pytest.mark.parametrize("verb", ["solve", "homogenize", "stability", "calibrate", "pack", "run", "quasistatic"])
 def test_a_result_is_saved_as_a_page(verb, tmp_path):
     result = result_of(verb)
     page = tmp_path / "page.html"
@@ -55,6 +59,19 @@ def test_the_page_is_that_of_the_folder(tmp_path):
                      test={"kind": "uniaxial_tension", "stress": 1e6}).solve(out=tmp_path / "out")
     result.save_page(tmp_path / "page.html")
     assert without_report(tmp_path / "page.html") == without_report(tmp_path / "out" / "index.html")
+
+
+def test_the_page_of_a_path_is_that_of_the_folder(tmp_path):
+    result = eq.Case(CASES / "notched_plate.toml").quasistatic(out=tmp_path / "out")
+    result.save_page(tmp_path / "page.html")
+    text = without_report(tmp_path / "page.html")
+    assert text == without_report(tmp_path / "out" / "index.html") and text.count("<figure>") == 2
+
+
+def test_the_page_of_bodies_with_probes_has_their_paths(tmp_path):
+    case = eq.Case(CASES / "grains_piston.toml").set("run.duration", 0.1).set("probe.0.quantities", ["position"])
+    case.run().save_page(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text(encoding="utf-8").count("<figure>") >= 3
 
 
 def test_the_page_is_that_of_the_case_as_it_was(tmp_path):

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Results show themselves as text, HTML, tables and pictures."""
 
+import dataclasses
 import doctest
 import importlib
 import json
+import pathlib
 import pkgutil
+import re
 
 import numpy as np
 import pytest
 
 import equidem as eq
 
+CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
 BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
 SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
 
@@ -99,6 +103,37 @@ def test_bonds_of_a_width_resist_bending():
     assert np.allclose(bent.displacements, case.solve().displacements, rtol=1e-9, atol=1e-18)
 
 
+@pytest.mark.parametrize("more", [{}, {"bond_width": 0.8}, {"weighting": "contact_density", "bond_width": 0.5}])
+def test_calibrated_springs_passed_back_give_the_wanted_moduli(more):
+    cell = eq.delaunay(discs=60, radius=1e-3, seed=1, periodic=True)
+    found = eq.calibrate(cell, shear_modulus=1e6, poisson_ratio=0.2, density=2000.0, **more)
+    print(dict(found.springs))
+    assert {name: found.springs[name] for name in more} == more
+    for springs in (found, found.springs, found.springs.to_dict(), eq.Springs(**found.springs)):
+        assert abs(eq.homogenize(cell, springs).shear_modulus - 1e6) <= 1e-9 * 1e6
+    advised = eq.homogenize(cell, found.mean_field)
+    assert abs(advised.shear_modulus - found.mean_field.achieved.shear_modulus) <= 1e-9 * advised.shear_modulus
+    # 2000 kg/m³ of the continuum are those of the discs times the solid fraction
+    assert eq.stability(cell, found).density == pytest.approx(2000.0 / cell.solid_fraction, rel=1e-12)
+
+
+def test_a_bending_spring_acts():
+    moduli = [eq.tension_test(BLOCK, springs).plane_strain.young_modulus for springs in
+              ({"kN": 1e9, "kT": 0.5e9}, {"kN": 1e9, "kT": 0.5e9, "kM": 300.0}, eq.Springs(1e9, 0.5e9, kM=300.0))]
+    assert moduli[1] == moduli[2] > 1.001 * moduli[0]
+
+
+def test_springs_have_the_keys_of_the_case_file():
+    page = pathlib.Path(__file__).resolve().parents[2] / "docs/case_file.md"
+    table = page.read_text(encoding="utf-8").split("### `[springs]`")[1].split("###")[0]
+    assert set(re.findall(r"^\| `(\w+)`", table, re.M)) == {field.name for field in dataclasses.fields(eq.Springs)}
+
+
+def test_springs_of_each_contact_are_an_array_too():
+    each = eq.Springs(1e9, 0.5e9).at_contacts(BLOCK)
+    assert eq.tension_test(BLOCK, each).poisson_ratio == eq.tension_test(BLOCK, SPRINGS).poisson_ratio
+
+
 def test_a_verb_says_how_long_it_took():
     result = eq.tension_test(BLOCK, SPRINGS)
     assert 0.5 * sum(result.times.values()) < result.elapsed < 60
@@ -127,6 +162,44 @@ def test_a_dry_run_computes_nothing():
     assert result.status == "dry_run" and "displacements" not in result and result.unknowns > 0
 
 
+def pulse():
+    return eq.run(eq.hexagonal(columns=20, rows=5, radius=1e-3), SPRINGS, density=2500.0, run={"duration": 1e-4},
+                  velocity=[{"group": "left", "velocity": (0.1, 0.0)}],
+                  probe=[{"name": "far", "group": "right", "quantities": ["velocity"]}],
+                  output={"probe_interval": 1e-5, "frame_interval": 1e-5})
+
+
+def test_a_run_in_memory_has_its_histories():
+    result = pulse()
+    history, energies = result.history, result.energies
+    assert history.time_s[0] == 0 and abs(history.time_s[-1] - 1e-4) <= result.time_step
+    assert len(history.far_vx_m_per_s) == len(history.time_s) >= 10 and history.far_vx_m_per_s[-1] > 0
+    total = energies.kinetic_J_per_m + energies.elastic_J_per_m - energies.sway_J_per_m
+    assert np.abs(total - total[0]).max() <= 1e-9 * total[0] and len(total) > 10
+
+
+def test_histories_are_those_of_the_folder(tmp_path):
+    case = eq.Case(CASES / "grains_piston.toml").set("output.probe_interval", 0.01).set("run.duration", 0.1)
+    memory, files = case.run(), case.run(out=tmp_path / "out")
+    columns = (tmp_path / "out/history.csv").read_text(encoding="utf-8").splitlines()[0].split(",")
+    assert list(memory.history) == list(files.history) == columns and "wall" in " ".join(columns)
+    table = np.genfromtxt(tmp_path / "out/history.csv", delimiter=",", skip_header=1)
+    for k, name in enumerate(columns):
+        assert np.array_equal(memory.history[name], table[:, k], equal_nan=True)
+        assert np.array_equal(files.history[name], table[:, k], equal_nan=True)
+
+
+def test_measures_of_a_box_are_a_history_too():
+    discs = [{"position": [x, y], "radius": 0.1, "density": 1000.0} for x in (0.15, 0.4, 0.7) for y in (0.15, 0.45)]
+    walls = [{"name": "floor", "point": [0, 0], "normal": [0, 1]}, {"name": "left", "point": [0, 0], "normal": [1, 0]},
+             {"name": "right", "point": [0.9, 0], "normal": [-1, 0]}]
+    result = eq.run(grain=discs, wall=walls, collisions={"restitution": 0.5, "stiffness": 1e5},
+                    run={"duration": 0.1, "gravity": [0, -9.81]}, measures={}, output={"probe_interval": 0.01})
+    history = result.measures_history
+    assert history.time_s[0] == 0 and len(history.void_ratio) == len(history.time_s) == len(result.history.time_s)
+    assert list(result.measures.void_ratio) == ["before", "after"]
+
+
 def test_pictures_are_drawn(tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
@@ -136,6 +209,11 @@ def test_pictures_are_drawn(tmp_path):
     assert len(axes.collections) == 2 and "displacements x" in axes.get_title()
     waves = eq.stability(eq.hexagonal(columns=2, rows=2, radius=1e-3, periodic=True), SPRINGS, density=2500.0)
     assert len(waves.plot().lines) > 3
+    path = eq.Case(CASES / "notched_plate.toml").quasistatic()
+    assert [line.get_label() for line in path.plot().lines][0] == "events" and path.assembly is not None
+    run = pulse()
+    axes = run.plot()
+    assert "kinetic" in [line.get_label() for line in axes.lines] and axes.get_xlabel() == "time, s"
     BLOCK.plot(values=np.arange(len(BLOCK)), label="number")
     with pytest.raises(eq.BadInput, match="no picture"):
         eq.study("integrators").plot()

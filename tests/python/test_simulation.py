@@ -100,7 +100,67 @@ def test_a_run_that_fails_raises_its_sentence():
                velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
 
 
-@pytest.mark.parametrize("backward", [-1])
-def test_time_goes_forward(backward):
-    with pytest.raises(eq.BadInput, match="forward"):
-        pulse().advance(backward)
+@pytest.mark.parametrize("steps", [-1, 1.5, "2", None])
+def test_steps_are_whole_numbers(steps):
+    simulation = pulse()
+    with pytest.raises(eq.BadInput, match="steps = .*whole number, 0 or more"):
+        simulation.advance(steps)
+    if steps is not None:
+        with pytest.raises(eq.BadInput, match="whole number"):
+            simulation.run(steps=steps)
+    assert simulation.step == 0
+
+
+@pytest.mark.parametrize("every", [0, -1, 2.5])
+def test_at_least_one_step_lies_between_two_calls(every):
+    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
+        pulse().run(every=every)
+    with pytest.raises(eq.BadInput, match="every = .*whole number, 1 or more"):
+        pulse().frames(every=every)
+
+
+def test_a_case_that_goes_to_rest_is_no_simulation():
+    with pytest.raises(eq.BadInput, match="goes to rest"):
+        eq.Case(CASES / "run_tension.toml").simulation()
+
+
+def two_stages():
+    """Two discs, of which the second stage removes one."""
+    discs = [{"position": [k, 1.0], "radius": 0.1, "density": 1000.0, "group": group}
+             for k, group in enumerate(("stays", "goes"))]
+    return eq.simulation(grain=discs, collisions={"restitution": 0.5, "stiffness": 1e5}, run={"time_step": 1e-4},
+                         stage=[{"name": "both", "duration": 1e-3},
+                                {"name": "one", "duration": 1e-3, "remove": [{"group": "goes"}]}])
+
+
+def test_steps_go_on_through_stages():
+    at_once, in_parts = two_stages(), two_stages()
+    at_once.advance(15)
+    in_parts.run(every=4, steps=15)
+    assert at_once.step == in_parts.step == 15
+    assert np.array_equal(at_once.positions, in_parts.positions, equal_nan=True)
+    assert [frame.step for frame in two_stages().frames(every=8)] == [0, 8, 16, 20]
+    assert at_once.run().step == at_once.steps == 20
+
+
+def test_a_run_ends_with_its_last_stage():
+    discs = [{"position": [0.0, 1.0], "radius": 0.1, "density": 1000.0}]
+    simulation = eq.simulation(grain=discs, collisions={"restitution": 0.5, "stiffness": 1e5}, run={"time_step": 1e-4},
+                               wall=[{"name": "lid", "point": [0.0, 3.0], "normal": [0.0, -1.0]}],
+                               stage=[{"name": "moves", "duration": 1.0,
+                                       "wall": [{"name": "lid", "velocity": [0.0, -0.1]}],
+                                       "until": {"wall": "lid", "displacement": 1e-2}}])
+    called = []
+    simulation.run(called.append, every=1000)
+    assert 0 < simulation.step < simulation.steps and len(called) <= 1 + simulation.step // 1000
+    simulation.advance(5)
+    assert simulation.step < simulation.steps
+
+
+def test_bodies_that_a_stage_removed_are_not_drawn():
+    pytest.importorskip("matplotlib")
+    simulation = two_stages().run()
+    assert np.isnan(simulation.positions).any(axis=1).tolist() == [False, True]
+    axes = simulation.plot(values=np.array([1.0, 2.0]))
+    assert np.allclose(axes.collections[0].get_offsets(), simulation.positions[:1])
+    assert axes.collections[0].get_array().tolist() == [1.0]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tools/bench/petsc_scaling.py --build FOLDER [--discs N,...] [--largest N] [--repetitions N] [--markdown FILE]
 

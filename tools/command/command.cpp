@@ -105,7 +105,7 @@ void check_bending(const Case& resolved, std::string_view verb) {
   bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
                fmt::format("{} takes no bending springs, and the case gives some", verb),
                "its answer would be that of contacts without moments",
-               "Remove it; solve, homogenize, calibrate, stability and run take it");
+               "Remove it; solve, homogenize, calibrate, stability, run and export take it");
 }
 
 void OutputPlan::expect(const std::string& name) const {

@@ -42,6 +42,8 @@ inline constexpr ResultQuantity quantities[] = {
     {"overlapping_discs", "", "the two discs of a file that overlap most, where they do by more than half a radius"},
     {"left_out", "", "numbers of the bodies that are not solved for"},
     {"kN", "Pa", "normal stiffness of the springs kN"},
+    {"bond_width", "", "width of a bond over the diameter of its smaller disc"},
+    {"springs/density", "kg/m³", "density of the discs that the springs are for"},
     {"kT", "Pa", "tangential stiffness of the springs kT"},
     {"ratio", "", "kT/kN"},
     {"engines/depth", "m", "depth for which other programs take the springs"},

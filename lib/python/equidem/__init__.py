@@ -15,6 +15,7 @@ from __future__ import annotations
 import sys
 
 from . import _core, plot
+from ._arrays import whole
 from .assembly import Assembly, assembly, delaunay, hexagonal, read, square
 from .case import Case
 from .errors import BadInput, ComputationFailed, EquidemError, Interrupted
@@ -24,6 +25,7 @@ from .springs import Springs
 from .statics import (Factor, calibrate, factorize, homogenize, solve, stability, stiffness_matrix, tension_test)
 from .sweep import pack, run, simulation, study, sweep
 
+_MOST_THREADS = 1024
 __version__: str = _core.version
 
 __all__ = [
@@ -36,7 +38,7 @@ __all__ = [
 
 def set_threads(count: int) -> None:
     """Number of threads of all computations; one per processor until set. Results have the same bits for any number."""
-    _core.set_threads(int(count))
+    _core.set_threads(whole("threads", count, 1, _MOST_THREADS))
 
 
 def threads() -> int:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -26,9 +27,37 @@ def _check_shape(name: str, array: npt.NDArray[Any], shapes: tuple[tuple[int | N
                    "Reshape it")
 
 
+def _check_mask(name: str, value: Any) -> None:
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
+        raise BadInput(f"{name} has masked entries", "every number is used", "Fill them, or leave them out")
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """A whole number of a range."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = least - 1
+    if number < least or (most is not None and number > most):
+        upto = f"from {least} to {most}" if most is not None else f"{least} or more"
+        raise BadInput(f"{name} = {value!r}", f"it is a whole number, {upto}", f"Give {upto}", name)
+    return number
+
+
+def share(name: str, value: Any) -> float:
+    """A number from 0 to 1."""
+    number = float(floats(name, value, ()))
+    if not 0 <= number <= 1:
+        raise BadInput(f"{name} = {number:g}", "it is a share of the sum of two radii", "Give 0 to 1", name)
+    return number
+
+
 def floats(name: str, value: npt.ArrayLike, *shapes: tuple[int | None, ...]) -> Floats:
     """An array of finite numbers with one of the shapes, in which None stands for any number."""
+    _check_mask(name, value)
     try:
+        if np.asarray(value).dtype.kind not in "iufO":
+            raise TypeError(f"numbers are real, and its type is {np.asarray(value).dtype}")
         array = np.asarray(value, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
         raise BadInput(f"{name} is no array of numbers", str(error), "Give numbers") from None
@@ -41,6 +70,7 @@ def floats(name: str, value: npt.ArrayLike, *shapes: tuple[int | None, ...]) -> 
 
 def integers(name: str, value: npt.ArrayLike, *shapes: tuple[int | None, ...]) -> Integers:
     """An array of whole numbers with one of the shapes."""
+    _check_mask(name, value)
     array = np.asarray(value)
     if array.size == 0:
         array = array.astype(np.int32)

@@ -25,6 +25,10 @@ def value(given: Any, key: str) -> str:
         return repr(number) if math.isfinite(number) else str(number)
     if isinstance(given, (str, os.PathLike)):
         return json.dumps(os.fspath(given), ensure_ascii=False)
+    if isinstance(given, np.ma.MaskedArray) and np.any(given.mask):
+        raise BadInput("masked entries", "every number is used", "Fill them, or leave them out", key)
+    if isinstance(given, np.ndarray) and given.ndim == 0:
+        return value(given.item(), key)
     if isinstance(given, Mapping):
         entries = (f"{json.dumps(str(k))} = {value(v, f'{key}.{k}')}" for k, v in given.items() if v is not None)
         return "{ " + ", ".join(entries) + " }"

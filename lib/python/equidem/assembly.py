@@ -10,7 +10,7 @@ from typing import Any
 import numpy.typing as npt
 
 from . import _core, _toml
-from ._arrays import Floats, Integers, floats, integers
+from ._arrays import Floats, Integers, floats, integers, share
 from .errors import BadInput
 
 
@@ -58,14 +58,15 @@ class Assembly:
             if pairs is None:
                 raise BadInput("levers without contacts", "each belongs to a contact", "Give the contacts", "levers")
             arms = floats("levers", levers, (len(pairs), 2))
-        if pairs is not None and gap_tolerance:
+        tolerance = share("gap_tolerance", gap_tolerance)
+        if pairs is not None and tolerance > 0:
             raise BadInput("contacts and gap_tolerance are both given", "the tolerance finds contacts",
                            "Leave one of them out", "gap_tolerance")
         period = None
         if cell is not None:
             sides = floats("cell", cell, (2,))
             period = (float(sides[0]), float(sides[1]))
-        self._native = _core.from_arrays(places, sizes, pairs, arms, period, float(gap_tolerance))
+        self._native = _core.from_arrays(places, sizes, pairs, arms, period, tolerance)
 
     @staticmethod
     def _of(native: _core.Assembly) -> Assembly:
@@ -82,7 +83,11 @@ class Assembly:
         return f"<Assembly of {len(self)} discs, {len(self.contacts)} contacts{cell}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Assembly._of, (self._native,)
+        return Assembly._of_json, (self._native.json(),)
+
+    @staticmethod
+    def _of_json(text: str) -> Assembly:
+        return Assembly._of(_core.from_json(text))
 
     def with_strengths(self, strengths: npt.ArrayLike) -> Assembly:
         """The same assembly whose contacts have strengths of their own, for `Case.quasistatic`.
@@ -226,7 +231,8 @@ def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_le
     period : (float, float), optional
         Width and height in m of the periodic cell of such a file without a box.
     """
-    return Assembly._of(_core.read_assembly(os.fspath(path), float(gap_tolerance), unit_of_length, frame,
+    tolerance = share("gap_tolerance", gap_tolerance)
+    return Assembly._of(_core.read_assembly(os.fspath(path), tolerance, unit_of_length, frame,
                                             None if contacts is None else os.fspath(contacts), periodic_box, period))
 
 

@@ -18,7 +18,7 @@ from .assembly import Assembly
 from .errors import BadInput, EquidemError, without_memory_names
 from .result import Result
 from .simulation import Simulation
-from .springs import springs_from
+from .springs import springs_from, springs_table
 
 
 class Case:
@@ -27,10 +27,10 @@ class Case:
     Parameters
     ----------
     file : path, optional
-        A case file (TOML). Its tables may be changed by `set`.
+        A case file (TOML) that exists. Its tables may be changed by `set`.
     assembly : Assembly, optional
         In place of a table `assembly`; only without a file.
-    springs : Springs, (kN, kT) or dict, optional
+    springs : Springs, (kN, kT), dict, path of a springs file or the result of calibrate, optional
         In place of those that the assembly has.
     supports : sequence of dict
         ``{"group": "left", "ux": 0.0, "uy": 0.0, "rotation": 0.0}``, in m and rad; what is left out stays free. A group
@@ -56,6 +56,8 @@ class Case:
                  supports: Iterable[Mapping[str, Any]] = (), loads: Iterable[Mapping[str, Any]] = (),
                  **tables: Any) -> None:
         self._file = "" if file is None else os.fspath(file)
+        if self._file and not os.path.exists(self._file):
+            raise BadInput(f"no such file '{self._file}'", f"the folder is {os.getcwd()}", "Correct the name")
         self._assembly: Assembly | None = None
         self._tables: dict[str, Any] = {}
         self._overrides: list[str] = []
@@ -77,6 +79,13 @@ class Case:
         if self._groups:
             self._tables["group"] = self._groups
 
+    @staticmethod
+    def _of_file(name: str) -> Case:
+        """The case of a file, or of a built-in study, whose existence is not checked."""
+        case = Case()
+        case._file = name
+        return case
+
     def _set_assembly(self, assembly: Assembly | Mapping[str, Any] | None, springs: Any) -> None:
         if isinstance(assembly, Assembly):
             table: dict[str, Any] = {"kind": "file", "path": "assembly"}
@@ -87,22 +96,20 @@ class Case:
                 table["own_springs"] = False
             self._tables["assembly"] = table
             self._assembly = assembly
-            given = springs_from(springs)
-            if given is not None and not given.uniform:
-                given = given._without_bending("a case with springs of each contact")
-                self._assembly = Assembly._of(assembly._native.with_springs(given.at_contacts(assembly)))
-                table["own_springs"] = True
-                springs = None
         elif assembly is not None:
             self._tables["assembly"] = dict(assembly)
         if isinstance(springs, (str, os.PathLike)):
             self._tables["springs"] = springs
         elif springs is not None:
-            chosen = springs_from(springs)
-            assert chosen is not None
-            self._tables["springs"] = {"kN": chosen.kN, "kT": chosen.kT, "weighting": chosen.weighting}
-            if chosen.bond_width != 0:
-                self._tables["springs"]["bond_width"] = chosen.bond_width
+            given = springs_table(springs)
+            if self._assembly is None or not any(np.ndim(given.get(name, 0)) for name in ("kN", "kT")):
+                self._tables["springs"] = given
+                return
+            each = springs_from(given)
+            self._assembly = Assembly._of(self._assembly._native.with_springs(each.at_contacts(self._assembly)))
+            self._tables["assembly"]["own_springs"] = True
+            if each.density is not None:
+                self._tables["assembly"].setdefault("density", each.density)
 
     def _with_group(self, table: str, entry: Mapping[str, Any]) -> dict[str, Any]:
         """The entry with the name of its group, made where it lists discs."""
@@ -129,7 +136,7 @@ class Case:
 
     def copy(self) -> Case:
         """A case of its own with the same file, tables and changes."""
-        copied = Case.__new__(Case)
+        copied = Case._of_file("")
         copied.__dict__.update(self.__dict__)
         copied._overrides = list(self._overrides)
         return copied
@@ -234,7 +241,12 @@ class Case:
         return self.run_verb("pack", **options)
 
     def run(self, **options: Any) -> Result:
-        """The dynamics of the table `run`, to its end; `simulation` steps it."""
+        """The dynamics of the table `run`, to its end; `simulation` steps it.
+
+        Arrays: ``energies.time_s``, ``energies.kinetic_J_per_m``, ... over the run; with ``output.probe_interval`` the
+        columns of history.csv as ``history.time_s``, ...: probes, walls, the periodic cell and energies; with the table
+        `measures` those of measures.csv as ``measures_history.time_s``, ...
+        """
         return self.run_verb("run", **options)
 
     def quasistatic(self, **options: Any) -> Result:
@@ -242,7 +254,7 @@ class Case:
 
         `result.events` lists them: lambda, contact, mode, stress [xx, yx, xy, yy] in Pa, load, motion, energies in N.
         With ``strength.after_breaking = "rubs"`` contacts without a bond open, close, slip and stick too, and
-        `result.increments` tells how many increments have one answer, several, none, or were not decided.
+        `result.increments` counts the increments with one answer, with several, with none, and those not decided.
         """
         return self.run_verb("quasistatic", **options)
 
@@ -252,7 +264,7 @@ class Case:
         Parameters
         ----------
         to
-            "lammps", "yade", "pfc", ...: what ``equidem export --to`` takes.
+            "lammps", "yade", "pfc" or "matrix-market": what ``equidem export --to`` takes.
         options
             Those of the verb; ``accept="friction"`` exports what the program computes otherwise, as its refusal says.
 
@@ -264,5 +276,5 @@ class Case:
         return self.run_verb("export", to=to, out=out, **options)
 
     def simulation(self) -> Simulation:
-        """The dynamics of the table `run`, ready to be stepped."""
-        return Simulation(_core.Steps(*self._inputs()))
+        """The dynamics of the table `run` with its duration, ready to be stepped."""
+        return Simulation(_core.steps(*self._inputs()))

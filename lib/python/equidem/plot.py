@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,16 +53,21 @@ def discs(assembly: Assembly, ax: Axes | None = None, *, displacements: npt.Arra
 
 def bodies(centres: npt.ArrayLike, radii: npt.ArrayLike, ax: Axes | None = None, *, values: npt.ArrayLike | None = None,
            label: str = "", cmap: str = "viridis") -> Axes:
-    """Discs at places (n, 2), in m, such as those of a frame; the other parameters as of `discs`."""
+    """Discs at places (n, 2), in m, such as those of a frame; the other parameters as of `discs`. Bodies that a stage
+    has removed have no place and are left out."""
     from matplotlib.collections import EllipseCollection
 
-    axes = _axes(ax)
     places, width = np.asarray(centres), 2 * np.asarray(radii)
+    there = np.isfinite(places).all(axis=1)
+    if not there.any():
+        raise BadInput("there is nothing to draw", "no body is there", "Draw an earlier state")
+    places, width = places[there], width[there]
+    axes = _axes(ax)
     drawn = EllipseCollection(width, width, np.zeros(len(places)), units="x", offsets=places,
                               transOffset=axes.transData, facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
     axes.add_collection(drawn)
     if values is not None:
-        drawn.set_array(np.asarray(values))
+        drawn.set_array(np.asarray(values)[there])
         drawn.set_cmap(cmap)
         if label:
             axes.figure.colorbar(drawn, ax=axes, label=label)
@@ -87,10 +93,41 @@ def dispersion(result: Result, ax: Axes | None = None) -> Axes:
     return axes
 
 
+def curve(result: Result, ax: Axes | None = None) -> Axes:
+    """Load over motion of `Case.quasistatic`: all states of equilibrium, and what a test that prescribes the motion or
+    the load measures."""
+    axes = _axes(ax)
+    for name, label, style in (("curve", "events", {"color": "#56b4e9", "linewidth": 0.8}),
+                               ("motion_envelope", "envelope under motion control", {"color": "#d55e00"}),
+                               ("load_envelope", "envelope under load control", {"color": "black", "linestyle": "--"})):
+        axes.plot(result[name].motion, result[name].load, label=label, **style)
+    by_strain = result.units.get("events.load") == "Pa"
+    axes.set_xlabel("mean strain" if by_strain else "motion, m")
+    axes.set_ylabel("stress, Pa" if by_strain else "load, N/m")
+    axes.ticklabel_format(scilimits=(-2, 4))
+    axes.legend(frameon=False)
+    return axes
+
+
+def energies(result: Result, ax: Axes | None = None) -> Axes:
+    """The terms of the energy ledger of `Case.run` over time, those that are zero throughout left out."""
+    axes = _axes(ax)
+    terms = {name: np.asarray(column) for name, column in result.energies.items() if name != "time_s"}
+    for name, column in terms.items():
+        if np.abs(column).max(initial=0.0) > 0 and not name.startswith("error"):
+            axes.plot(result.energies.time_s, column, label=re.sub("_J(_per_m)?$", "", name).replace("_", " "))
+    axes.set_xlabel("time, s")
+    axes.set_ylabel("energy, J/m" if any(name.endswith("_per_m") for name in terms) else "energy, J")
+    axes.ticklabel_format(scilimits=(-2, 4))
+    axes.legend(frameon=False)
+    return axes
+
+
 def of(result: Result, ax: Axes | None = None, **options: Any) -> Axes:
     """The picture that suits a result."""
-    if "dispersion" in result:
-        return dispersion(result, ax)
+    for name, drawn in (("dispersion", dispersion), ("load_envelope", curve), ("energies", energies)):
+        if name in result and not (name == "energies" and "time_s" not in result.energies):
+            return drawn(result, ax, **options)
     if result.assembly is None:
         raise BadInput("the result has no picture", "it holds neither an assembly nor a curve",
                        "Plot its numbers, or those of a sweep")

@@ -161,14 +161,14 @@ class Result(Mapping[str, Any]):
         return f"<table>{rows}</table>"
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
-        """Draw the result with matplotlib: the deformed discs of a solution, the branches of a dispersion, or the discs
-        of a packing.
+        """Draw the result with matplotlib: the deformed discs of a solution, the branches of a dispersion, load over
+        motion of a path of breaks, the energies of a run, or the discs of a packing.
 
         Parameters
         ----------
         ax : matplotlib axes, optional
         options
-            Of `equidem.plot.discs`.
+            Of `equidem.plot.discs`, where discs are drawn.
         """
         from . import plot
 

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._arrays import Floats
+from ._arrays import Floats, whole
 from .assembly import Assembly
 from .errors import BadInput
 
@@ -60,7 +60,7 @@ class Simulation:
 
     @property
     def steps(self) -> int:
-        """Steps of the duration of the case; 0 where it goes to rest."""
+        """Steps of the duration of the case."""
         return self._steps.steps
 
     @property
@@ -122,7 +122,7 @@ class Simulation:
         return self._steps.energy()
 
     def advance(self, steps: int) -> None:
-        """Make that many steps.
+        """Make that many steps, or those until the last stage ends.
 
         Raises
         ------
@@ -131,9 +131,7 @@ class Simulation:
         Interrupted
             After Ctrl-C, between two steps.
         """
-        if steps < 0:
-            raise BadInput(f"{steps} steps", "time goes forward", "Give 0 or more", "steps")
-        self._steps.advance(int(steps))
+        self._steps.advance(whole("steps", steps, 0))
 
     @property
     def frame(self) -> Frame:
@@ -149,15 +147,26 @@ class Simulation:
         steps : int, optional
             In all; left out: what is left of the duration of the case.
         """
-        if every < 1:
-            raise BadInput(f"a frame every {every} steps", "at least one step lies between two frames",
-                           "Give 1 or more", "every")
-        left = self.steps - self.step if steps is None else int(steps)
+        return self._frames(self._parts(every, steps))
+
+    def _frames(self, parts: Iterable[int]) -> Iterator[Frame]:
         yield self.frame
-        while left > 0:
-            self.advance(min(every, left))
-            left -= every
+        for _ in parts:
             yield self.frame
+
+    def _parts(self, every: int, steps: int | None) -> Iterator[int]:
+        """Make the steps, and stop after each `every` of them."""
+        between = whole("every", every, 1)
+        left = max(0, self.steps - self.step) if steps is None else whole("steps", steps, 0)
+        return self._stops(self.step + left, between)
+
+    def _stops(self, end: int, between: int) -> Iterator[int]:
+        before = -1
+        while before < self.step < end:
+            before = self.step
+            self.advance(min(between, end - before))
+            if self.step > before:
+                yield self.step
 
     def plot(self, ax: Axes | None = None, *, frame: Frame | None = None, **options: Any) -> Axes:
         """Draw the discs at present, or at a frame, with matplotlib.
@@ -179,10 +188,7 @@ class Simulation:
     def run(self, callback: Callable[[Simulation], object] | None = None, every: int = 100,
             steps: int | None = None) -> Simulation:
         """Make all steps. The callback is called after each `every` of them; where it returns False the run ends."""
-        left = self.steps - self.step if steps is None else int(steps)
-        while left > 0:
-            self.advance(min(every, left))
-            left -= every
+        for _ in self._parts(every, steps):
             if callback is not None and callback(self) is False:
                 break
         return self

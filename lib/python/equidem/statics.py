@@ -15,7 +15,7 @@ from .assembly import Assembly
 from .case import Case
 from .errors import BadInput
 from .result import Result
-from .springs import Springs, springs_from
+from .springs import springs_from
 
 if TYPE_CHECKING:
     from scipy.sparse import bsr_matrix
@@ -93,7 +93,7 @@ class Factor:
 
     def __init__(self, assembly: Assembly, case: Case, error_bound: bool) -> None:
         self.assembly = assembly
-        self._native = _core.Factor(*case._inputs(), error_bound)
+        self._native = _core.factor(*case._inputs(), error_bound)
 
     @property
     def unknowns(self) -> int:
@@ -163,8 +163,5 @@ def stiffness_matrix(assembly: Assembly, springs: Any, *, rotation: str = "from_
 
 def _springs_of(assembly: Assembly, springs: Any) -> Floats:
     chosen = springs_from(springs)
-    if chosen is None:
-        raise BadInput("the springs are missing", "every contact has a normal and a tangential spring",
-                       "Give equidem.Springs(kN=..., kT=...)", "springs")
-    assert isinstance(chosen, Springs)
-    return chosen._without_bending("stiffness_matrix")._native(assembly)
+    chosen._check_alone("a stiffness_matrix of springs", ("bond_width", "kM"))
+    return chosen._native(assembly)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -67,8 +68,8 @@ def pack(packing: Mapping[str, Any], springs: Any = None, **tables: Any) -> Resu
     ----------
     packing : dict
         The table `packing` of the case file.
-    springs : Springs, (kN, kT) or dict
-        Of the contacts; bodies that grow or fall push each other by them.
+    springs : as of `Case`
+        Of the contacts; bodies that grow or fall repel each other by them.
 
     Examples
     --------
@@ -93,11 +94,11 @@ def simulation(assembly: Assembly | None = None, springs: Any = None, **tables: 
 
 
 def run(assembly: Assembly | None = None, springs: Any = None, **tables: Any) -> Result:
-    """A simulation carried to its end; the result holds the energy balance, events, waves and probes."""
+    """A simulation carried to its end; arrays as of `Case.run`."""
     return Case(assembly=assembly, springs=springs, **tables).run()
 
 
-def study(name: str, **options: Any) -> Result:
+def study(name: str | os.PathLike[str], **options: Any) -> Result:
     """Error against time: a built-in study (`equidem study --list`), or that of a case file with a table `study`.
 
     Parameters
@@ -105,4 +106,4 @@ def study(name: str, **options: Any) -> Result:
     options
         ``accuracy=1e-4`` adds the cheapest setting for that error.
     """
-    return Case(name).run_verb("study", **options)
+    return Case._of_file(os.fspath(name)).run_verb("study", **options)

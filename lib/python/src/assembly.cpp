@@ -127,7 +127,7 @@ py::array numbers_of(const Shared& assembly) {
 }  // namespace
 
 void bind_assembly(py::module_& module) {
-  py::class_<Assembly, Shared>(module, "Assembly")
+  py::class_<Assembly, Shared>(module, "Assembly", made_here())
       .def_property_readonly("kind", [](const Assembly& a) { return a.kind; })
       .def("__len__", &Assembly::size)
       .def_property_readonly("centres", [](const Shared& a) { return columns_of(a, a->centres, &Vec2::x, 2); })
@@ -151,10 +151,10 @@ void bind_assembly(py::module_& module) {
       .def("with_springs", with_pairs<&Assembly::contact_kN, &Assembly::contact_kT>)
       .def("with_strengths", with_pairs<&Assembly::contact_tension, &Assembly::contact_shear>)
       .def("with_forces", with_pairs<&Assembly::contact_normal_force, &Assembly::contact_tangential_force>)
-      .def(py::pickle([](const Assembly& a) { return py::make_tuple(json_of(a)); },
-                      [](const py::tuple& state) { return from_text(state[0].cast<std::string>()); }));
+      .def("json", json_of);
 
   module.def("from_arrays", from_arrays);
+  module.def("from_json", from_text);
   module.def("build_assembly", [](const std::string& case_text) {
     return without_lock([&] { return shared(build_assembly(parse_case(case_text, "case#0", {}))); });
   });

@@ -65,9 +65,12 @@ class Factor {
 }  // namespace
 
 void bind_factor(py::module_& module) {
-  py::class_<Factor>(module, "Factor")
-      .def(py::init<const std::string&, const std::string&, const std::shared_ptr<Assembly>&, std::vector<std::string>,
-                    bool>())
+  module.def("factor",
+             [](const std::string& case_text, const std::string& case_file, const std::shared_ptr<Assembly>& assembly,
+                std::vector<std::string> overrides, bool error_bound) {
+               return std::make_unique<Factor>(case_text, case_file, assembly, std::move(overrides), error_bound);
+             });
+  py::class_<Factor>(module, "Factor", made_here())
       .def("solve", &Factor::solve)
       .def_property_readonly("unknowns", &Factor::unknowns);
 }

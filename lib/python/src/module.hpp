@@ -16,6 +16,12 @@ namespace equidem::python {
 
 namespace py = pybind11;
 
+/// Objects of a class come from functions of the module alone: Python cannot make one without its C++ part.
+inline py::custom_type_setup made_here() {
+  return py::custom_type_setup(
+      [](PyHeapTypeObject* type) { type->ht_type.tp_flags |= Py_TPFLAGS_DISALLOW_INSTANTIATION; });
+}
+
 /// Errors of the library become exceptions of equidem.errors.
 void translate_errors();
 void bind_assembly(py::module_& module);

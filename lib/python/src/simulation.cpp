@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include <pybind11/stl.h>
 
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/motion/ledger.hpp"
 
 #include "case_inputs.hpp"
@@ -29,6 +31,9 @@ class Steps {
     options.case_file = inputs_.case_file();
     options.set = inputs_.overrides();
     job_ = make_run_job(options, false);
+    if (job_->goes_to_rest())
+      bad_input_at("run.until_rest", "a simulation of a case that goes to rest", "it has no steps in time",
+                   "Use Case.run(), or give run.duration");
     plan_ = job_->plan();
   }
 
@@ -36,10 +41,11 @@ class Steps {
     const LongWork working;
     const std::lock_guard lock(mutex_);
     constexpr std::int64_t at_once = 100;
-    for (std::int64_t done = 0; done < steps; done += at_once) {
+    AnySimulation& stepped = simulation();
+    for (const std::int64_t end = stepped.step() + steps; stepped.step() < end && !stepped.over();) {
       stop_if_interrupted();
-      job_->simulation().advance(std::min(at_once, steps - done));
-      if (plan_.watch) plan_.watch(job_->simulation().energy());
+      stepped.advance(std::min(at_once, end - stepped.step()));
+      if (plan_.watch) plan_.watch(stepped.energy());
     }
   }
 
@@ -97,9 +103,11 @@ class Steps {
 }  // namespace
 
 void bind_simulation(py::module_& module) {
-  py::class_<Steps>(module, "Steps")
-      .def(py::init<const std::string&, const std::string&, const std::shared_ptr<Assembly>&,
-                    std::vector<std::string>>())
+  module.def("steps", [](const std::string& case_text, const std::string& case_file,
+                         const std::shared_ptr<Assembly>& assembly, std::vector<std::string> overrides) {
+    return std::make_unique<Steps>(case_text, case_file, assembly, std::move(overrides));
+  });
+  py::class_<Steps>(module, "Steps", made_here())
       .def("advance", &Steps::advance)
       .def("motions", &Steps::motions)
       .def("velocities", &Steps::velocities)

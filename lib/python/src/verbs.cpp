@@ -75,7 +75,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 }
 
 void bind_verbs(py::module_& module) {
-  py::class_<Delivered>(module, "Delivered").def("texts", &Delivered::texts).def("page", &Delivered::page);
+  py::class_<Delivered>(module, "Delivered", made_here()).def("texts", &Delivered::texts).def("page", &Delivered::page);
   module.def("run_verb", run_verb);
 }
 

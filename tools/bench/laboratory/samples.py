@@ -1,14 +1,14 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tools/bench/laboratory/samples.py PROGRAM FOLDER
 
 Writes the samples of the cases of the laboratory: lab_*.csv of data/cases, the same bytes each time. A rock is a jammed packing whose
 discs are bonded across gaps up to a tenth of their radii; a Brazilian disc is cut out of one whose walls are its flat ends."""
 
+import argparse
 import json
 import math
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -127,7 +127,11 @@ def write(folder, name, discs, contacts=None):
 
 
 def main():
-    program, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=Path)
+    parser.add_argument("folder", type=Path)
+    request = parser.parse_args()
+    program, folder = request.program.resolve(), request.folder
     write(folder, "lab_rock", *rock(program))
     write(folder, "lab_brazilian", *brazilian(program))
     write(folder, "lab_heap", heap(program))

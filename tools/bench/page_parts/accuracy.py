@@ -14,7 +14,7 @@ STUDIES = {
     "random_assembly": ("Random cells", "ν and G of random assemblies, standard error", [0, 1]),
     "solvers": ("Which solver, from which size on", "displacements at rest", [-1]),
     "collision_laws": ("Laws of collision", "rigid bodies, after a collision", [0, 1]),
-    "ellipse_contact": ("Contact of ellipses", "normal and overlap of 200 pairs of ellipses", [0]),
+    "ellipse_contact": ("Contact of ellipses", "normal and overlap of 1000 pairs of ellipses", [0]),
     "settled_void_ratio": ("Void ratio of discs that fell", "", [0]),
     "neighbour_margin": ("Margin of the neighbour lists", "", [0]),
 }

@@ -110,13 +110,22 @@ void add_range(Results& out, const Calibration& found, Plane wanted) {
                            "moduli");
 }
 
-void add_mean_field(Results& out, const MeanFieldGuess& guess, const ElasticModuli& wanted) {
+/// The keys of [springs] that go with a pair of constants.
+Results springs_table(const Case& resolved, const SpringConstants& k) {
+  Results out;
+  out.set("kN", k.kN).set("kT", k.kT).set("weighting", to_string(resolved.weighting));
+  if (const auto& width = resolved.bending.bond_width) out.set("bond_width", *width);
+  return out;
+}
+
+void add_mean_field(Results& out, const MeanFieldGuess& guess, const Case& resolved) {
+  const ElasticModuli& wanted = resolved.material->moduli;
   if (!guess.moduli) out.set("mean_field/missing", guess.missing);
   if (guess.springs.kN == 0) {
     out.line("mean field", "no springs for this: " + guess.missing);
     return;
   }
-  out.set("mean_field/kN", guess.springs.kN).set("mean_field/kT", guess.springs.kT);
+  out.append(springs_table(resolved, guess.springs).under("mean_field"));
   out.line("mean field", "Abe (1996), eqs. (21) and (22), advise " + shown_springs(guess.springs));
   if (!guess.moduli) {
     out.line("", guess.missing);
@@ -177,9 +186,12 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   add_method(out, found);
   add_reached(out, found);
   add_range(out, found, wanted.plane);
-  if (guess) add_mean_field(out, *guess, wanted);
-  if (const auto density = disc_density(resolved, problem.assembly); density && k.kT >= 0)
-    add_motion(out, problem, *density, wanted);
+  if (guess) add_mean_field(out, *guess, resolved);
+  out.append(springs_table(resolved, k).under("springs"));
+  if (const auto density = disc_density(resolved, problem.assembly)) {
+    out.set("springs/density", *density);
+    if (k.kT >= 0) add_motion(out, problem, *density, wanted);
+  }
   out.append(engine_springs_results(problem.assembly, problem.springs.springs, k, problem.resolved.bending.bond_width));
   const Lattice* lattice = resolved.assembly.arrangement;
   if (lattice != nullptr && lattice->restrained != nullptr && resolved.rotation == Rotation::restrained)

@@ -347,7 +347,8 @@ int quasistatic(const QuasistaticOptions& given) {
   plan.expect_results();
   expect_quasistatic(plan, resolved.output, keeps_state(resolved));
   const auto lock = lock_out(options);
-  Sequence sequence(build(resolved));
+  const auto shared_sequence = std::make_shared<Sequence>(build(resolved));
+  Sequence& sequence = *shared_sequence;
   if (options.dry_run) return dry_run_path(options, sequence);
   sequence.begin();
   std::optional<FileMark> frames;
@@ -378,6 +379,13 @@ int quasistatic(const QuasistaticOptions& given) {
     throw_stopped(options, fmt::format("{} are done", counted(events, "event")),
                   "Run the same command with --resume to go on");
   }
+  hand_over(std::shared_ptr<const Assembly>(shared_sequence, &sequence.problem.assembly));
+  hand_over([shared_sequence](const CommonOptions& into) {
+    const Case& kept = shared_sequence->problem.resolved;
+    write_case(into, kept);
+    write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
+                  kept.title);
+  });
   return 0;
 }
 

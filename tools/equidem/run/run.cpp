@@ -8,6 +8,7 @@
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 
@@ -17,6 +18,7 @@
 #include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
 #include "run/run_grains.hpp"
+#include "run/run_histories.hpp"
 #include "run/run_results.hpp"
 #include "verbs.hpp"
 
@@ -46,10 +48,12 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   RunJob& job = *shared_job;
   RunPlan plan = job.plan();
   if (common.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
+  const HistoryFolder tables(common.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
+  if (tables.is_temporary()) plan.frame_interval.reset();
   const auto shared_result = [&] {
     try {
       return std::make_shared<const RunResult>(run_through(
-          job.simulation(), plan, {.folder = common.out, .overwrite = common.overwrite, .resume = options.resume}));
+          job.simulation(), plan, {.folder = tables.path(), .overwrite = common.overwrite, .resume = options.resume}));
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
       throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
@@ -66,7 +70,10 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   deliver(common, "done", std::move(results), std::move(times), [&](Results&) {
     if (common.out) job.write_files(*common.out, result, common.overwrite || options.resume);
   });
-  hand_over([shared_job, shared_result](const CommonOptions& into) {
+  if (!arrays_wanted()) return true;
+  hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
+  hand_over([shared_job, shared_result, history = tables.history()](const CommonOptions& into) {
+    if (!history.empty()) write_file(*into.out / "history.csv", history, into.overwrite);  // of which paths are drawn
     shared_job->write_files(*into.out, *shared_result, into.overwrite);
   });
   return true;

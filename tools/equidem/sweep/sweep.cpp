@@ -293,8 +293,7 @@ Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
   add_common_options(command, options->common);
   command
-      .add_option("--verb", options->verb,
-                  "what is done at each point: solve (where left out), homogenize, calibrate,\nstability, pack or run")
+      .add_option("--verb", options->verb, "what is done at each point, any verb but sweep and study; left out: solve")
       ->type_name("VERB");
   add_key_options(command, options);
   command.add_flag("--list", options->side_by_side, "keys take their values side by side, not in all combinations");

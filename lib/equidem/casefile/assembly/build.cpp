@@ -144,9 +144,9 @@ BuiltSprings build_springs(const Case& resolved, const Assembly& assembly) {
     }
     bad_input_at(resolved.where("assembly.path"), "the springs are missing",
                  resolved.assembly.own_springs
-                     ? "neither the case file nor the assembly file gives any"
-                     : "the case file gives none, and says that those of the assembly file do not count",
-                 "Add [springs] with kN and kT to the case file");
+                     ? "neither the case nor the assembly gives any"
+                     : "the case gives none, and own_springs = false leaves out those of the assembly",
+                 "Give springs with kN and kT");
   }
   if (own && (resolved.springs || resolved.material)) {
     bad_input_at(resolved.where(resolved.springs ? "springs" : "material"),

@@ -109,9 +109,8 @@ void bind_material(File<CaseTables>& file) {
                  "G; with poisson_ratio or bulk_modulus_2d"),
              key("young_modulus", &T::given, &M::young_modulus, unit("Pa"), positive, "E; with poisson_ratio"),
              key("poisson_ratio", &T::given, &M::poisson_ratio, between(-1, 1),
-                 "with shear_modulus or young_modulus; lattices and the mean field show at most 1/4 in plane strain, "
-                 "1/3 in plane stress; 'equidem calibrate' tells what "
-                 "other assemblies show"),
+                 "with shear_modulus or young_modulus; lattices and the mean field reach at most 1/4 in plane strain, "
+                 "1/3 in plane stress; calibrate finds the range of an assembly"),
              key("bulk_modulus_2d", &T::given, &M::bulk_modulus_2d, unit("Pa"), positive,
                  "K, mean stress of the plane over its change of area; with shear_modulus"),
              key("p_wave_speed", &T::given, &M::p_wave_speed, unit("m/s"), positive,
@@ -211,7 +210,7 @@ void bind_run(File<CaseTables>& file) {
 
 void bind_breakage(File<CaseTables>& file) {
   bind_strength_file(file);
-  file.table("strength", &CaseTables::strength, "strengths of the contacts, for the verb quasistatic")
+  file.table("strength", &CaseTables::strength, "strengths of the contacts, for quasistatic and calibrate")
       .keys(strength_keys());
   file.table("strength_target", &CaseTables::strength_target,
              "strengths of the material, for which calibrate finds those of the contacts")

@@ -58,7 +58,7 @@ void bind_bonds(File<GrainTables>& file) {
       unbound_key<GrainBond>("grains", KeyType::discs, required,
                              "[i, j]: two discs, counted from 0, those of the file first; they do not collide")};
   for (Key<GrainBond>& key : keys_of_bonds(false)) keys.push_back(std::move(key));
-  file.table("bond", repeated_table, "two discs tied by dashpots").described(std::move(keys));
+  file.table("bond", repeated_table, "two bonded discs").described(std::move(keys));
   bind_strength_file(file);
   file.table("strength", &GrainTables::strength, "strengths of the bonds; left out: they never break")
       .keys(strength_keys_of_bonds());
