@@ -56,7 +56,7 @@ class RatePath {
     respond();
     tau_ = first_tau();
     const double farthest = 1e6 * tau_;
-    const std::size_t most = 1000 + 40 * problem_.limits.size();
+    const std::size_t most = 100 + 4 * problem_.limits.size();  // paths of small networks take up to twice their number
     for (std::size_t piece = 0; piece < most; ++piece) {
       stop_if_interrupted();
       const Step step = next_step();
@@ -310,6 +310,22 @@ void decide_beside_large_rates(RateProblem problem, TangentSolver& solver, RateS
   search.found = search.answer.rates.balanced;
 }
 
+/// Where loads drive what nothing resists, the statuses that do not depend on the present ones: others are decided by
+/// the round-off of large rates, and stay as they were.
+void keep_decided(const RateProblem& problem, const std::vector<ContactStatus>& before, RateAnswer& answer) {
+  using enum ContactStatus;
+  for (const LimitContact& at : problem.limits) {
+    const auto after = [&](ContactStatus present) {
+      return status_after(problem.laws[at.contact], at, answer.rates.deformation[at.contact], present,
+                          answer.rates.negligible);
+    };
+    const ContactStatus status = after(stuck);
+    const bool decided = std::ranges::all_of(std::array{open, slips_forward, slips_backward},
+                                             [&](ContactStatus present) { return after(present) == status; });
+    answer.status[at.contact] = decided ? status : before[at.contact];
+  }
+}
+
 }  // namespace
 
 RateSearch search_rates(const RateProblem& problem, TangentSolver& solver, const std::vector<ContactStatus>& status) {
@@ -321,15 +337,17 @@ RateSearch search_rates(const RateProblem& problem, TangentSolver& solver, const
   sticking.rates = rates_of(problem.contacts, solver, tangents_of(problem.laws, sticking.status), problem.driving);
   if (!sticking.rates.balanced && !search.answer.agrees) {
     search.answer = std::move(sticking);
+    search.answer.status = status;
     return search;
   }
-  // Rates of what nothing resists are large, and their round-off decides where Newton's method goes: the path does not
-  // depend on it.
+  // Rates of what nothing resists are large, and their round-off may decide whether Newton's method goes round in
+  // circles: then the path says what loads drive.
   std::optional<RateAnswer> other;
   if (sticking.rates.balanced) other = follow_rates(problem, solver, status);
-  if (other) search = {std::move(*other)};
+  if (other && (other->rates.balanced || !search.answer.agrees)) search = {std::move(*other)};
   search.found = search.answer.agrees && search.answer.rates.balanced;
   if (!search.found && search.answer.agrees) decide_beside_large_rates(problem, solver, search);
+  if (!search.found && search.answer.agrees) keep_decided(problem, status, search.answer);
   return search;
 }
 
