@@ -266,7 +266,11 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--set", "packing.method=grow"), 2, "growth")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.solid_fraction=0.5"), 2, "Remove one")
         crowded = ("--set", "packing.solid_fraction=0.95", "--set", "packing.box=none", "--set", "packing.grains=30")
-        self.check_error(equidem("pack", JAMMED, *crowded), 1, "packing.solid_fraction", "jam", "\"auto\"")
+        jammed = equidem("pack", JAMMED, *crowded)
+        self.assertEqual(jammed.returncode, 1, jammed.stderr)
+        for words in ("packing.solid_fraction", "jam before they reach the solid fraction of 0.95 that is asked for", "\"auto\""):
+            self.assertIn(words, jammed.stderr)
+        self.assertRegex(jammed.stdout, r"NOT DONE +the discs jam")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.grains=20", "--set", "packing.region=[0.7, 0, 0.8, 1]"), 2,
                          "packing.region", "out of the periodic box")
         _, out = self.pack(JAMMED, "--set", "packing.grains=20")
