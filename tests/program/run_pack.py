@@ -58,6 +58,10 @@ class Files(PackTest):
         self.assertEqual(result["status"], "failed")
         self.assertIn("not at rest", result["failure"])
         self.assertEqual(len(rows_of(out / "grains.csv")), 60)
+        empty = equidem("pack", SOIL, "--out", self.folder / "empty", *FEW, "--set", "packing.region=[0.05, 5, 0.1, 6]")
+        self.assertEqual(empty.returncode, 1, empty.stderr)
+        self.assertIn("packing.region: no body reaches into the region measured", empty.stderr)
+        self.assertEqual(len(rows_of(self.folder / "empty/grains.csv")), 60)
 
     def test_calibrated_springs_give_a_packing_the_moduli_wanted(self):
         result, out = self.pack(JAMMED, "--set", "packing.grains=90")
