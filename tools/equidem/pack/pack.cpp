@@ -109,11 +109,11 @@ int run(const CommonOptions& common) {
   Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
   times.add("network", watch.lap());
+  RestConfirmation rest{.missing = packing.failure ? "the bodies are not at rest" : "stopped as asked"};
+  if (!packing.failure) keep_failure(packing, [&] { rest = confirm_rest(packing, resolved.packing.settling); });
+  times.add("statics", watch.lap());
   const PackingMeasures measures = measured(resolved, packing);
   times.add("measures", watch.lap());
-  const RestConfirmation rest = packing.failure ? RestConfirmation{.missing = "the bodies are not at rest"}
-                                                : confirm_rest(packing, resolved.packing.settling);
-  times.add("statics", watch.lap());
   const bool stopped = packing.failure && packing.failure->kind() == ErrorKind::interrupted;
   deliver(common,
           stopped           ? "interrupted"
