@@ -84,6 +84,34 @@ class Accuracy(ProgramTest):
         self.check_error(equidem("run", CASES / "run_tension.toml", "--accuracy", "0.1"), 2, "until_rest")
         self.check_error(equidem("run", CASES / "grains_cradle.toml", "--accuracy", "0.1"), 2, "collide")
 
+    def test_steps_of_viscous_springs_are_found_by_their_true_order(self):
+        case, out = self.folder / "viscous.toml", self.folder / "viscous"
+        text = (CASES / "run_shake.toml").read_text().replace("contact = 0.02", "contact = 0.0")
+        for key, old, new in (("duration", "0.02 ", "0.002 "), ("columns ", " 10", " 5"), ("rows   ", " 35", " 9")):
+            text = text.replace(f"{key} ={old}", f"{key} ={new}")
+        case.write_text(text + '[viscoelastic]\nnormal = "kelvin_voigt"\ntangential = "kelvin_voigt"\n'
+                               'tauN = 5e-6\ntauT = 5e-6\n')
+
+        def motions(*options):
+            result = parse_json(self.check_done(
+                equidem("run", case, "--out", out, "--overwrite", "--json", "-", *options)).stdout)
+            with open(out / "discs.csv", newline="", encoding="utf-8") as file:
+                return result, [float(row[u]) for row in csv.DictReader(file) for u in ("ux_m", "uy_m")]
+
+        exact = motions("--set", "run.time_step=2e-8")[1]
+
+        def error(found):
+            return max(abs(a - b) for a, b in zip(found, exact)) / max(map(abs, exact))
+
+        errors = [error(motions("--set", f"run.time_step={step}")[1]) for step in (8e-7, 4e-7, 2e-7)]
+        for coarse, fine in zip(errors, errors[1:]):
+            self.assertAlmostEqual(coarse / fine, 2, delta=0.15, msg=errors)
+        for asked in (0.01, 2e-4):
+            result, found = motions("--accuracy", str(asked))
+            self.assertLessEqual(error(found), asked)
+            self.assertLessEqual(result["accuracy"]["estimated"], asked)
+            self.assertRegex(result["report"], r"integrator +leapfrog, order 1 ")
+
     def test_what_is_more_accurate_than_asked_is_not_to_be_made_coarser_for_ten_times_more(self):
         for arguments in (("solve", TENSION, "--set", "springs.kT=0", "--accuracy", "0.1"),
                           ("homogenize", CELL, "--accuracy", "0.9"),

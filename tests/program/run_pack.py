@@ -58,6 +58,10 @@ class Files(PackTest):
         self.assertEqual(result["status"], "failed")
         self.assertIn("not at rest", result["failure"])
         self.assertEqual(len(rows_of(out / "grains.csv")), 60)
+        empty = equidem("pack", SOIL, "--out", self.folder / "empty", *FEW, "--set", "packing.region=[0.05, 5, 0.1, 6]")
+        self.assertEqual(empty.returncode, 1, empty.stderr)
+        self.assertIn("packing.region: no body reaches into the region measured", empty.stderr)
+        self.assertEqual(len(rows_of(self.folder / "empty/grains.csv")), 60)
 
     def test_calibrated_springs_give_a_packing_the_moduli_wanted(self):
         result, out = self.pack(JAMMED, "--set", "packing.grains=90")
@@ -266,7 +270,11 @@ class CommandLine(PackTest):
         self.check_error(equidem("pack", JAMMED, "--set", "packing.method=grow"), 2, "growth")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.solid_fraction=0.5"), 2, "Remove one")
         crowded = ("--set", "packing.solid_fraction=0.95", "--set", "packing.box=none", "--set", "packing.grains=30")
-        self.check_error(equidem("pack", JAMMED, *crowded), 1, "packing.solid_fraction", "jam", "\"auto\"")
+        jammed = equidem("pack", JAMMED, *crowded)
+        self.assertEqual(jammed.returncode, 1, jammed.stderr)
+        for words in ("packing.solid_fraction", "jam before they reach the solid fraction of 0.95 that is asked for", "\"auto\""):
+            self.assertIn(words, jammed.stderr)
+        self.assertRegex(jammed.stdout, r"NOT DONE +the discs jam")
         self.check_error(equidem("pack", JAMMED, "--set", "packing.grains=20", "--set", "packing.region=[0.7, 0, 0.8, 1]"), 2,
                          "packing.region", "out of the periodic box")
         _, out = self.pack(JAMMED, "--set", "packing.grains=20")

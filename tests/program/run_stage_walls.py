@@ -191,6 +191,56 @@ duration = 0.004
         one = self.run_case(self.write(text.format(0.51)))
         self.assertEqual((one["stages"][1]["bonds_made"], "WARNING" in one["report"]), (1, False))
 
+    def test_a_disc_passes_to_a_wall_that_a_stage_puts_next_to_another_as_over_one(self):
+        text = """schema = "equidem/1"
+[grains]
+density = 1800.0
+[[grain]]
+position = [-0.01, 1.998e-3]
+radius = 2.0e-3
+velocity = [0.25, 0.0]
+[collisions]
+law = "linear_dashpot"
+stiffness = 110948.0      # m g/k = 2e-6 m
+restitution = 1.0
+[[wall]]
+name = "first"
+shape = "segment"
+point = [-0.05, 0.0]
+end = [0.0, 0.0]
+[run]
+gravity = [0.0, -9.81]
+integrator = "velocity_verlet"
+[output]
+probe_interval = 2.0e-5
+picture = false
+[[stage]]
+name = "roll"
+duration = 0.02
+[[stage]]
+name = "pass"
+duration = 0.06
+[[stage.rename]]
+wall = "first"
+to = "old"
+[[stage.wall]]
+name = "second"
+shape = "segment"
+point = [GAP, 0.0]
+end = [0.05, 0.0]
+"""
+        for gap in ("3.0e-8", "3.0e-7", "3.0e-6", "-3.0e-6"):
+            with self.subTest(gap=gap):
+                out = self.folder / gap
+                result = self.run_case(self.write(text.replace("GAP", gap)), "--out", out)
+                self.assertNotIn("WARNING", result["report"])
+                columns = table(out / "history.csv")
+                force = sum(numpy.nan_to_num(columns[f"wall_{name}_force_y_N_per_m"]) for name in ("first", "old", "second"))
+                weight = 1800 * numpy.pi * 2e-3**2 * 9.81
+                self.assertLess(abs(force[1:] / weight + 1).max(), 1e-3)
+        wide = self.run_case(self.write(text.replace("GAP", "1.0e-4")))
+        self.assertIn('walls "old" and "second" end 0.0001 m apart', " ".join(wide["report"].split()))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -150,26 +150,25 @@ double covered_area(const GrainPacking& packing, const Region& region) {
   return covered;
 }
 
-/// \throws Error (bad_input) where nothing can be measured
-void check_region(const GrainPacking& packing, const Region& region) {
-  const Vec2 size = packing.box.size, sides = region.high - region.low;
+}  // namespace
+
+void check_region(const PackingBox& box, const Region& region) {
+  const Vec2 size = box.size, sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
     bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
               "Give its lower left corner first");
   }
   const bool inside = region.low.x >= 0 && region.low.y >= 0 && region.high.x <= size.x && region.high.y <= size.y;
-  if (packing.box.periodic() && !inside) {
+  if (box.periodic() && !inside) {
     bad_input("the region measured reaches out of the periodic box",
               fmt::format("the box is {:.6g} m by {:.6g} m, from the origin", size.x, size.y), "Give one within it");
   }
 }
 
-}  // namespace
-
 PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region) {
   PackingMeasures result;
   result.region = region ? *region : measured_region(packing);
-  check_region(packing, result.region);
+  check_region(packing.box, result.region);
   double covered = 0;
   if (packing.box.periodic() && !region) {
     for (const Grain& grain : packing.grains) covered += area_of(grain, packing.clumps);

@@ -57,6 +57,9 @@ struct PackingMeasures {
 /// for that.
 Region measured_region(const GrainPacking& packing);
 
+/// \throws Error (bad_input) on a region without area, or out of a periodic box
+void check_region(const PackingBox& box, const Region& region);
+
 /// \param region none: measured_region
 /// \throws Error (bad_input) on a region without area, without any body, or out of a periodic box
 PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region = {});

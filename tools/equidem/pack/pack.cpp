@@ -74,12 +74,25 @@ auto located(const PackCase& resolved, const char* usual, const Task& task) {
   return casefile::at_key(*resolved.document.find("packing"), "packing", task, usual);
 }
 
+/// In the region of the case; if no body has come into it that is noted in the packing, which stays.
+PackingMeasures measured(const PackCase& resolved, GrainPacking& packing) {
+  try {
+    return measure(packing, resolved.region);
+  } catch (const Error& error) {
+    if (!resolved.region) throw;
+    if (!packing.failure)
+      packing.failure.emplace(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), "region");
+    return measure(packing);
+  }
+}
+
 int run(const CommonOptions& common) {
   prepare(common);
   const auto shared_case = std::make_shared<const PackCase>(read_pack_case(common.case_file, overrides_of(common)));
   const PackCase& resolved = *shared_case;
   check_outputs(common, resolved);
   located(resolved, "method", [&] { check(resolved.packing); });
+  if (resolved.region) located(resolved, "region", [&] { check_region(resolved.packing.box, *resolved.region); });
   if (common.dry_run) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
     deliver(common, "dry_run",
@@ -90,17 +103,17 @@ int run(const CommonOptions& common) {
   StageTimes times;
   Stopwatch watch;
   const auto shared_packing =
-      std::make_shared<const GrainPacking>(located(resolved, "method", [&] { return try_to_pack(resolved.packing); }));
-  const GrainPacking& packing = *shared_packing;
+      std::make_shared<GrainPacking>(located(resolved, "method", [&] { return try_to_pack(resolved.packing); }));
+  GrainPacking& packing = *shared_packing;
   times.add("packing", watch.lap());
   Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
   times.add("network", watch.lap());
-  const PackingMeasures measures = located(resolved, "region", [&] { return measure(packing, resolved.region); });
-  times.add("measures", watch.lap());
-  const RestConfirmation rest = packing.failure ? RestConfirmation{.missing = "the bodies are not at rest"}
-                                                : confirm_rest(packing, resolved.packing.settling);
+  RestConfirmation rest{.missing = packing.failure ? "the bodies are not at rest" : "stopped as asked"};
+  if (!packing.failure) keep_failure(packing, [&] { rest = confirm_rest(packing, resolved.packing.settling); });
   times.add("statics", watch.lap());
+  const PackingMeasures measures = measured(resolved, packing);
+  times.add("measures", watch.lap());
   const bool stopped = packing.failure && packing.failure->kind() == ErrorKind::interrupted;
   deliver(common,
           stopped           ? "interrupted"

@@ -77,7 +77,8 @@ std::vector<Key<PackingTables>> settling_keys() {
       settling(
           "unbalanced", &O::rest, range({.low = 1e-12, .high = 1, .high_open = true}),
           "mean unbalanced force, with the moment over the radius, over mean contact force, at which the bodies rest"),
-      settling("longest", &O::longest, unit("s"), positive, "longest motion, before it is given up"),
+      settling("longest", &O::longest, unit("s"), positive,
+               "longest motion; bodies that are not at rest then are written as they lie, and the exit code is 1"),
       settling("bond_share", &O::bond_share, positive,
                "dashpots of bonded pairs, relative to the largest of an explicit step: C_n = share m/dt, C_s = a "
                "third of that; the pairs creep, and below 1e3 they hardly come to rest")};

@@ -187,7 +187,7 @@ void grow_to_jamming(const PackingOptions& options, Growth& growth) {
       "Allow a larger overlap, or change the seed");
 }
 
-/// Over the largest, rounded so that they have the same digits in all units.
+/// Over the largest, to 1e-9: the digits behind it depend on the unit, and jamming is chaotic.
 std::vector<double> ratios_of(std::vector<double> radii) {
   const double largest = *std::max_element(radii.begin(), radii.end());
   for (double& radius : radii) radius = std::ldexp(std::max(std::round(std::ldexp(radius / largest, 30)), 1.0), -30);
