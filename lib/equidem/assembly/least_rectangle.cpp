@@ -178,12 +178,14 @@ Vec2 chosen_direction(const Discs& discs, std::vector<Candidate> equal) {
   keep_least([](const Candidate& c) { return c.off_middle; });
   // Sides that are straight up to round-off have many tangents of one direction.
   constexpr double same = 1e-9;
+  std::ranges::sort(equal, {}, [](const Candidate& c) { return c.along.y; });
   std::vector<Candidate> distinct;
   for (const Candidate& c : equal) {
-    const auto is_same = [&](const Candidate& other) {
-      return std::min(std::abs(cross(c.along, other.along)), std::abs(dot(c.along, other.along))) < same;
-    };
-    if (std::ranges::none_of(distinct, is_same)) distinct.push_back(c);
+    if (distinct.empty() || cross(distinct.back().along, c.along) > same) {
+      distinct.push_back(c);
+    } else if (std::abs(c.along.y) < std::abs(distinct.back().along.y)) {
+      distinct.back() = c;
+    }
   }
   equal = std::move(distinct);
   const auto count = static_cast<std::int32_t>(discs.radii.size());
