@@ -130,7 +130,7 @@ TEST_CASE("cells_are_those_cut_by_brute_force") {
                                         .radii = radii,
                                         .aspect = aspect,
                                         .periodic = periodic});
-  const oracle::Cells expected = oracle::cells(a, {{0, 0}, extent(a)}, 1);
+  const oracle::Cells expected = oracle::cells(a, Rectangle{{0, 0}, extent(a)}, 1);
 
   REQUIRE(a.contacts.size() == expected.neighbours.size());
   for (std::size_t k = 0; k < a.contacts.size(); ++k) {

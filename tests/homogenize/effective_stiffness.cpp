@@ -346,6 +346,7 @@ TEST_CASE("a_heap_of_logs_has_the_mean_stress_of_its_lines_of_contacts_however_i
   Assembly heap = test::rows_of_discs(7, 7, 1);
   heap = test::placed(heap, {.moved = {}, .unit = 0.15});
   heap.contacts = touching_discs(heap, 1e-9);
+  std::erase_if(heap.contacts, [&](const Contact& c) { return std::abs(heap.branch(c).y) < 0.01; });  // of one row
   for (Contact& c : heap.contacts) c.lever_i = c.lever_j = 0.075;
   constexpr double W = 1.5;
   std::vector<test::Placement> all = placements;
@@ -359,7 +360,6 @@ TEST_CASE("a_heap_of_logs_has_the_mean_stress_of_its_lines_of_contacts_however_i
         std::vector<Support>{{.group = "base", .ux = 0.0, .uy = 0.0, .rotation = {}}},
         {{.group = "logs", .kind = LoadKind::per_disc, .force = placement.turned({0, -W}), .moment = 0}});
     const Tensor2 s = macroscopic_stress(a, found.contact_forces);
-    // Forces of the 21 logs: each line of the two slanted families carries W/sqrt 3 more at each log.
     const Vec2 x = placement.turned({1, 0}), y = placement.turned({0, 1});
     const double xx = placement.unit * dot(x, s * x), yy = placement.unit * dot(y, s * y);
     CAPTURE(placement.name(), xx, yy, a.area());

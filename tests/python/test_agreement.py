@@ -120,7 +120,7 @@ def test_an_assembly_from_arrays_is_the_one_that_its_arrays_came_from():
         contacts = np.concatenate([cell.contacts, cell.shifts], axis=1)
         copy = eq.Assembly(cell.centres, cell.radii, contacts, levers=cell.levers, cell=cell.cell)
         assert np.array_equal(copy.levers, cell.levers) and np.array_equal(copy.shifts, cell.shifts)
-        if cell.cell:  # cells of a free block fill the smallest rectangle that holds its discs
+        if cell.cell:  # a free block from arrays has a region of its own
             assert np.allclose(copy.cell_areas, cell.cell_areas, rtol=1e-12)
         found = eq.stiffness_matrix(copy, (KN, KT)) - eq.stiffness_matrix(cell, (KN, KT))
         assert abs(found).max() == 0

@@ -55,7 +55,8 @@ struct TurnedRectangle : Rectangle {
   Vec2 along = {1, 0};
 
   TurnedRectangle() = default;
-  TurnedRectangle(const Rectangle& corners, Vec2 lower_side = {1, 0}) : Rectangle(corners), along(lower_side) {}
+  TurnedRectangle(const Rectangle& upright) : Rectangle(upright) {}
+  explicit TurnedRectangle(const Rectangle& corners, Vec2 lower_side) : Rectangle(corners), along(lower_side) {}
   /// A vector by its components along the lower side and across it: the same bits where that side is level.
   [[nodiscard]] Vec2 seen(Vec2 v) const { return {dot(along, v), cross(along, v)}; }
   [[nodiscard]] Vec2 size() const { return seen(high - low); }

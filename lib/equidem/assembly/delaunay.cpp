@@ -105,6 +105,12 @@ void take_sides(Assembly& assembly, PowerCells& cells) {
   for (auto& [name, discs] : cells.sides) assembly.groups.emplace(name, std::move(discs));
 }
 
+/// The region stays that of these discs, also where some of them are left out later.
+std::optional<TurnedRectangle> region_to_fill(const Assembly& assembly) {
+  if (assembly.periodic()) return {};
+  return region_of_cells(assembly);
+}
+
 void take_network(Assembly& assembly, PowerCells&& cells) {
   assembly.contacts = std::move(cells.neighbours);
   assembly.facet_lengths = std::move(cells.facet_lengths);
@@ -238,15 +244,17 @@ void triangulate(Assembly& assembly) {
     bad_input(fmt::format("{} cannot be triangulated", counted(assembly.size(), "disc")),
               "a triangulation needs three or more", "Add discs, or list the contacts");
   }
-  if (!assembly.periodic()) assembly.box = region_of_cells(assembly);
-  PowerCells cells = power_cells(assembly);
+  const std::optional<TurnedRectangle> region = region_to_fill(assembly);
+  PowerCells cells = power_cells(assembly, region);
   if (cells.collinear) refuse_collinear(assembly);
+  assembly.box = region;
   take_network(assembly, std::move(cells));
 }
 
 void measure_cells(Assembly& assembly) {
-  if (!assembly.periodic()) assembly.box = region_of_cells(assembly);
-  PowerCells cells = power_cells(assembly);
+  const std::optional<TurnedRectangle> region = region_to_fill(assembly);
+  PowerCells cells = power_cells(assembly, region);
+  assembly.box = region;
   // Name every contact as the triangulation does and look it up: neighbours ascend by i, j and shift.
   const auto key = [](const Contact& c) { return std::tuple(c.i, c.j, c.shift_x, c.shift_y); };
   assembly.facet_lengths.assign(assembly.contacts.size(), 0);

@@ -43,9 +43,10 @@ struct AssemblyFileOptions {
 /// [[N, T], ...] in N/m those that contacts carry at rest, "curvatures": [[kappa_i, kappa_j], ...] in 1/m of their
 /// surfaces; "sections": [[area, polar moment], ...] in m² and m⁴ of bodies that are no discs, each then with the
 /// radius of the disc of equal area; "box": [[x, y], [x, y]], the lower left and the upper right corner of what the
-/// cells of a free assembly fill, else the smallest rectangle that holds all discs; "groups": {"name": [disc, ...]}.
-/// Sides (left, right, bottom, top) and corners of a free assembly are added where the file gives none by that name:
-/// the discs whose cells touch the side of that rectangle. A LAMMPS data file or dump, a text export of YADE and a
+/// cells of a free assembly fill, with the direction of the lower side as a third pair where it is turned, else the
+/// rectangle of least area that holds all discs; "groups": {"name": [disc, ...]}. Cells ("cell_areas",
+/// "facet_lengths"), sides (left, right, bottom, top) and corners are measured where the file gives none: the discs
+/// whose cells reach a side (measured_sides). A LAMMPS data file or dump, a text export of YADE and a
 /// table with the columns x, y and radius are recognised by their first lines: particle_rows.hpp.
 /// \throws Error (bad_input) with file and, where there is one, the entry: unreadable or truncated file, missing or
 ///         unknown key,

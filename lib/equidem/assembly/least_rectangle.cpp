@@ -156,10 +156,43 @@ std::vector<Vec2> flush_directions(const Discs& discs, const Hull& hull) {
 
 /// A rectangle as it is compared with others.
 struct Candidate {
-  Vec2 along;
+  Vec2 along, low, high;  ///< low and high along the direction and across it
   double area = 0;
   double off_middle = 0;  ///< m, of the mean of the centres
+
+  /// Of a place from the nearest side, m.
+  [[nodiscard]] double depth(Vec2 place) const {
+    const Vec2 x = {dot(along, place), cross(along, place)};
+    return std::min({x.x - low.x, x.y - low.y, high.x - x.x, high.y - x.y});
+  }
 };
+
+/// Of rectangles of equal area: those with the mean of the centres nearest to the middle, then those to whose sides the
+/// first disc, the second, ... lie nearest.
+Vec2 chosen_direction(const Discs& discs, std::vector<Candidate> equal) {
+  const double close = 1e-9 * std::sqrt(equal.front().area);
+  const auto keep_least = [&](const auto& value) {
+    const double least = value(std::ranges::min(equal, {}, value));
+    std::erase_if(equal, [&](const Candidate& c) { return value(c) > least + close; });
+  };
+  keep_least([](const Candidate& c) { return c.off_middle; });
+  // Sides that are straight up to round-off have many tangents of one direction.
+  constexpr double same = 1e-9;
+  std::ranges::sort(equal, {}, [](const Candidate& c) { return c.along.y; });
+  std::vector<Candidate> distinct;
+  for (const Candidate& c : equal) {
+    if (distinct.empty() || cross(distinct.back().along, c.along) > same) {
+      distinct.push_back(c);
+    } else if (std::abs(c.along.y) < std::abs(distinct.back().along.y)) {
+      distinct.back() = c;
+    }
+  }
+  equal = std::move(distinct);
+  const auto count = static_cast<std::int32_t>(discs.radii.size());
+  for (std::int32_t disc = 0; disc < count && equal.size() > 1; ++disc)
+    keep_least([&](const Candidate& c) { return c.depth(discs.centre(disc)); });
+  return equal.front().along;
+}
 
 }  // namespace
 
@@ -191,17 +224,14 @@ TurnedRectangle least_rectangle(std::span<const Vec2> centres, std::span<const d
     const Vec2 high = {reach_of_all(discs, hull, along), reach_of_all(discs, hull, across)};
     const Vec2 low = {-reach_of_all(discs, hull, -along), -reach_of_all(discs, hull, -across)};
     const Vec2 size = high - low, middle = 0.5 * (low + high);
-    candidates.push_back({along, size.x * size.y, norm(Vec2{dot(along, mean), dot(across, mean)} - middle)});
+    candidates.push_back({along, low, high, size.x * size.y, norm(Vec2{dot(along, mean), dot(across, mean)} - middle)});
     least = std::min(least, candidates.back().area);
     shorter = std::min({shorter, size.x, size.y});
   }
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * (1 + coordinates / shorter);
   std::erase_if(candidates, [&](const Candidate& c) { return c.area > (1 + rounding) * least; });
-  const auto off_middle = [](const Candidate& c) { return c.off_middle; };
-  const double nearest = std::ranges::min(candidates, {}, off_middle).off_middle + 1e-9 * std::sqrt(least);
-  std::erase_if(candidates, [&](const Candidate& c) { return c.off_middle > nearest; });
-  const Vec2 along = std::ranges::min(candidates, {}, [](const Candidate& c) { return std::abs(c.along.y); }).along;
-  if (along == Vec2{1, 0}) return {upright_rectangle(centres, radii)};
+  const Vec2 along = chosen_direction(discs, std::move(candidates));
+  if (along == Vec2{1, 0}) return upright_rectangle(centres, radii);
   Vec2 low = {unlimited, unlimited}, high = -low;
   const Vec2 across = perpendicular(along);
   for (std::size_t disc = 0; disc < centres.size(); ++disc) {
@@ -211,7 +241,7 @@ TurnedRectangle least_rectangle(std::span<const Vec2> centres, std::span<const d
     high = {std::max(high.x, place.x + r), std::max(high.y, place.y + r)};
   }
   const auto corner = [&](Vec2 at) { return centres[0] + at.x * along + at.y * across; };
-  return {{corner(low), corner(high)}, along};
+  return TurnedRectangle({corner(low), corner(high)}, along);
 }
 
 }  // namespace equidem
