@@ -53,7 +53,75 @@ class Stability(ProgramTest):
                 self.assertGreater(float(row["shear_modulus_Pa"]), 0)
 
 
+class Memory(ProgramTest):
+    BLOCK = ("--set", "assembly.columns=150", "--set", "assembly.rows=150")
+    GRID = ("--set", "assembly.columns=80", "--set", "assembly.rows=80")
+    CASES = [("solve", TENSION, (*BLOCK, "--set", "solver.method=multifrontal")),
+             ("solve", TENSION, (*BLOCK, "--set", "solver.method=cholmod")),
+             ("solve", TENSION, (*BLOCK, "--set", "solver.method=umfpack")),
+             ("solve", TENSION, (*BLOCK, "--set", "solver.method=multigrid")),
+             ("solve", TENSION, (*BLOCK, "--set", "springs.kT=-0.1e9")),
+             ("homogenize", CELL, ("--set", "assembly.discs=20000", "--set", "homogenize.bounds=\"off\"")),
+             ("homogenize", CASES / "viscoelastic_cell.toml",
+              ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
+             ("stability", TENSION, GRID),
+             ("run", CASES / "run_pulse.toml",
+              ("--set", "assembly.columns=150", "--set", "assembly.rows=150", "--set", "run.duration=1e-5"))]
+
+    def peak(self, *arguments):
+        """Of the process, bytes, and its standard output."""
+        with open(self.folder / "said", "w+", encoding="utf-8") as said:
+            process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=said, stderr=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 0, arguments)
+            said.seek(0)
+            return 1024 * usage.ru_maxrss, said.read()
+
+    def test_a_dry_run_tells_the_memory_that_the_work_takes(self):
+        bare, _ = self.peak("solve", CASES / "truss.toml")
+        slack = 6e6  # buffers of libraries
+        for verb, case, options in self.CASES:
+            with self.subTest(verb=verb, case=case.name, options=options):
+                told = parse_json(self.peak(verb, case, *options, "--dry-run", "--json", "-")[1])["peak_bytes"]
+                taken, _ = self.peak(verb, case, *options)
+                shown = f"told {told / 1e6:.0f} MB, taken {taken / 1e6:.0f} MB, {bare / 1e6:.0f} MB of it for any case"
+                self.assertLess(told - bare, 1.3 * (taken - bare) + slack, shown)
+                self.assertLess(taken - bare, 1.3 * (told - bare) + slack, shown)
+
+    def test_twenty_five_million_discs_are_not_refused_for_a_factor_that_multigrid_does_not_make(self):
+        """The first refusal names what any network of that size takes: 0.6 kB a disc by multigrid, not the factor."""
+        def least(method):
+            done = equidem("solve", TENSION, "--set", "assembly.columns=40000", "--set", "assembly.rows=40000", "--set",
+                           f"solver.method={method}")
+            self.check_error(done, 1, "solving a network of 1 600 000 000 discs needs at least")
+            number, unit = done.stderr.split("at least ")[1].split()[:2]
+            return float(number) * {"GB": 1e9, "TB": 1e12}[unit]
+
+        needs = {method: least(method) for method in ("multigrid", "auto", "multifrontal")}
+        self.assertEqual(needs["multigrid"], needs["auto"])
+        self.assertLess(needs["multigrid"], 0.5 * needs["multifrontal"])
+
+
 class Magnitudes(ProgramTest):
+    def test_loads_and_springs_of_any_size_give_the_same_moduli(self):
+        def solved(*options):
+            done = self.check_done(equidem("solve", TENSION, *options, "--json", "-"))
+            result = parse_json(done.stdout)
+            return result["fitted_poisson_ratio"]
+
+        usual = solved()
+        for stress in ("1e-160", "1e-250", "1e160"):
+            self.assertAlmostEqual(solved("--set", f"test.stress={stress}") / usual, 1, delta=1e-12)
+        for unit in ("1e-160", "1e-100", "1e60", "1e160"):
+            for method in ("multifrontal", "multigrid"):
+                found = solved("--set", f"springs.kN={unit}", "--set", f"springs.kT={float(unit) / 2!r}", "--set",
+                               f"solver.method={method}")
+                beside = solved("--set", "springs.kN=1.0", "--set", "springs.kT=0.5", "--set", f"solver.method={method}")
+                self.assertAlmostEqual(found / beside, 1, delta=1e-10, msg=f"{unit} {method}")
+        for radius in ("1e-50", "1e50"):
+            self.assertAlmostEqual(solved("--set", f"assembly.radius={radius}") / usual, 1, delta=1e-10)
+
     def test_sizes_whose_squares_leave_the_range_of_a_double_are_refused(self):
         for radius in ("1e-160", "1e-153", "1e150"):
             done = equidem("homogenize", CELL, "--set", "assembly.discs=100", "--set", f"assembly.radius={radius}")

@@ -204,7 +204,12 @@ TEST_CASE("zero_energy_modes_and_the_work_on_them_do_not_depend_on_rotation_unit
         for (double& u : motion) u = unit * 1e-6 * (random.uniform() - 0.5);
         const Eigen::VectorXd by_contact = exact.springs.cwiseProduct(exact.rows * motion);
         const Eigen::VectorXd load = exact.rows.transpose() * by_contact;
-        const Equilibrium found = solver.solve(exact.forces(a, load));
+        Equilibrium found;
+        const Refusal lost = refusal_of([&] { found = solver.solve(exact.forces(a, load)); });
+        const bool far_apart = kT > 0 && kT < 1e-8 * k.kN;  // an answer, or the reason that there is none
+        CAPTURE(lost.message);
+        REQUIRE((lost.message.empty() || (far_apart && lost.says("digits of a double"))));
+        if (!lost.message.empty()) continue;
         REQUIRE(found.mechanisms == modes);
         double wrong = 0;
         const Eigen::Index each = exact.rows.rows() / std::ssize(a.contacts);

@@ -26,7 +26,7 @@ struct HomogenizeOptions {
 
 /// A motion without energy that leaves the effective stiffness unchanged.
 struct ZeroEnergyMode {
-  std::string kind;         ///< "gear", "mechanism"
+  std::string kind;         ///< "gear", "mode"
   std::string description;  ///< which discs, which motion
 };
 

@@ -45,7 +45,7 @@ std::vector<ZeroEnergyMode> zero_energy_modes(const Assembly& assembly, const Co
               remedy_of_mechanisms(assembly, springs, solver.unknowns().per_disc == 3));
   }
   for (std::int64_t k = 0; k < std::min<std::int64_t>(mechanisms, most_described); ++k) {
-    ZeroEnergyMode mode{"mechanism", description(k)};
+    ZeroEnergyMode mode{"mode", description(k)};
     const auto same = [&](const ZeroEnergyMode& other) { return other.description == mode.description; };
     if (std::ranges::none_of(result, same)) result.push_back(std::move(mode));
   }

@@ -53,7 +53,7 @@ void add_rigidity(Results& out, const EffectiveStiffness& r) {
   if (motions > 0) {
     lines.push_back(fmt::format(
         "{} without energy ({}, {}){} held: no mean strain drives {}, so the stiffness is the same",
-        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.local_mechanisms, "mechanism"),
+        counted(motions, "motion"), counted(r.gear_modes, "gear mode"), counted(r.local_mechanisms, "other mode"),
         motions > std::ssize(described) ? fmt::format(", {} of them named above,", described.size()) : "",
         motions == 1 ? "it" : "them"));
   }
