@@ -223,8 +223,7 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       // columns
       {"x,y,radus\n0,0,1\n", {"line 1", "column 'radius' is missing", "'radus' may be meant"}},
       {"x y\n0 0\n", {"line 1", "column 'radius' is missing", "x, y"}},
-      {"x_ft,y_ft,radius_ft\n0,0,1\n",
-       {"line 1", "column 'x' is missing", "'x_ft' ends in no unit", "'x_mm'"}},
+      {"x_ft,y_ft,radius_ft\n0,0,1\n", {"line 1", "column 'x' is missing", "'x_ft' ends in no unit", "'x_mm'"}},
       {"x [in],y [in],radius [in]\n0,0,1\n", {"line 1", "'x [in]' has the unit 'in'", "mm"}},
       {"x,y,r,d\n0,0,1,3\n", {"line 2", "the radius is 1 and the diameter 3"}},
       {"0 0 1 2 3\n", {"line 1", "5 columns without names"}},
@@ -232,7 +231,9 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       {"#format jointedPM\n1 2 3\n", {"line 1", "'jointedPM' is no format", "x_y_z_r"}},
       {replaced(dump, "y z radius", "y z mass"), {"no column 'radius'", "dump 1 all custom"}, {.frame = 0}},
       {replaced(data, "# sphere", "# atomic"), {"style atomic", "no diameter"}, as_cell},
-      {"t\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\nAtoms\n\n1 1 2 1 0 0 0\n", {"line 5", "does not name its atom style"}, as_cell},
+      {"t\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\nAtoms\n\n1 1 2 1 0 0 0\n",
+       {"line 5", "does not name its atom style"},
+       as_cell},
       // versions
       {replaced(dump, "ITEM: ATOMS", "ITEM: PARTICLES"), {"line 11", "'ITEM: PARTICLES id"}, none},
       {replaced(data, "Velocities", "Velocites"), {"Velocites", "Did you mean 'Velocities'?"}, as_cell},

@@ -339,8 +339,10 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
   const std::string head = "schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\n[springs]\nkN = 1e8\n";
   for (const Typed& typed : all) {
     for (const std::string& sentence :
-         {refusal(head + "kT = " + typed.text + "  # soft\n", {}), refusal(head + "kT = 0\n", {std::string("springs.kT=") + typed.text}),
-          refusal("schema = \"equidem/1\"\n\n\n\n\nsprings = {kN = 1e8, kT = " + std::string(typed.text) + "}\n", {})}) {
+         {refusal(head + "kT = " + typed.text + "  # soft\n", {}),
+          refusal(head + "kT = 0\n", {std::string("springs.kT=") + typed.text}),
+          refusal("schema = \"equidem/1\"\n\n\n\n\nsprings = {kN = 1e8, kT = " + std::string(typed.text) + "}\n",
+                  {})}) {
       CAPTURE(typed.text, sentence);
       CHECK((sentence.starts_with("case.toml:6: ") || sentence.starts_with("--set springs.kT=")));
       for (const std::string& word : typed.words) CHECK(sentence.find(word) != std::string::npos);

@@ -113,8 +113,7 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
 
 TEST_CASE("strengths_by_the_length_of_a_bond_are_of_bodies_that_are_there") {
   const std::string path = "equidem_test_far_bonds.csv";
-  const std::string strength =
-      "[strength]\ntension = 4.0e6\nshear = 8.0e6\nbond_length = \"smaller_diameter\"\n";
+  const std::string strength = "[strength]\ntension = 4.0e6\nshear = 8.0e6\nbond_length = \"smaller_diameter\"\n";
   for (const char* far : {"3", "7", "65535", "2147483647", "2147483648", "4294967295", "9223372036854775807"}) {
     CAPTURE(far);
     std::ofstream(path) << "i,j\n0,1\n" << far << ",1\n";

@@ -44,7 +44,8 @@ Read read(const std::string& text, const TableFile::Names& needed = x_and_r) {
 std::vector<std::vector<double>> numbers(const std::string& text) {
   std::vector<std::vector<double>> rows;
   TableFile file(text, "a.csv", x_and_r);
-  const std::size_t x = file.names().empty() ? 0 : file.need({"x"}, ""), r = file.names().empty() ? 1 : file.need({"r"}, "");
+  const std::size_t x = file.names().empty() ? 0 : file.need({"x"}, ""),
+                    r = file.names().empty() ? 1 : file.need({"r"}, "");
   const double unit = file.factor(x, Quantity::length).value_or(1);
   while (file.next()) rows.push_back({unit * file.number(x), unit * file.number(r)});
   return rows;
@@ -83,7 +84,8 @@ TEST_CASE("one_table_is_the_same_in_all_its_spellings") {
       "\tx_mm\tr_mm\n0\t0\t2\n1\t4.5\t2\n", ";x_mm;r_mm\n0;0;2\n1;4,5;2\n", "X_mm,R_mm,\n0,2,\n4.5,2,\n",
       "# settled 3 May\n# x_mm, r_mm\n0, 2\n# in between\n4.5, 2\n", "\xef\xbb\xbfx_mm,r_mm\n0,2\n4.5,2\n",
       "x_mm,label,r_mm\n0,\"gneis, \"\"dark\"\"\",2\n4.5,\"two\nlines\",2\n", "x_mm;r_mm\n0;2\n4,5E+00;2\n",
-      "x_um,r_um\n0,2000\n4500,2000\n", "x (\xc2\xb5m),r (\xce\xbcm)\n0,2e3\n4500,2e3\n", "x_m  r_m\n 0 \t 2e-3\n4.5e-3 2e-3\n");
+      "x_um,r_um\n0,2000\n4500,2000\n", "x (\xc2\xb5m),r (\xce\xbcm)\n0,2e3\n4500,2e3\n",
+      "x_m  r_m\n 0 \t 2e-3\n4.5e-3 2e-3\n");
   CAPTURE(text);
   const auto found = numbers(text);
   REQUIRE(found.size() == 2);
@@ -97,7 +99,8 @@ TEST_CASE("a_comment_names_the_columns_only_where_the_needed_names_are_in_it") {
   CHECK(read("# x and the r of all\n0 2\n").names.empty());
   CHECK(read("# x radius\n# by hand\n0 2\n").names == std::vector<std::string>{"x", "radius"});
   CHECK(read("x,r\n# r x\n0,2\n").names == std::vector<std::string>{"x", "r"});
-  CHECK(read("vx_m_per_s,short_half_axis_mm,lever_i,x [in]\n").units == std::vector<std::string>{"m_per_s", "mm", "", "in"});
+  CHECK(read("vx_m_per_s,short_half_axis_mm,lever_i,x [in]\n").units ==
+        std::vector<std::string>{"m_per_s", "mm", "", "in"});
 }
 
 TEST_CASE("what_a_table_cannot_mean_is_a_sentence_with_its_line") {
@@ -113,7 +116,8 @@ TEST_CASE("what_a_table_cannot_mean_is_a_sentence_with_its_line") {
   refused("x;r\n0,5;1.5\n", {"a.csv:2", "'1.5' has a decimal point", "line 2 has a decimal comma"});
   refused("x;r\n1.234,5;1\n", {"a.csv:2", "'1.234,5' is no x", "a point and a comma", "between thousands"});
   refused("x,r\n1,\"2\n3,4\n", {"a.csv:2", "quote", "Close it"});
-  refused("x [\xb5m],r [\xb5m]\n1,2\n", {"a.csv:1", "not UTF-8", "byte 4", "0xb5", "Latin-1", "Save the file as UTF-8"});
+  refused("x [\xb5m],r [\xb5m]\n1,2\n",
+          {"a.csv:1", "not UTF-8", "byte 4", "0xb5", "Latin-1", "Save the file as UTF-8"});
   refused("x,r,name\n1,2,a\n1,2,\xe4\n", {"a.csv:3", "byte 5", "0xe4"});
   refused(std::string("\xff\xfex\0,\0r\0\n\0", 10), {"a.csv:1", "UTF-16", "0xff"});
   refused(std::string("x\0,\0r\0\n\0", 8), {"a.csv:1", "UTF-16"});
@@ -123,7 +127,8 @@ TEST_CASE("what_a_table_cannot_mean_is_a_sentence_with_its_line") {
   refused("x,r\n1,2,3\n", {"a.csv:2", "3 cells", "line 1 names 2 columns"});
   refused("x,r\n1,inf\n", {"a.csv:2", "'inf' is no r"});
   refused("x,r\n1,1e999\n", {"a.csv:2", "'1e999' is no r"});
-  CHECK(refusal_of_numbers("# Stra\xdf" "e\nx,r\n1,2\n") == "(accepted)");  // a comment may be anything
+  CHECK(refusal_of_numbers("# Stra\xdf"
+                           "e\nx,r\n1,2\n") == "(accepted)");  // a comment may be anything
 }
 
 TEST_CASE("tables_of_many_columns_are_read_in_linear_time") {
@@ -163,14 +168,17 @@ TEST_CASE("lengths_are_read_with_their_unit") {
 }
 
 TEST_CASE("messages_repeat_bytes_that_are_no_utf8_as_numbers") {
-  const Error error(ErrorKind::bad_input, "'\xb5m' is no unit", "of '\xe2\x82'", "Write it in UTF-8 (\xc2\xb5)", "gr\xfc" "n.csv");
+  const Error error(ErrorKind::bad_input, "'\xb5m' is no unit", "of '\xe2\x82'", "Write it in UTF-8 (\xc2\xb5)",
+                    "gr\xfc"
+                    "n.csv");
   const std::string sentence = error.what();
   CAPTURE(sentence);
   CHECK_FALSE(place_of_wrong_byte(sentence));
   CHECK_FALSE(place_of_wrong_byte(error.problem() + error.why() + error.where()));
   CHECK(sentence.find("\\xb5m") != std::string::npos);
   CHECK(sentence.find("\xc2\xb5") != std::string::npos);
-  for (const char* wrong : {"\x80", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80", "\xf4\x90\x80\x80", "\xf5", "a\xe2\x82"}) {
+  for (const char* wrong : {"\x80", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80", "\xf4\x90\x80\x80",
+                            "\xf5", "a\xe2\x82"}) {
     CAPTURE(wrong);
     CHECK(place_of_wrong_byte(wrong));
   }

@@ -51,7 +51,8 @@ const std::string case_of_springs =
 const std::string strengths =
     "schema = \"equidem-strength/1\"\n[strength]\ntension = 4.0e6\nshear = 8.0e6\nbond_length = \"smaller_diameter\"\n";
 const std::string case_of_bonds =
-    "schema = \"equidem/1\"\nstrength = \"strength.toml\"\n[grains]\ndensity = 2000.0\npath = \"three.csv\"\n[bonds]\npath = "
+    "schema = \"equidem/1\"\nstrength = \"strength.toml\"\n[grains]\ndensity = 2000.0\npath = "
+    "\"three.csv\"\n[bonds]\npath = "
     "\"bonds.csv\"\nnormal_spring = 1.0e6\n[collisions]\nlaw = \"linear_dashpot\"\nrestitution = 0.5\nstiffness = "
     "1.0e6\n[run]\nduration = 1.0e-3\n";
 const std::string three_grains = "x,y,radius\n0,0,0.5\n1,0,0.5\n2,0,0.5\n";
@@ -60,7 +61,8 @@ const std::string case_of_frequencies =
     "[springs]\nkN = 1.0e9\nkT = 0.5e9\n[viscoelastic]\nnormal = \"table\"\npath = \"measured.csv\"\n";
 const std::string frequencies =
     "frequency,kN_storage,kN_loss,kT_storage,kT_loss\n1,1.0e9,1.0e7,0.50e9,0.5e7\n10,1.1e9,4.0e7,0.55e9,2.0e7\n";
-const std::string spreadsheet = "\"x [mm]\";\"y [mm]\";label;\"d [mm]\"\r\n0,5;0,5;\"a;b\";1\r\n1,5;0,5;\"c\"\"d\";1\r\n";
+const std::string spreadsheet =
+    "\"x [mm]\";\"y [mm]\";label;\"d [mm]\"\r\n0,5;0,5;\"a;b\";1\r\n1,5;0,5;\"c\"\"d\";1\r\n";
 const std::string study =
     "schema = \"equidem/1\"\n[study]\nverb = \"solve\"\ncase = \"block.toml\"\nmeasure = \"poisson_ratio\"\n"
     "truth = \"known\"\nvalue = 0.125\n[[vary]]\nkey = \"assembly.rows, assembly.columns\"\nvalues = [9, 17, 33]\n"
