@@ -160,6 +160,15 @@ std::vector<ColumnName> column_names(const std::vector<std::string>& words) {
   return names;
 }
 
+constexpr const char* decimal_commas =
+    "commas separate the cells: numbers with a decimal comma would be two cells each";
+
+bool commas_may_be_decimal(char separator, const std::vector<std::string_view>& cells) {
+  return separator == ',' && std::ranges::all_of(cells, [](std::string_view cell) {
+           return !cell.empty() && without_plus(cell).find_first_not_of("-0123456789eE+") == std::string_view::npos;
+         });
+}
+
 /// Whether each needed column is there.
 bool holds(const TableFile::Names& needed, const std::vector<ColumnName>& names) {
   std::unordered_set<std::string_view> given;
@@ -457,22 +466,20 @@ bool TableFile::next() {
   if (count > wanted && std::all_of(cells().begin() + static_cast<std::ptrdiff_t>(wanted), cells().end(),
                                     [](std::string_view cell) { return cell.empty(); }))
     return true;
-  refuse_decimal_commas();
-  fail(fmt::format("the row has {}", counted(static_cast<long long>(count), "cell")),
-       names_.empty()
-           ? fmt::format("the first row has {}", wanted)
-           : fmt::format("line {} names {}", line_of_names_, counted(static_cast<long long>(wanted), "column")),
+  const std::string expected = names_.empty() ? fmt::format("the first row has {}", wanted)
+                                              : fmt::format("line {} names {}", line_of_names_,
+                                                            counted(static_cast<long long>(wanted), "column"));
+  if (count > wanted && commas_may_be_decimal(separator_, cells()))
+    fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")), expected + ", and " + decimal_commas,
+         "Correct it, or export it with a decimal point, or with semicolons or tabs between the cells");
+  fail(fmt::format("the row has {}", counted(static_cast<long long>(count), "cell")), expected,
        "Correct it, or get the whole file if it was cut off");
 }
 
 void TableFile::refuse_decimal_commas() const {
-  const auto is_whole = [](std::string_view cell) {
-    return !cell.empty() && without_plus(cell).find_first_not_of("-0123456789eE+") == std::string_view::npos;
-  };
-  if (separator_ != ',' || !std::ranges::all_of(cells(), is_whole)) return;
-  fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")),
-       "its numbers seem to have a decimal comma, and commas separate the cells",
-       "Export it with a decimal point, or with semicolons or tabs between the cells");
+  if (!commas_may_be_decimal(separator_, cells())) return;
+  fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")), decimal_commas,
+       "Correct it, or export it with a decimal point, or with semicolons or tabs between the cells");
 }
 
 double TableFile::number(std::size_t column, std::string_view name) const {
