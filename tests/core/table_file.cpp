@@ -46,7 +46,7 @@ std::vector<std::vector<double>> numbers(const std::string& text) {
   TableFile file(text, "a.csv", x_and_r);
   const std::size_t x = file.names().empty() ? 0 : file.need({"x"}, ""),
                     r = file.names().empty() ? 1 : file.need({"r"}, "");
-  const double unit = file.factor(x, Quantity::length).value_or(1);
+  const double unit = file.factor(x, Dimension::length).value_or(1);
   while (file.next()) rows.push_back({unit * file.number(x), unit * file.number(r)});
   return rows;
 }
