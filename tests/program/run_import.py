@@ -81,13 +81,14 @@ class Import(ProgramTest):
         self.check_error(equidem("homogenize", self.folder / "case.toml"), 2, "case.toml:2")
 
     def test_a_disc_that_is_there_twice_is_refused_by_its_ids_and_a_deep_overlap_is_warned_of(self):
-        rows = "id,x_mm,y_mm,r_mm\n1,0,0,5\n2,10,0,5\n3,0,10,5\n4,10,10,5\n"
-        for fifth in ("5,0,0,5", "5,3e-9,0,5", "5,19.999999997,20,5"):
+        rows = "id,x_mm,y_mm,r_mm\n1,0,0,5\n2,10,0,5\n3,5,8.660254037844386,5\n4,15,8.660254037844386,5\n"
+        period = "period = [0.02, 0.017320508075688773]"
+        for fifth in ("5,0,0,5", "5,3e-9,0,5", "5,19.999999997,0,5"):
             (self.folder / "grid.csv").write_text(rows + fifth + "\n")
-            done = equidem("homogenize", self.case("grid.csv", "period = [0.02, 0.02]"))
+            done = equidem("homogenize", self.case("grid.csv", period))
             self.check_error(done, 2, "grid.csv: line 6", "particles 1 and 5 lie in one place", "line 2")
         (self.folder / "grid.csv").write_text(rows + "5,1.5,0,5\n")
-        case = self.case("grid.csv", "period = [0.02, 0.02]")
+        case = self.case("grid.csv", period)
         found = parse_json(self.check_done(equidem("homogenize", case, "--json", "-")).stdout)
         self.assertEqual(found["overlapping_discs"], [0, 4])
         said = self.check_done(equidem("homogenize", case, "--out", self.folder / "out")).stdout
