@@ -223,15 +223,17 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       // columns
       {"x,y,radus\n0,0,1\n", {"line 1", "column 'radius' is missing", "'radus' may be meant"}},
       {"x y\n0 0\n", {"line 1", "column 'radius' is missing", "x, y"}},
-      {"x_ft,y_ft,radius_ft\n0,0,1\n",
-       {"line 1", "column 'x' is missing", "'x_ft' ends in no unit of length", "'x_mm'"}},
-      {"x [in],y [in],radius [in]\n0,0,1\n", {"line 1", "'x [in]' ends in no unit", "mm"}},
+      {"x_ft,y_ft,radius_ft\n0,0,1\n", {"line 1", "column 'x' is missing", "'x_ft' ends in no unit", "'x_mm'"}},
+      {"x [in],y [in],radius [in]\n0,0,1\n", {"line 1", "'x [in]' has the unit 'in'", "mm"}},
+      {"x,y,r,d\n0,0,1,3\n", {"line 2", "the radius is 1 and the diameter 3"}},
       {"0 0 1 2 3\n", {"line 1", "5 columns without names"}},
       {"x,y,x,r\n0,0,1,1\n", {"line 1", "'x' is there twice"}},
       {"#format jointedPM\n1 2 3\n", {"line 1", "'jointedPM' is no format", "x_y_z_r"}},
       {replaced(dump, "y z radius", "y z mass"), {"no column 'radius'", "dump 1 all custom"}, {.frame = 0}},
       {replaced(data, "# sphere", "# atomic"), {"style atomic", "no diameter"}, as_cell},
-      {replaced(data, " # sphere", ""), {"line 10", "does not name its atom style"}, as_cell},
+      {"t\n1 atoms\n0 1 xlo xhi\n0 1 ylo yhi\nAtoms\n\n1 1 2 1 0 0 0\n",
+       {"line 5", "does not name its atom style"},
+       as_cell},
       // versions
       {replaced(dump, "ITEM: ATOMS", "ITEM: PARTICLES"), {"line 11", "'ITEM: PARTICLES id"}, none},
       {replaced(data, "Velocities", "Velocites"), {"Velocites", "Did you mean 'Velocities'?"}, as_cell},
@@ -247,7 +249,10 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       {"x y r\n0 0 1\n2 0 nan\n", {"line 3", "'nan' is no radius"}},
       {"x y r\n0 0 1\n2 0 -1\n", {"line 3", "radius is -1"}},
       {"id x y r\n4 0 0 1\n4 2 0 1\n", {"line 3", "particle 4 is there twice", "line 2"}},
-      {"x y z r\n0 0 0 1\n2 0 1.5 1\n", {"line 3", "three-dimensional", "0 to 1.5"}},
+      {"x y z r\n0 0 0 1\n2 0.5 1.5 1\n", {"line 3", "three-dimensional", "0 to 1.5"}},
+      {"x y z r\n0 0 0 1\n2 0 1.5 1\n", {"line 3", "plane x-z", "0 to 1.5", "Exchange the columns y and z"}},
+      {"id x y r\n7 0 0 1\n8 2 0 1\n9 3e-9 0 1\n", {"line 4", "particles 7 and 9 lie in one place", "line 2"}},
+      {"id x y r\n7 0 0 1\n8 2 0 1\n9 0 0 1\n", {"line 4", "particles 7 and 9 lie in one place", "line 2"}},
       // boxes
       {replaced(dump, "BOX BOUNDS pp pp pp", "BOX BOUNDS pp ff pp"),
        {"periodic along x only", "periodic_box = false"},
@@ -276,4 +281,26 @@ TEST_CASE("a_box_with_flags_for_one_axis_can_be_taken_as_free") {
   CHECK(a.centres[0] == Vec2{2, 1});
   CHECK(a.centres[1] == Vec2{4, 1});
   CHECK(a.contacts.size() == 1);
+}
+
+TEST_CASE("atoms_without_a_style_and_those_of_liggghts_are_spheres") {
+  const std::string data = read_file(packing("packing.data"));
+  const AssemblyFileOptions as_cell{.unit_of_length = "m", .periodic_box = true};
+  const Assembly named = read_packing(data, as_cell);
+  for (const char* style : {"", " # granular"}) {
+    CAPTURE(style);
+    const Assembly other = read_packing(replaced(data, " # sphere", style), as_cell);
+    CHECK(other.centres == named.centres);
+    CHECK(other.radii == named.radii);
+  }
+}
+
+TEST_CASE("discs_that_lie_deep_in_one_another_are_read_and_those_in_one_place_are_not") {
+  const AssemblyFileOptions mm{.unit_of_length = "mm", .period = Vec2{0.02, 0.02}};
+  const std::string grid = "id,x_mm,y_mm,r_mm\n1,0,0,5\n2,10,0,5\n3,0,10,5\n4,10,10,5\n";
+  for (const char* twice : {"5,0,0,5\n", "5,3e-9,0,5\n", "5,20,0,5\n", "5,19.999999997,0,5\n"}) {
+    CAPTURE(twice);
+    check_words(refused_packing(grid + twice, mm), {"a.txt", "line 6", "particles 1 and 5 lie in one place", "line 2"});
+  }
+  CHECK(read_packing(grid + "5,0.01,0,5\n", mm).size() == 5);
 }

@@ -313,3 +313,41 @@ TEST_CASE("groups_that_do_not_fit_the_assembly_are_refused_with_their_line") {
     CHECK(said.find(wrong.word) != std::string::npos);
   }
 }
+
+TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
+  struct Typed {
+    const char* text;
+    std::vector<std::string> words;
+  };
+  const std::vector<Typed> all = {{".7e8", {"a digit stands before the point", "Write 0.7e8"}},
+                                  {"-.5", {"a digit stands before the point", "Write -0.5"}},
+                                  {"+.5", {"a digit stands before the point", "Write 0.5"}},
+                                  {"7.e8", {"a digit stands behind the point", "Write 7.0e8"}},
+                                  {"7.", {"a digit stands behind the point", "Write 7.0"}},
+                                  {"1,5e8", {"a decimal point, not a comma", "Write 1.5e8"}},
+                                  {"0,25", {"a decimal point, not a comma", "Write 0.25"}},
+                                  {"1e8 Pa", {"without its unit, here Pa", "Write 1e8"}},
+                                  {"1e8 N/m", {"without its unit, here N/m", "Write 1e8"}}};
+  const auto refusal = [](const std::string& file, const std::vector<std::string>& set) -> std::string {
+    try {
+      parse_case(file, "case.toml", ".", set);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "(accepted)";
+  };
+  const std::string head = "schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\n[springs]\nkN = 1e8\n";
+  for (const Typed& typed : all) {
+    for (const std::string& sentence :
+         {refusal(head + "kT = " + typed.text + "  # soft\n", {}),
+          refusal(head + "kT = 0\n", {std::string("springs.kT=") + typed.text}),
+          refusal("schema = \"equidem/1\"\n\n\n\n\nsprings = {kN = 1e8, kT = " + std::string(typed.text) + "}\n",
+                  {})}) {
+      CAPTURE(typed.text, sentence);
+      CHECK((sentence.starts_with("case.toml:6: ") || sentence.starts_with("--set springs.kT=")));
+      for (const std::string& word : typed.words) CHECK(sentence.find(word) != std::string::npos);
+    }
+  }
+  CHECK(refusal(head + "kT = 1 2\n", {}).find("unit") == std::string::npos);
+  CHECK(refusal(head + "ks = 1e8\n", {}).find("kT") != std::string::npos);
+}

@@ -99,7 +99,7 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
        {std::pair{"i,j,normal_dashpot\n0,1,-1\n", ":2: '-1' is no normal_dashpot"},
         std::pair{"i,j,normal_dashpot\n0,1,inf\n", ":2: 'inf' is no normal_dashpot"},
         std::pair{"i,j,normal_dashpot\n0,1,0\n", ":2: the bond of grains 0 and 1 has neither dashpot"},
-        std::pair{"a,b\n0,1\n", ":1: the first two columns are not i and j"},
+        std::pair{"a,b\n0,1\n", ":1: there are no columns i and j"},
         std::pair{"i,j\n0,one\n", ":2: 'one' is no number of a grain"},
         std::pair{"i,j\n0,7\n", ":2: a bond ties grain 7 (there are 3 grains"},
         std::pair{"i,j\n0,1\n1,0\n", ":3: grains 0 and 1 are bonded twice"},
@@ -108,6 +108,20 @@ TEST_CASE("a_file_of_bonds_ties_grains_by_number") {
     CAPTURE(text);
     CHECK_THROWS_WITH(parsed_bonds(table), Catch::Contains(said));
   }
+  std::remove(path.c_str());
+}
+
+TEST_CASE("strengths_by_the_length_of_a_bond_are_of_bodies_that_are_there") {
+  const std::string path = "equidem_test_far_bonds.csv";
+  const std::string strength = "[strength]\ntension = 4.0e6\nshear = 8.0e6\nbond_length = \"smaller_diameter\"\n";
+  for (const char* far : {"3", "7", "65535", "2147483647", "2147483648", "4294967295", "9223372036854775807"}) {
+    CAPTURE(far);
+    std::ofstream(path) << "i,j\n0,1\n" << far << ",1\n";
+    const std::string table = "[bonds]\nnormal_spring = 1.0\npath = \"" + path + "\"\n" + strength;
+    CHECK_THROWS_WITH(parsed_bonds(table), Catch::Contains(std::string(":3: a bond ties grain ") + far));
+  }
+  CHECK_THROWS_WITH(parsed_bonds("[bonds]\nnormal_spring = 1.0\n[[bond]]\ngrains = [0, 100000000]\n" + strength),
+                    Catch::Contains("a bond ties grain 100000000 (there are 3 grains"));
   std::remove(path.c_str());
 }
 

@@ -153,11 +153,11 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
            Bad{"", "a.toml:", "has no points"},
            Bad{"time,value\n", "a.toml:", "has no points"},
            Bad{"t,v\n0,0\n", "shaking.csv:1: ", "the first row may be time,value"},
-           Bad{"0,0\ntime,value\n", "shaking.csv:2: ", "not a time and a value"},
-           Bad{"0,0\n0.2\n", "shaking.csv:2: ", "not a time and a value"},
-           Bad{"0,0\n0.2,1,2\n", "shaking.csv:2: ", "not a time and a value"},
-           Bad{"0,0\n0.2,nan\n", "shaking.csv:2: ", "not a time and a value"},
-           Bad{"0,0\n\n0.2;1\n", "shaking.csv:3: ", "not a time and a value"},
+           Bad{"0,0\ntime,value\n", "shaking.csv:2: ", "'time' is no time"},
+           Bad{"0,0\n0.2\n", "shaking.csv:2: ", "the row has 1 cell"},
+           Bad{"0,0\n0.2,1,2\n", "shaking.csv:2: ", "the row has 3 cells"},
+           Bad{"0,0\n0.2,nan\n", "shaking.csv:2: ", "'nan' is no"},
+           Bad{"0,0\n\n0.2;1\n", "shaking.csv:3: ", "the row has 1 cell"},
            Bad{"0,0\n0.2,1\n0.2,2\n", "shaking.csv:3: ", "0.2 s comes after 0.2 s"},
        }) {
     const std::string sentence = sentence_of(bad.content);

@@ -48,6 +48,21 @@ const std::string springs_of_material =
 const std::string case_of_springs =
     "schema = \"equidem/1\"\nsprings = \"springs.toml\"\n[assembly]\nkind = \"hexagonal\"\ncolumns = 3\nrows = 3\n"
     "radius = 0.005\n[test]\nkind = \"uniaxial_tension\"\nstress = 1.0e6\n";
+const std::string strengths =
+    "schema = \"equidem-strength/1\"\n[strength]\ntension = 4.0e6\nshear = 8.0e6\nbond_length = \"smaller_diameter\"\n";
+const std::string case_of_bonds =
+    "schema = \"equidem/1\"\nstrength = \"strength.toml\"\n[grains]\ndensity = 2000.0\npath = "
+    "\"three.csv\"\n[bonds]\npath = "
+    "\"bonds.csv\"\nnormal_spring = 1.0e6\n[collisions]\nlaw = \"linear_dashpot\"\nrestitution = 0.5\nstiffness = "
+    "1.0e6\n[run]\nduration = 1.0e-3\n";
+const std::string three_grains = "x,y,radius\n0,0,0.5\n1,0,0.5\n2,0,0.5\n";
+const std::string case_of_frequencies =
+    "schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\ncolumns = 2\nrows = 2\nradius = 0.01\nperiodic = true\n"
+    "[springs]\nkN = 1.0e9\nkT = 0.5e9\n[viscoelastic]\nnormal = \"table\"\npath = \"measured.csv\"\n";
+const std::string frequencies =
+    "frequency,kN_storage,kN_loss,kT_storage,kT_loss\n1,1.0e9,1.0e7,0.50e9,0.5e7\n10,1.1e9,4.0e7,0.55e9,2.0e7\n";
+const std::string spreadsheet =
+    "\"x [mm]\";\"y [mm]\";label;\"d [mm]\"\r\n0,5;0,5;\"a;b\";1\r\n1,5;0,5;\"c\"\"d\";1\r\n";
 const std::string study =
     "schema = \"equidem/1\"\n[study]\nverb = \"solve\"\ncase = \"block.toml\"\nmeasure = \"poisson_ratio\"\n"
     "truth = \"known\"\nvalue = 0.125\n[[vary]]\nkey = \"assembly.rows, assembly.columns\"\nvalues = [9, 17, 33]\n"
@@ -238,6 +253,30 @@ std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch
                      }),
       reader_of_file("bonds (CSV)", scratch / "bonds.csv", {bonds},
                      [](const fs::path& file) { return read_bonds(file, {}); }),
+      {"bonds with strengths (CSV)",
+       {"i,j\n0,1\n2147483647,1\n", "i,j,tension,shear\n0,1,5,6\n1,2,,\n"},
+       [=](const std::string& input) {
+         put(scratch / "bonds.csv", input);
+         put(scratch / "three.csv", three_grains);
+         put(scratch / "strength.toml", strengths);
+         static_cast<void>(parse_grain_case(case_of_bonds, "a.toml", scratch));
+       }},
+      {"strengths (TOML)",
+       {strengths},
+       [=](const std::string& input) {
+         put(scratch / "bonds.csv", "i,j\n0,1\n1,2\n");
+         put(scratch / "three.csv", three_grains);
+         put(scratch / "strength.toml", input);
+         static_cast<void>(parse_grain_case(case_of_bonds, "a.toml", scratch));
+       }},
+      {"springs over frequency (CSV)",
+       {frequencies},
+       [=](const std::string& input) {
+         put(scratch / "measured.csv", input);
+         static_cast<void>(parse_case(case_of_frequencies, "a.toml", scratch));
+       }},
+      reader_of_file("tables of spreadsheets (CSV)", scratch / "spreadsheet.csv", {spreadsheet},
+                     [](const fs::path& file) { return read_assembly(file, {.gap_tolerance = 1e-6}); }),
       reader_of_file("schedules (CSV)", scratch / "schedule.csv", {schedule},
                      [](const fs::path& file) {
                        Schedule table{.kind = Schedule::Kind::table};

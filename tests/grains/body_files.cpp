@@ -49,6 +49,15 @@ TEST_CASE("rows_of_a_file_become_bodies_without_a_case_file") {
   REQUIRE(shapes.clumps().size() == 1);
   const WrittenFile plain("plain.csv", "x,y,radius\n0,0,1\n");
   CHECK(read_grains(plain.path, 1000, shapes).densities == std::vector<double>{1000});
+  const WrittenFile quoted("quoted.csv",
+                           "\"x_mm\";\"y_mm\";\"radius_mm\";\"discs_mm\"\n0;0,5;2;\n9;0;;\"0 0 2; 3 0 2\"\n");
+  const GrainRows in_mm = read_grains(quoted.path, 1000, shapes);
+  CHECK(in_mm.grains[0].position == Vec2{0, 0.5e-3});
+  CHECK(in_mm.grains[0].radius == 2e-3);
+  CHECK(in_mm.grains[1].radius == Approx(3.5e-3));
+  const WrittenFile mixed("mixed.csv", "x_mm,y_mm,radius\n0,0,1\n");
+  CHECK_THROWS_WITH(read_grains(mixed.path, 1000, shapes),
+                    Catch::Contains("mixed.csv:1") && Catch::Contains("'radius'"));
   CHECK_THROWS_WITH(read_grains(plain.path, {}, shapes), Catch::Contains("plain.csv:2: the density"));
 }
 
@@ -62,4 +71,11 @@ TEST_CASE("rows_of_a_file_become_bonds_without_a_case_file") {
   CHECK(rows.bonds[1].rolling_dashpot == 4);
   CHECK((rows.bonds[1].i == 1 && rows.bonds[1].j == 2));
   CHECK(rows.places[1] == file.path.string() + ":3");
+  for (const char* wrong :
+       {"i,j,tensoin\n0,1,5\n", "i,j,tension_MPa\n0,1,5\n", "i,j\n-1,0\n", "i,j\n0,1.5\n", "i,j\n0,nan\n",
+        "i,j\n0,99999999999999999999\n", "i,j\n0\n", "i,j,shear\n0,1,-3\n", "i,j,shear\n0,1,inf\n"}) {
+    CAPTURE(wrong);
+    const WrittenFile bad("bad.csv", wrong);
+    CHECK_THROWS_AS(read_bonds(bad.path, common), Error);
+  }
 }

@@ -226,6 +226,10 @@ TEST_CASE("rows_of_a_file_become_the_points_of_a_table") {
   Schedule table{.kind = Schedule::Kind::table};
   read_points(file, table, "value");
   CHECK(table.at(1) == 3);
+  write_file(file, "time_ms;value_mm\n0;1000\n2000;5e3\n", true);
+  Schedule in_mm{.kind = Schedule::Kind::table};
+  read_points(file, in_mm, "value");
+  CHECK(in_mm.at(1) == Approx(3).epsilon(1e-15));
   Schedule other{.kind = Schedule::Kind::table};
   CHECK_THROWS_WITH(read_points(file, other, "acceleration"), Catch::Contains("equidem_points.csv:1: "));
   std::filesystem::remove(file);

@@ -90,8 +90,21 @@ TEST_CASE("sieve_curves_are_read_and_what_is_none_is_refused") {
   REQUIRE(curve.size() == 3);
   CHECK(curve[1].diameter == 0.004);
   CHECK(curve[1].passing == 0.25);
-  const char* wrong = GENERATE("0.002,0\n0.001,1\n", "0.002,0\n0.004,0.5\n", "0.002,0.1\n0.004,1\n", "0.002,0\n",
-                               "0.002,0\nx,1\n", "0.002\n0.004,1\n", "", "0.002,0\n0.003,0.9\n0.004,0.8\n0.005,1\n");
+  for (const char* same :
+       {"diameter_mm,passing\n2,0\n4,0.25\n16,1\n", "sieve [mm];passing [%]\n2;0\n4,0;25\n16;100\n",
+        "passing_percent diameter_um\n0 2000\n25 4000\n100 16000\n", "0,002 0\n0,004 0,25\n0,016 1\n"}) {
+    CAPTURE(same);
+    const auto found = read(same);
+    REQUIRE(found.size() == 3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(found[k].diameter == Approx(curve[k].diameter).epsilon(1e-15));
+      CHECK(found[k].passing == curve[k].passing);
+    }
+  }
+  const char* wrong =
+      GENERATE("radius_mm,passing\n2,0\n4,1\n", "diameter_s,passing\n2,0\n4,1\n", "diameter_mm,retained\n2,0\n4,1\n",
+               "0.002,0\n0.001,1\n", "0.002,0\n0.004,0.5\n", "0.002,0.1\n0.004,1\n", "0.002,0\n", "0.002,0\nx,1\n",
+               "0.002\n0.004,1\n", "", "0.002,0\n0.003,0.9\n0.004,0.8\n0.005,1\n");
   CAPTURE(wrong);
   CHECK_THROWS_AS(read(wrong), Error);
   std::filesystem::remove(path);

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The built program, for the tests that drive it: run_VERB.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import json
+import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,8 +18,17 @@ CASES = SOURCE / "data" / "cases"
 TENSION = str(CASES / "abe1996_fig6.toml")
 
 
-def equidem(*arguments, cwd=None):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=cwd, timeout=120)
+def equidem(*arguments, cwd=None, env=None):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, encoding="utf-8", cwd=cwd, env=env,
+                          timeout=120)
+
+
+def german(folder):
+    """Environment in which a comma is the decimal sign; None where the locale cannot be made."""
+    localedef = shutil.which("localedef")
+    made = localedef and subprocess.run([localedef, "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")],
+                                        capture_output=True, check=False).returncode == 0
+    return {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8"} if made else None
 
 
 def refuse_constant(name):

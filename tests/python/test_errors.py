@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Wrong input is answered with one sentence: the problem, why it is one, what to do."""
 
+import json
+import os
 import pathlib
+import re
+import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -160,3 +166,46 @@ def test_objects_of_the_compiled_part_are_made_there_alone(name):
         made()
     with pytest.raises(TypeError):
         made.__new__(made)
+
+
+def test_bytes_of_other_encodings_are_refused_and_decoded(tmp_path):
+    path = tmp_path / "grains.csv"
+    path.write_bytes(b"x [\xb5m],y [\xb5m],d [\xb5m]\r\n0,0,300\r\n300,0,300\r\n150,259.8076,300\r\n")
+    with pytest.raises(eq.BadInput, match="not UTF-8.*0xb5"):
+        eq.read(path, gap_tolerance=1e-6)
+    path.write_text("x [µm],y [µm],d [µm]\n0,0,300\n300,0,300\n150,259.8076,300\n", encoding="utf-8")
+    assert len(eq.read(path, gap_tolerance=1e-6).contacts) == 3
+
+
+GERMAN = """
+import json
+import locale
+import sys
+
+locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
+assert locale.localeconv()["decimal_point"] == ","
+import equidem as eq
+
+cell, ensemble = (eq.Case(path) for path in sys.argv[1:])
+table = eq.sweep(cell, {"ratio": [0.2, 0.6]})
+scale = eq.sweep(cell, {}, key="springs.kT", **{"from": 0.5, "to": 0.75}, steps=2)
+ensemble.homogenize(accuracy=0.2)
+print(json.dumps([list(map(float, column)) for column in
+                  (table["kT"], table["poisson_ratio.plane_strain"], scale["kT"])]))
+"""
+
+
+def test_numbers_do_not_depend_on_the_locale(tmp_path):
+    localedef = shutil.which("localedef")
+    made = localedef and subprocess.run([localedef, "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")],
+                                        capture_output=True, check=False).returncode == 0
+    if not made:
+        pytest.skip("the locale de_DE cannot be made")
+    head, springs = 'schema = "equidem/1"\n[assembly]\nperiodic = true\n', "[springs]\nkN = 2.0e8\nkT = 0.5e8\n"
+    cell, ensemble = tmp_path / "cell.toml", tmp_path / "ensemble.toml"
+    cell.write_text(head + 'kind = "hexagonal"\ncolumns = 2\nrows = 2\nradius = 0.01\n' + springs)
+    ensemble.write_text(head + 'kind = "delaunay"\nradius = 0.002\n' + springs + "[ensemble]\ndiscs = [30, 60]\nsamples = 3\n")
+    done = subprocess.run([sys.executable, "-c", GERMAN, str(cell), str(ensemble)], capture_output=True, text=True,
+                          encoding="utf-8", env={**os.environ, "LOCPATH": str(tmp_path)})
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [pytest.approx([0.4e8, 1.2e8]), pytest.approx([0.2, 0.1]), pytest.approx([0.5, 0.75])]

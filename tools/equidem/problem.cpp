@@ -73,7 +73,7 @@ void add_found_contacts(Results& results, const Assembly& assembly) {
 
 /// Warns of discs of a file that lie almost on each other, as rows that are there twice do.
 void add_deep_overlap(Results& results, const Assembly& assembly) {
-  constexpr double deep = 0.5;  // of the smaller radius
+  constexpr double deep = 0.5, noticeable = 1e-6;  // of the smaller radius
   if (!assembly.sections.empty() || !assembly.gap_tolerance || assembly.kind != "file") return;
   const auto overlap_of = [&](const Contact& contact) {
     const double ri = assembly.radii[contact.i], rj = assembly.radii[contact.j];
@@ -82,7 +82,7 @@ void add_deep_overlap(Results& results, const Assembly& assembly) {
   const auto deepest = std::ranges::max_element(assembly.contacts, {}, overlap_of);
   if (deepest == assembly.contacts.end()) return;
   const double overlap = overlap_of(*deepest);
-  if (!(overlap > 0)) return;
+  if (!(overlap > noticeable)) return;
   results.line("").note(fmt::format("overlap at most {:.3g} of the smaller radius", overlap));
   if (overlap <= deep) return;
   const auto count = std::ranges::count_if(assembly.contacts, [&](const Contact& c) { return overlap_of(c) > deep; });

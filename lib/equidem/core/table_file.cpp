@@ -19,29 +19,29 @@ constexpr std::string_view separators = ",;\t ";
 
 struct NamedUnit {
   std::string_view name;
-  Quantity quantity;
+  Dimension quantity;
   double factor;
 };
 // Of two micro signs, that of Latin-1 and the Greek letter, each is in use.
-constexpr NamedUnit units[] = {{"m", Quantity::length, 1},          {"dm", Quantity::length, 0.1},
-                               {"cm", Quantity::length, 0.01},      {"mm", Quantity::length, 1e-3},
-                               {"um", Quantity::length, 1e-6},      {"\u00b5m", Quantity::length, 1e-6},
-                               {"\u03bcm", Quantity::length, 1e-6}, {"nm", Quantity::length, 1e-9},
-                               {"km", Quantity::length, 1e3},       {"s", Quantity::time, 1},
-                               {"ms", Quantity::time, 1e-3},        {"us", Quantity::time, 1e-6},
-                               {"\u00b5s", Quantity::time, 1e-6},   {"\u03bcs", Quantity::time, 1e-6},
-                               {"min", Quantity::time, 60},         {"Hz", Quantity::frequency, 1},
-                               {"kHz", Quantity::frequency, 1e3},   {"MHz", Quantity::frequency, 1e6},
-                               {"%", Quantity::share, 0.01},        {"percent", Quantity::share, 0.01},
-                               {"-", Quantity::share, 1},           {"1", Quantity::share, 1},
-                               {"rad", Quantity::angle, 1},         {"m_per_s", Quantity::speed, 1},
-                               {"m/s", Quantity::speed, 1},         {"mm_per_s", Quantity::speed, 1e-3},
-                               {"mm/s", Quantity::speed, 1e-3},     {"rad_per_s", Quantity::spin, 1},
-                               {"rad/s", Quantity::spin, 1},        {"kg_per_m3", Quantity::density, 1},
-                               {"kg/m3", Quantity::density, 1},     {"kg/m\u00b3", Quantity::density, 1},
-                               {"kg", Quantity::mass, 1},           {"kg_per_m", Quantity::mass, 1},
-                               {"Pa", Quantity::stress, 1},         {"kPa", Quantity::stress, 1e3},
-                               {"MPa", Quantity::stress, 1e6},      {"GPa", Quantity::stress, 1e9}};
+constexpr NamedUnit units[] = {{"m", Dimension::length, 1},          {"dm", Dimension::length, 0.1},
+                               {"cm", Dimension::length, 0.01},      {"mm", Dimension::length, 1e-3},
+                               {"um", Dimension::length, 1e-6},      {"\u00b5m", Dimension::length, 1e-6},
+                               {"\u03bcm", Dimension::length, 1e-6}, {"nm", Dimension::length, 1e-9},
+                               {"km", Dimension::length, 1e3},       {"s", Dimension::time, 1},
+                               {"ms", Dimension::time, 1e-3},        {"us", Dimension::time, 1e-6},
+                               {"\u00b5s", Dimension::time, 1e-6},   {"\u03bcs", Dimension::time, 1e-6},
+                               {"min", Dimension::time, 60},         {"Hz", Dimension::frequency, 1},
+                               {"kHz", Dimension::frequency, 1e3},   {"MHz", Dimension::frequency, 1e6},
+                               {"%", Dimension::share, 0.01},        {"percent", Dimension::share, 0.01},
+                               {"-", Dimension::share, 1},           {"1", Dimension::share, 1},
+                               {"rad", Dimension::angle, 1},         {"m_per_s", Dimension::speed, 1},
+                               {"m/s", Dimension::speed, 1},         {"mm_per_s", Dimension::speed, 1e-3},
+                               {"mm/s", Dimension::speed, 1e-3},     {"rad_per_s", Dimension::spin, 1},
+                               {"rad/s", Dimension::spin, 1},        {"kg_per_m3", Dimension::density, 1},
+                               {"kg/m3", Dimension::density, 1},     {"kg/m\u00b3", Dimension::density, 1},
+                               {"kg", Dimension::mass, 1},           {"kg_per_m", Dimension::mass, 1},
+                               {"Pa", Dimension::stress, 1},         {"kPa", Dimension::stress, 1e3},
+                               {"MPa", Dimension::stress, 1e6},      {"GPa", Dimension::stress, 1e9}};
 
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text.front() == '+' && text[1] != '-' ? text.substr(1) : text;
@@ -160,6 +160,15 @@ std::vector<ColumnName> column_names(const std::vector<std::string>& words) {
   return names;
 }
 
+constexpr const char* decimal_commas =
+    "commas separate the cells: numbers with a decimal comma would be two cells each";
+
+bool commas_may_be_decimal(char separator, const std::vector<std::string_view>& cells) {
+  return separator == ',' && std::ranges::all_of(cells, [](std::string_view cell) {
+           return !cell.empty() && without_plus(cell).find_first_not_of("-0123456789eE+") == std::string_view::npos;
+         });
+}
+
 /// Whether each needed column is there.
 bool holds(const TableFile::Names& needed, const std::vector<ColumnName>& names) {
   std::unordered_set<std::string_view> given;
@@ -171,13 +180,13 @@ bool holds(const TableFile::Names& needed, const std::vector<ColumnName>& names)
 
 }  // namespace
 
-std::optional<double> unit_factor(std::string_view unit, std::optional<Quantity> quantity) {
+std::optional<double> unit_factor(std::string_view unit, std::optional<Dimension> quantity) {
   for (const NamedUnit& known : units)
     if (unit == known.name && (!quantity || *quantity == known.quantity)) return known.factor;
   return {};
 }
 
-std::string units_of(Quantity quantity) {
+std::string units_of(Dimension quantity) {
   std::vector<std::string> names;
   for (const NamedUnit& known : units)
     if (known.quantity == quantity && static_cast<unsigned char>(known.name.front()) < 0x80)
@@ -190,7 +199,7 @@ std::optional<double> length_unit(std::string_view text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789.+-eE"), text.size());
   const std::string_view number = trimmed(text.substr(0, end));
   const auto factor = number.empty() ? std::optional(1.0) : number_from<double>(number);
-  const auto metres = unit_factor(trimmed(text.substr(end)), Quantity::length);
+  const auto metres = unit_factor(trimmed(text.substr(end)), Dimension::length);
   if (!factor || !is_positive(*factor) || !metres) return {};
   return *factor * *metres;
 }
@@ -434,7 +443,7 @@ std::size_t TableFile::need(const std::vector<std::string>& names, const std::st
                                 : fmt::format("Add it; the columns are {}", joined(given)));
 }
 
-std::optional<double> TableFile::factor(std::size_t column, std::optional<Quantity> quantity) const {
+std::optional<double> TableFile::factor(std::size_t column, std::optional<Dimension> quantity) const {
   if (column >= names_.size() || names_[column].unit.empty()) return {};
   const ColumnName& name = names_[column];
   if (const auto factor = unit_factor(name.unit, quantity)) return factor;
@@ -457,22 +466,20 @@ bool TableFile::next() {
   if (count > wanted && std::all_of(cells().begin() + static_cast<std::ptrdiff_t>(wanted), cells().end(),
                                     [](std::string_view cell) { return cell.empty(); }))
     return true;
-  refuse_decimal_commas();
-  fail(fmt::format("the row has {}", counted(static_cast<long long>(count), "cell")),
-       names_.empty()
-           ? fmt::format("the first row has {}", wanted)
-           : fmt::format("line {} names {}", line_of_names_, counted(static_cast<long long>(wanted), "column")),
+  const std::string expected = names_.empty() ? fmt::format("the first row has {}", wanted)
+                                              : fmt::format("line {} names {}", line_of_names_,
+                                                            counted(static_cast<long long>(wanted), "column"));
+  if (count > wanted && commas_may_be_decimal(separator_, cells()))
+    fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")), expected + ", and " + decimal_commas,
+         "Correct it, or export it with a decimal point, or with semicolons or tabs between the cells");
+  fail(fmt::format("the row has {}", counted(static_cast<long long>(count), "cell")), expected,
        "Correct it, or get the whole file if it was cut off");
 }
 
 void TableFile::refuse_decimal_commas() const {
-  const auto is_whole = [](std::string_view cell) {
-    return !cell.empty() && without_plus(cell).find_first_not_of("-0123456789eE+") == std::string_view::npos;
-  };
-  if (separator_ != ',' || !std::ranges::all_of(cells(), is_whole)) return;
-  fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")),
-       "its numbers seem to have a decimal comma, and commas separate the cells",
-       "Export it with a decimal point, or with semicolons or tabs between the cells");
+  if (!commas_may_be_decimal(separator_, cells())) return;
+  fail(fmt::format("the row has {}", counted(std::ssize(cells()), "cell")), decimal_commas,
+       "Correct it, or export it with a decimal point, or with semicolons or tabs between the cells");
 }
 
 double TableFile::number(std::size_t column, std::string_view name) const {

@@ -26,13 +26,13 @@ std::optional<Number> number_from(std::string_view text) {
 }
 
 /// What a unit measures.
-enum class Quantity { length, time, frequency, share, angle, speed, spin, density, mass, stress };
+enum class Dimension { length, time, frequency, share, angle, speed, spin, density, mass, stress };
 
 /// Value of a unit in SI: 1e-3 of "mm", 0.01 of "%"; none where it is no unit of the quantity, or of any.
-std::optional<double> unit_factor(std::string_view unit, std::optional<Quantity> quantity = {});
+std::optional<double> unit_factor(std::string_view unit, std::optional<Dimension> quantity = {});
 
 /// "m, dm, cm, mm, um, nm, km": the units of a quantity, for messages.
-std::string units_of(Quantity quantity);
+std::string units_of(Dimension quantity);
 
 /// Metres of a unit of length, or of a length such as "2.5 mm"; none where it is no length.
 std::optional<double> length_unit(std::string_view text);
@@ -105,7 +105,7 @@ class TableFile {
   [[nodiscard]] std::size_t need(const std::vector<std::string>& names, const std::string& why) const;
   /// What numbers of a column are multiplied by to be in SI; none where its name has no unit.
   /// \throws Error (bad_input) where it is no unit of the quantity
-  [[nodiscard]] std::optional<double> factor(std::size_t column, std::optional<Quantity> quantity) const;
+  [[nodiscard]] std::optional<double> factor(std::size_t column, std::optional<Dimension> quantity) const;
 
   /// Whether there is another row, which the functions below are about.
   /// \throws Error (bad_input) where it has not as many cells as the first

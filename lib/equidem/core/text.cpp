@@ -94,13 +94,12 @@ std::vector<std::string_view> words_of(std::string_view line) {
 std::optional<std::size_t> place_of_wrong_byte(std::string_view text) {
   for (std::size_t k = 0; k < text.size();) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U; };
+    if (static_cast<unsigned char>(text[k]) < 0x80) {
+      ++k;
+      continue;
+    }
     const unsigned first = byte(k), second = byte(k + 1);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xC2 ? 0
-                               : first < 0xE0 ? 2
-                               : first < 0xF0 ? 3
-                               : first < 0xF5 ? 4
-                                              : 0;
+    const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
     bool good = length > 0;
     for (std::size_t more = 1; more < length; ++more) good = good && (byte(k + more) & 0xC0U) == 0x80U;
     // Overlong forms, halves of pairs of UTF-16, and what lies above U+10FFFF.

@@ -185,7 +185,7 @@ void read_points(const std::filesystem::path& path, Schedule& table, std::string
     first = file.need(of_time, why);
     second = file.need(of_value, why);
   }
-  const double seconds = file.factor(first, Quantity::time).value_or(1), unit = file.factor(second, {}).value_or(1);
+  const double seconds = file.factor(first, Dimension::time).value_or(1), unit = file.factor(second, {}).value_or(1);
   while (file.next()) {
     if (file.names().empty() && file.width() != 2)
       file.fail("this row is not a time and a value", "two numbers with a comma are needed",

@@ -146,8 +146,8 @@ std::vector<Sieve> read_sieve_curve(const std::filesystem::path& path) {
     diameter = file.need(diameters, why);
     passing = file.need(shares, why);
   }
-  const double metres = file.factor(diameter, Quantity::length).value_or(1);
-  const double share = file.factor(passing, Quantity::share).value_or(1);
+  const double metres = file.factor(diameter, Dimension::length).value_or(1);
+  const double share = file.factor(passing, Dimension::share).value_or(1);
   std::vector<Sieve> sieves;
   while (file.next()) {
     if (file.names().empty() && file.width() != 2) {

@@ -66,9 +66,9 @@ ContactColumns contact_columns(const TableFile& table, bool local_dump) {
 std::optional<double> unit_of_contact_lengths(const TableFile& table, const ContactColumns& columns) {
   const auto& [shifts, levers, normals, offsets] = columns.optional;
   if (!levers[0]) return {};
-  const auto unit = table.factor(*levers[0], Quantity::length);
+  const auto unit = table.factor(*levers[0], Dimension::length);
   for (const OptionalColumn place : {levers[1], offsets[0], offsets[1]}) {
-    if (place && table.factor(*place, Quantity::length) != unit)
+    if (place && table.factor(*place, Dimension::length) != unit)
       table.fail_at_names("levers and offsets are in different units", "they have one unit", "Convert one of them");
   }
   return unit;

@@ -76,9 +76,9 @@ ParticleColumns particle_columns(const TableFile& table) {
 /// The unit that the names of all lengths carry; none where none does.
 std::optional<double> unit_of_columns(const TableFile& table, const ParticleColumns& columns) {
   const std::vector<std::size_t> lengths = columns.lengths();
-  const auto unit = table.factor(columns.x, Quantity::length);
+  const auto unit = table.factor(columns.x, Dimension::length);
   for (const std::size_t column : lengths) {
-    if (table.factor(column, Quantity::length) != unit)
+    if (table.factor(column, Dimension::length) != unit)
       table.fail_at_names(fmt::format("the columns '{}' and '{}' are in different units", table.names()[columns.x].text,
                                       table.names()[column].text),
                           "places, sizes and periods have one unit", "Convert one of them");

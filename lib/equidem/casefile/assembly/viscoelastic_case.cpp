@@ -26,7 +26,7 @@ std::vector<ViscoelasticCase::Row> read_spring_table(const std::filesystem::path
   std::array<double, columns> units{};
   for (std::size_t c = 0; c < columns; ++c) {
     places[c] = file.names().empty() ? c : file.need(names[c], fmt::format("the columns are {}", table_header));
-    units[c] = file.factor(places[c], c == 0 ? Quantity::frequency : Quantity::stress).value_or(1);
+    units[c] = file.factor(places[c], c == 0 ? Dimension::frequency : Dimension::stress).value_or(1);
   }
   std::vector<ViscoelasticCase::Row> rows;
   while (file.next()) {

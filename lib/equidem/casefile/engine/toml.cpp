@@ -113,6 +113,7 @@ std::optional<NumberAdvice> advice_on_line(std::string_view line) {
     if (const auto advice = number_advice(trimmed(value))) return advice;
     const std::size_t end = value.find_first_of("}=");
     value = value.substr(0, end);
+    if (const auto advice = number_advice(trimmed(value))) return advice;
     for (const std::string_view part : parts_of(value, ',')) {
       std::string_view item = part;
       while (!item.empty() && (item.front() == '[' || item.front() == ' ')) item.remove_prefix(1);

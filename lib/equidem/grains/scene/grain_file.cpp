@@ -20,9 +20,9 @@ namespace {
 enum GrainColumn { x, y, radius, short_half_axis, vx, vy, spin, angle, density, discs, group, columns };
 constexpr std::array<const char*, columns> column_names = {"x",    "y",     "radius",  "short_half_axis", "vx",   "vy",
                                                            "spin", "angle", "density", "discs",           "group"};
-constexpr std::array<std::optional<Quantity>, columns> quantities = {
-    Quantity::length, Quantity::length, Quantity::length,  Quantity::length, Quantity::speed, Quantity::speed,
-    Quantity::spin,   Quantity::angle,  Quantity::density, Quantity::length, std::nullopt};
+constexpr std::array<std::optional<Dimension>, columns> quantities = {
+    Dimension::length, Dimension::length, Dimension::length,  Dimension::length, Dimension::speed, Dimension::speed,
+    Dimension::spin,   Dimension::angle,  Dimension::density, Dimension::length, std::nullopt};
 /// Columns that a run also writes, ignored by this reader.
 constexpr std::array ignored = {"grain", "number", "mass"};
 
@@ -120,7 +120,7 @@ class GrainFile {
 
   /// Lengths without a unit are in m; beside one in mm they may not be meant so.
   void check_units_of_lengths() const {
-    const auto is_length = [&](std::size_t c) { return at_[c] && quantities[c] == Quantity::length; };
+    const auto is_length = [&](std::size_t c) { return at_[c] && quantities[c] == Dimension::length; };
     for (std::size_t c = 0; c < columns; ++c) {
       if (!is_length(c) || units_[c] == 1) continue;
       for (std::size_t other = 0; other < columns; ++other) {
@@ -172,7 +172,7 @@ class GrainFile {
     for (std::size_t k = 0; k < period.size(); ++k) {
       if (!period_at_[k]) continue;
       const double wanted = k == 0 ? cell_->x : cell_->y;
-      const double value = file_.factor(*period_at_[k], Quantity::length).value_or(1) * file_.number(*period_at_[k]);
+      const double value = file_.factor(*period_at_[k], Dimension::length).value_or(1) * file_.number(*period_at_[k]);
       if (std::abs(value - wanted) <= tolerance * wanted) continue;
       file_.fail(fmt::format("these bodies were packed in a cell with {} = {} m", k == 0 ? "width" : "height", value),
                  fmt::format("[cell] has {} m", wanted), "Give [cell] that size, or delete the columns of the period");
