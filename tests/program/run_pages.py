@@ -29,8 +29,13 @@ class Pages(ProgramTest):
 
     def test_the_first_table_names_the_cheapest_sufficient_setting(self):
         result = {"settings": [setting("a", 1.0, 0.005), setting("b", 2.0, 5e-5), setting("c", 3.0, 1e-5), setting("d", 9.0)]}
-        rows = accuracy.cheapest_ways("integrators", result)
+        run = self.run_of()
+        rows = accuracy.cheapest_ways(run, "integrators", result)
         self.assertEqual([(row[1], row[2], row[4]) for row in rows], [("1e-2", "a", "1 s"), ("1e-4", "b", "2 s")])
+        self.assertEqual(rows[0][5], "`equidem study integrators --accuracy 1e-2`")
+        run.options = argparse.Namespace(quick=False, discs="1e6")
+        self.assertEqual(accuracy.cheapest_ways(run, "solvers", result)[0][5],
+                         "`equidem study solvers --discs 1e6 --accuracy 1e-2`")
 
     def test_an_alternative_is_compared_with_the_scene_before_the_one_that_it_replaces(self):
         names = ("plain", "+ x", "+ y", "or z, without y", "+ w")

@@ -61,7 +61,7 @@ def worst(row, kind="assured_errors"):
     return max(errors) if errors else None
 
 
-def cheapest_ways(name, result):
+def cheapest_ways(run, name, result):
     """Rows of the first table: of each problem the cheapest setting for each accuracy; one that serves for several, once."""
     rows = []
     for problem in dict.fromkeys(row["problem"] for row in result["settings"]):
@@ -76,7 +76,7 @@ def cheapest_ways(name, result):
             row = by_label[way]
             task = ": ".join(part for part in (STUDIES[name][1], problem) if part)
             rows.append([task, asked, way, f"{worst(row, 'errors'):.1e}", seconds(row["seconds"]["median"]),
-                         f"`equidem study {name} --accuracy {asked}`"])
+                         f"`{' '.join(['equidem study', name, *run.size_of(name), '--accuracy', asked])}`"])
     return rows
 
 
@@ -276,7 +276,7 @@ def section(run, name, result):
 
 def page(run):
     results = {name: run.study(name) for name in STUDIES}
-    rows = [row for name, result in results.items() if STUDIES[name][1] for row in cheapest_ways(name, result)]
+    rows = [row for name, result in results.items() if STUDIES[name][1] for row in cheapest_ways(run, name, result)]
     verbs = verb_rows(run)
     summary = table(["task", "accuracy", "cheapest way", "error", "time", "command"], [*rows, cell_row(run), *verbs])
     text = TEXT.format(command=run.command(), machine=machine(results["integrators"]), summary=summary, verbs=len(verbs),

@@ -31,11 +31,14 @@ class Run:
             raise Failure(f"{' '.join(str(part) for part in command)}: {done.stderr.strip() or done.stdout[-500:]}")
         return done.stdout
 
+    def size_of(self, study):
+        """The option for the largest block of a study that has one."""
+        return ["--discs", self.options.discs] if study == "solvers" and not self.options.quick else []
+
     def study(self, name):
         print(f"study {name}", file=sys.stderr, flush=True)
         command = [self.program, "study", name, "--overwrite", "--quiet", "--out", self.folder / name]
-        if name == "solvers" and not self.options.quick:
-            command += ["--discs", self.options.discs]
+        command += self.size_of(name)
         command += ["--quick"] * self.options.quick + ["--budget", self.options.budget, "--rounds", self.options.rounds]
         self.call(command)
         return json.loads((self.folder / name / "result.json").read_text(encoding="utf-8"))

@@ -18,7 +18,6 @@
 #include "run/run_case_text.hpp"
 #include "run/run_film.hpp"
 #include "run/run_grains.hpp"
-#include "run/run_histories.hpp"
 #include "run/run_results.hpp"
 #include "verbs.hpp"
 
