@@ -106,7 +106,6 @@ class Accuracy(ProgramTest):
         self.check_error(equidem("homogenize", CELL, "--accuracy", "1e-6"), 1, "cannot be reached", "reach about")
         self.check_error(equidem("homogenize", CASES / "ensemble.toml", "--set", "assembly.periodic=false", "--accuracy",
                                  "0.1"), 2, "free boundaries")
-        self.check_error(equidem("solve", TENSION, "--accuracy", "0.1", "--dry-run"), 2, "exclude each other")
         self.check_error(equidem("solve", TENSION, "--accuracy", "2"), 2, "--accuracy")
         for verb, case in (("pack", "pack_jammed.toml"), ("stability", "random_cell.toml")):
             self.check_error(equidem(verb, CASES / case, "--accuracy", "0.1"), 2, "takes no --accuracy", "solve")

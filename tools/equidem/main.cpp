@@ -22,6 +22,7 @@ constexpr const char* footer = R"(Examples:
   equidem export data/cases/abe1996_fig6.toml --to lammps --out handed
   equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
+  equidem help case springs  the keys of one table
   equidem help result        numbers of result.json, their units and meanings
   equidem help engines       what LAMMPS, YADE and PFC carry of a model
   equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
@@ -45,7 +46,8 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS]",
       .footer = footer,
       .verbs = verbs,
-      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page},
+      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page,
+                  describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
                  {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",

@@ -25,6 +25,7 @@ class VerbRun {
 
   /// \throws Error as the verb does
   [[nodiscard]] Delivery operator()(Arrays arrays = Arrays::not_wanted) const {
+    const ProtectedInputs inputs(replaceable_inputs(command_));
     return collect(run_, arrays, command_line_);
   }
 

@@ -388,4 +388,20 @@ std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body b
   return all;
 }
 
+void place_contact_points(Assembly& assembly, ContactPoints points) {
+  if (!assembly.contact_arms.empty() || !assembly.sections.empty())
+    bad_input("levers are chosen for bodies that are no discs", "their contact points are where their outlines meet",
+              "Leave the choice out");
+  for (Contact& c : assembly.contacts) {
+    const double d = norm(assembly.branch(c)), r_i = assembly.radii[c.i], r_j = assembly.radii[c.j];
+    c.lever_i = points == ContactPoints::radii    ? d * r_i / (r_i + r_j)
+                : points == ContactPoints::middle ? 0.5 * (d + r_i - r_j)
+                                                  : 0.5 * d;
+    c.lever_j = d - c.lever_i;
+    if (c.lever_i > 0 && c.lever_j > 0) continue;
+    bad_input(fmt::format("discs {} and {} overlap so far that the middle of the overlap is beyond a centre", c.i, c.j),
+              "a lever would be negative", "Choose levers by the radii or half-way");
+  }
+}
+
 }  // namespace equidem

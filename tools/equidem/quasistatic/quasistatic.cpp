@@ -359,12 +359,18 @@ int quasistatic(const QuasistaticOptions& given) {
   const std::optional<PathState> end = done && options.out ? sequence.state() : std::nullopt;
   if (done && options.out && !end)
     results.line("state", "none is written: what is left does not carry its loads at the end");
-  deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, [&](Results&) {
-    if (!options.out) return;
-    const OutputCase& wanted = sequence.problem.resolved.output;
-    write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
-    write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), end);
-  });
+  const OutputCase& wanted = sequence.problem.resolved.output;
+  std::vector<OutputPart> parts;
+  if (options.out) {
+    parts.push_back({"the state", [&] {
+                       write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), end);
+                     }});
+    parts.push_back({"the figures", [&] {
+                       write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut,
+                                     sequence.problem.resolved.title);
+                     }});
+  }
+  deliver(options, done ? "done" : "interrupted", std::move(results), sequence.problem.times, parts);
   if (!done) {
     throw_stopped(options, fmt::format("{} are done", counted(std::ssize(sequence.run().events()), "event")),
                   "Run the same command with --resume to go on");

@@ -53,6 +53,7 @@ struct AssemblyCase {
   std::filesystem::path path;              ///< path resolved against the folder of the file
   AssemblyFileOptions file;
   bool own_springs = true;        ///< use the springs of the file
+  std::optional<ContactPoints> levers = {};  ///< none: as made or given
   std::optional<double> density;  ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 
@@ -175,6 +176,9 @@ Case parse_case(std::string_view text, const std::string& name, const std::files
 
 /// Every key of every kind of case file with type, unit, range, default and meaning, as text of at most 100 columns.
 std::string describe_case_file();
+/// The keys of one table, "springs", "[strength]" or that of a key, "springs.kT", in each kind of case that has it.
+/// \throws Error (bad_input) with the nearest name where there is none
+std::string describe_case_table(const std::string& name);
 
 /// The help of the case file as a page in Markdown, docs/case_file.md.
 std::string case_file_page();

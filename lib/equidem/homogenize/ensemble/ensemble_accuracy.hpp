@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include <array>
+
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 
@@ -39,6 +41,9 @@ struct AccurateEnsemble {
   EnsembleSetting ten_times_more;  ///< setting that reaches a tenth of the wanted error
   bool stopped = false;            ///< by the user, before the end
 };
+
+/// The cells that are sampled first.
+std::array<EnsembleSetting, 2> accuracy_pilots(const EnsembleAccuracy& options);
 
 /// Small cells of two sizes give scatter and drift; the cheapest size and number follow from
 ///
