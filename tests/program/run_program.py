@@ -30,6 +30,18 @@ class Usage(ProgramTest):
             self.assertIn(word, text)
         self.assertLessEqual(max(map(len, text.splitlines())), 110)
 
+    def test_help_case_shows_one_table_alone(self):
+        for name in ("springs", "[springs]", "springs.kT"):
+            text = self.check_done(equidem("help", "case", name)).stdout
+            self.assertIn("kT", text)
+            self.assertNotIn("[material]", text)
+            self.assertLess(len(text.splitlines()), 60)
+        walls = self.check_done(equidem("help", "case", "wall")).stdout
+        self.assertEqual(walls.count("[[wall]]"), 2, walls)
+        self.check_error(equidem("help", "case", "sprigns"), 2, "no table [sprigns]", "'springs'")
+        for words in (("case", "springs", "kT"), ("result", "nu"), ("solve", "x"), ("engines", "x"), ("case", "--markdown", "x")):
+            self.check_error(equidem("help", *words), 2, "one argument too many")
+
     def test_help_case_as_markdown_is_the_reference_page(self):
         page = (SOURCE / "docs" / "case_file.md").read_text(encoding="utf-8")
         self.assertEqual(self.check_done(equidem("help", "case", "--markdown")).stdout, page)

@@ -7,6 +7,7 @@
 
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {
@@ -42,6 +43,10 @@ OptionCheck number(double least, double most) {
                ? ""
                : fmt::format("'{}' is not a number from {:g} to {:g}", given, least, most);
   };
+}
+
+OptionCheck plain_text() {
+  return [](const std::string& given) { return has_controls(given) ? std::string("it has control characters") : ""; };
 }
 
 OptionCheck file_name() {

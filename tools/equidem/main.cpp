@@ -31,8 +31,8 @@ constexpr const char* footer = R"(Examples:
 The files of data/cases are installed in share/doc/equidem/examples.
 The tables and figures of published papers are computed by the program equidem-papers.
 
-Exit codes: 0 done, of a sweep some of its points; 1 the computation failed, and the message says why; 2 bad input or
-usage; 130 interrupted.)";
+Exit codes: 0 done, of a sweep some of its points; 1 the computation failed or its results could not all be written, and
+the message says why; 2 bad input or usage; 130 interrupted.)";
 
 }  // namespace
 

@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/core/protected_inputs.hpp"
+
 #include "command.hpp"
 
 namespace equidem {

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/assembly.hpp"
 
+#include "equidem/assembly/contact_points.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/words.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -353,7 +357,9 @@ double bytes_of_network(double discs) {
 const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   const auto found = assembly.groups.find(name);
   if (found != assembly.groups.end()) return found->second;
-  const std::string names = joined(assembly.groups, [](const auto& known) { return known.first; });
+  std::vector<std::string> known;
+  for (const auto& [other, discs] : assembly.groups) known.push_back(other);
+  const std::string names = first_words(std::move(known));
   bad_input(fmt::format("the assembly has no group '{}'", name),
             names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/text.hpp"
+#include "equidem/core/words.hpp"
 
 #include <algorithm>
 
@@ -9,6 +10,24 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
   std::string text;
   for (const std::string& word : words) text.append(&word == words.data() ? "" : separator).append(word);
   return text;
+}
+
+bool has_controls(std::string_view text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    if ((byte < ' ' && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7f) return true;
+    const auto next = static_cast<unsigned char>(k + 1 < text.size() ? text[k + 1] : 0);
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) return true;  // U+0080 to U+009F
+  }
+  return false;
+}
+
+std::string first_words(std::vector<std::string> words) {
+  constexpr std::size_t most = 10;
+  const auto count = std::ssize(words);
+  if (words.size() <= most) return joined(words);
+  words.resize(most);
+  return fmt::format("{}, ..., {} in all", joined(words), grouped(count));
 }
 
 std::string listed(std::vector<std::string> words, std::string_view last) {

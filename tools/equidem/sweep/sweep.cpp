@@ -320,7 +320,9 @@ Run declare_sweep(CLI::App& command) {
   command.add_option("--seeds", options->seeds, "each point with each of these seeds: 1,2,3 or 1-5")
       ->allow_extra_args(false)
       ->type_name("S,T");
-  command.add_option("--title", options->title, "title of the curves; left out: that of the case")->type_name("TEXT");
+  command.add_option("--title", options->title, "title of the curves; left out: that of the case")
+      ->check(plain_text())
+      ->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"

@@ -27,6 +27,7 @@
 #include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
+#include "equidem/assembly/contact_points.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 #include "equidem/homogenize/tension_test.hpp"

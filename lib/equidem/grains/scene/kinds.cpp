@@ -8,6 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {
@@ -26,8 +27,10 @@ void check_name(const std::string& name, const std::string& option, std::vector<
     for (const Wall& wall : walls) groups.push_back(wall.name);
   if (contains(groups, name)) return;
   const auto meant = nearest(name, groups);
+  for (std::string& choice : groups) choice = "'" + choice + "'";
+  const std::string names = first_words(std::move(groups));
   bad_input_at(option, fmt::format("\"{}\" is no group of grains{}", name, walls_too ? " and no wall" : ""),
-               "there are " + joined(groups, [](const std::string& choice) { return "'" + choice + "'"; }),
+               "there are " + names,
                meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
 }
 

@@ -98,7 +98,7 @@ struct EnumNames<EngineFeature> {
   static constexpr EngineFeatureRow list[] = {
       {levers_by_radii, "contact points off the middle between two centres", false, true, true,
        "a bond of bpm/rotational acts half-way between the centres",
-       "Set assembly.levers = \"halfway\", or \"middle\" and export to yade"},
+       "Export to yade or pfc, unequal discs with assembly.levers = \"middle\"; or set assembly.levers = \"halfway\""},
       {levers_of_no_radii, "levers that no radii of the bodies give", false, false, false,
        "its contact points follow from one radius a body",
        "Set assembly.levers = \"middle\", that is (d + r_i - r_j)/2, or \"halfway\", d/2, which LAMMPS needs"},
