@@ -366,7 +366,8 @@ TEST_CASE("a_script_that_gnuplot_refuses_is_told") {
 
 TEST_CASE("a_gnuplot_that_ignores_signals_is_killed_with_all_that_it_has_started") {
   const TemporaryFolder folder, programs;
-  write_file(programs / "gnuplot", "#!/bin/sh\ntrap '' TERM INT HUP\n/bin/sleep 100 &\nwhile :; do /bin/sleep 1; done\n", false);
+  write_file(programs / "gnuplot",
+             "#!/bin/sh\ntrap '' TERM INT HUP\n/bin/sleep 100 &\nwhile :; do /bin/sleep 1; done\n", false);
   fs::permissions(programs / "gnuplot", fs::perms::owner_all);
   const SearchPath path(programs.path().string());
   const Stopwatch watch;

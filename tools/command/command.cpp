@@ -341,7 +341,8 @@ class Deliverer {
     return false;
   }
   void fail(const Error& error, bool lost) {
-    if (lost && !failure_) failure_.emplace(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where());
+    if (lost && !failure_)
+      failure_.emplace(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where());
     warn(error.what());
   }
   void warn(const std::string& sentence) {
@@ -350,12 +351,12 @@ class Deliverer {
     results_.line("WARNING", sentence);
   }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Warnings on stderr. \param fails with the failure, which is none of those on stderr then
-  void finish(bool fails) const {
+  /// \param printed warnings go to stderr, and the failure ends the verb; else a caller in memory has both
+  void finish(bool printed) const {
     for (const std::string& warning : warnings_)
-      if (!fails || !failure_ || warning != failure_->what()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+      if (printed && !(failure_ && warning == failure_->what())) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     if (interruption_) throw *interruption_;
-    if (fails && failure_) throw *failure_;
+    if (printed && failure_) throw *failure_;
   }
 
  private:
@@ -383,8 +384,7 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
     if (!filed && !file_of_json) return true;
     const std::string json = delivery().json();
     bool written = true;
-    if (filed)
-      written = all.attempt("result.json", [&] { write_file(*options.out / "result.json", json, true); });
+    if (filed) written = all.attempt("result.json", [&] { write_file(*options.out / "result.json", json, true); });
     if (file_of_json) written &= all.attempt(*options.json, [&] { write_file(*options.json, json, true); });
     return written;
   };
@@ -396,9 +396,8 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
     if (!figure.missing.empty()) all.warn(figure.missing);
   if (options.out && !parts.empty()) times.add("files", watch.seconds());
   if (filed && has_page(options.verb)) {
-    all.attempt(page_name, [&] {
-      write_file(*options.out / page_name, delivery().page(*options.out, drawn.list()), true);
-    });
+    all.attempt(page_name,
+                [&] { write_file(*options.out / page_name, delivery().page(*options.out, drawn.list()), true); });
   }
   if (!printed) {
     Delivery made = delivery();
@@ -409,11 +408,13 @@ void deliver(const CommonOptions& options, const std::string& status, Results re
     collected->command = made.command;
   } else if (to_stdout || !options.quiet) {
     const int error = write_to_stdout(to_stdout ? delivery().json() : delivery().report());
-    if (error != 0) all.attempt("stdout", [&] { stdout_failed(error); }, !written);
+    if (error != 0)
+      all.attempt(
+          "stdout", [&] { stdout_failed(error); }, !written);
   }
   if (!parts.empty() || !all.warnings().empty()) write_json();
   if (filed) say(options, fmt::format("written to {}", options.out->string()));
-  all.finish(printed);  // a caller in memory has the results and their warnings
+  all.finish(printed);
   if (options.require_stable && (status == "unstable" || status == "unjudged" || status == "mechanism")) {
     computation_failed(fmt::format("the assembly is not stable: its status is \"{}\"", status),
                        "--require-stable was given", "Raise kT, hold more discs, or leave the option out");

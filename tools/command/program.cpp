@@ -20,9 +20,9 @@
 
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/protected_inputs.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
+#include "equidem/core/protected_inputs.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"
 
@@ -192,7 +192,8 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   std::vector<std::string> words{program.name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   set_command_line(words);
-  const ProtectedInputs inputs(verb == commands.end() ? std::vector<std::filesystem::path>{} : replaceable_inputs(**verb));
+  const ProtectedInputs inputs(verb == commands.end() ? std::vector<std::filesystem::path>{}
+                                                      : replaceable_inputs(**verb));
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 

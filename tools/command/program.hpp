@@ -38,7 +38,7 @@ struct HelpTopic {
   const char* name;
   const char* summary;  ///< one line of the manual
   std::string (*text)();
-  std::string (*markdown)() = nullptr;                    ///< printed with --markdown
+  std::string (*markdown)() = nullptr;                      ///< printed with --markdown
   std::string (*entry)(const std::string& name) = nullptr;  ///< on one of its entries, `help TOPIC NAME`
 };
 

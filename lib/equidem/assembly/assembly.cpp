@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/assembly.hpp"
 
-#include "equidem/assembly/contact_points.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -11,10 +9,11 @@
 #include <numeric>
 #include <utility>
 
+#include "equidem/assembly/contact_points.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/words.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {

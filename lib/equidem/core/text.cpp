@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/text.hpp"
-#include "equidem/core/words.hpp"
 
 #include <algorithm>
+
+#include "equidem/core/words.hpp"
 
 namespace equidem {
 

@@ -181,9 +181,8 @@ int calibrate(const CalibrateVerb& options) {
   std::vector<OutputPart> parts{{"case.toml", [&] { write_case(common, resolved); }}};
   if (path) parts.push_back({"the springs file", [&] { write_file(*path, file, common.overwrite); }});
   if (common.out)
-    parts.push_back({assembly_name, [&] {
-                       write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite);
-                     }});
+    parts.push_back(
+        {assembly_name, [&] { write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite); }});
   deliver(common, "calibrated", std::move(results), std::move(times), parts);
   hand_over([kept = resolved](const CommonOptions& into) { write_case(into, kept); });
   if (path) say(common, fmt::format("springs written to {}", path->string()));

@@ -131,7 +131,8 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   Results results = strength_results(problem, samples.front().sample, found);
   if (refusal) {
     results.line("NOT FEASIBLE", refusal->what()).set("refusal", refusal->what());
-    results.line("strength file", "none: what is above has the nearest ratio that was found").set("strength_file", nullptr);
+    results.line("strength file", "none: what is above has the nearest ratio that was found")
+        .set("strength_file", nullptr);
     path.reset();
   } else if (path) {
     results.line("strength file").add("strength_file", "", path->string());

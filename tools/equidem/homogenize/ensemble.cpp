@@ -225,9 +225,8 @@ void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result
   std::vector<OutputPart> parts;
   if (options.out) parts.push_back({"samples.csv", save_samples});
   if (options.out && complete) {
-    parts.push_back({statistics_name, [&] {
-                       write_csv(*options.out / statistics_name, statistics_table(result.statistics), true);
-                     }});
+    parts.push_back({statistics_name,
+                     [&] { write_csv(*options.out / statistics_name, statistics_table(result.statistics), true); }});
     for (const auto& plot : plots)
       parts.push_back({plot.first, [&] { write_plot(*options.out, plot.first, plot.second, true); }});
   }

@@ -98,9 +98,9 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   StageTimes times;
   Stopwatch watch;
   SavedOnTheWay saved(options);
-  AccurateEnsemble sampled = sample_to_accuracy(
-      [&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); }, wanted,
-      [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
+  AccurateEnsemble sampled =
+      sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
+                         wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
   if (sampled.stopped) {
     throw Error(ErrorKind::interrupted, "stopped as asked",

@@ -216,8 +216,8 @@ int homogenize(const HomogenizeVerb& options) {
   if (common.out) {
     parts.push_back({"case.toml", [&] { write_case(common, problem.resolved); }});
     if (harmonic)
-      parts.push_back({viscoelastic_table_name,
-                       [&] { write_harmonic(common, problem.resolved.title, harmonic->stiffness); }});
+      parts.push_back(
+          {viscoelastic_table_name, [&] { write_harmonic(common, problem.resolved.title, harmonic->stiffness); }});
     parts.push_back({"the assembly", [&] { write_assembly(common, problem.resolved.output, problem.assembly); }});
     parts.push_back({"the states", [&] { write_states(common, problem.resolved.output, problem, result); }});
   }

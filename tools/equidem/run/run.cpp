@@ -65,9 +65,7 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   if (search != nullptr) results.append(accuracy_results(search->reached()));
   std::vector<OutputPart> parts;
   if (common.out)
-    parts.push_back({"the tables", [&] {
-                       job.write_files(*common.out, result, common.overwrite || options.resume);
-                     }});
+    parts.push_back({"the tables", [&] { job.write_files(*common.out, result, common.overwrite || options.resume); }});
   deliver(common, "done", std::move(results), std::move(times), parts);
   hand_over([shared_job, shared_result](const CommonOptions& into) {
     shared_job->write_files(*into.out, *shared_result, into.overwrite);

@@ -153,9 +153,8 @@ int stability(const StabilityCommand& options) {
   std::vector<OutputPart> parts;
   if (options.out) {
     parts.push_back({"case.toml", [&] { write_case(options, problem.resolved); }});
-    parts.push_back({"the waves", [&] {
-                       write_survey(*options.out, problem.resolved.title, result, options.overwrite);
-                     }});
+    parts.push_back(
+        {"the waves", [&] { write_survey(*options.out, problem.resolved.title, result, options.overwrite); }});
     parts.push_back({"the mode", [&] { draw_mode(options, problem, result); }});
   }
   deliver(options, result.status(), stability_results(problem, result), std::move(times), parts);

@@ -48,10 +48,10 @@ void check_verb(const std::string& name) {
   const std::vector<std::string> names = swept_verbs();
   if (std::ranges::find(names, name) != names.end()) return;
   const bool exists = std::ranges::find(verbs, name, &Verb::name) != verbs.end();
-  bad_input_at("--verb",
-               exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
-               exists ? "it gives no numbers that would depend on the keys of a case" : "a sweep varies the case of a verb",
-               fmt::format("Give one of {}", joined(names)));
+  bad_input_at(
+      "--verb", exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
+      exists ? "it gives no numbers that would depend on the keys of a case" : "a sweep varies the case of a verb",
+      fmt::format("Give one of {}", joined(names)));
 }
 
 /// The case as the verb reads it.
@@ -236,9 +236,8 @@ int sweep(const SweepOptions& options) {
   std::vector<OutputPart> parts;
   if (folder) parts.push_back({Sweep::table_name, [&] { run.save(); }});
   if (folder && !run.stopped())
-    parts.push_back({"the curves", [&] {
-                       write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title));
-                     }});
+    parts.push_back(
+        {"the curves", [&] { write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title)); }});
   deliver(options.common,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"

@@ -158,7 +158,7 @@ std::vector<std::string> curve_names(const SweepPlan& plan) {
 }
 
 void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
-                         const std::string& title) {
+                  const std::string& title) {
   const bool seeds = plan.has_seeds() && plan.keys.back().values.size() > 1;
   for (const MainQuantity& quantity : drawn(plan)) {
     if (!has_curve(points, quantity)) continue;

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "equidem/assembly/contact_points.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
@@ -27,7 +28,6 @@
 #include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
-#include "equidem/assembly/contact_points.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 #include "equidem/homogenize/tension_test.hpp"
@@ -53,9 +53,9 @@ struct AssemblyCase {
   double gap_tolerance = 0;                ///< of the contacts of a packing
   std::filesystem::path path;              ///< path resolved against the folder of the file
   AssemblyFileOptions file;
-  bool own_springs = true;        ///< use the springs of the file
+  bool own_springs = true;                   ///< use the springs of the file
   std::optional<ContactPoints> levers = {};  ///< none: as made or given
-  std::optional<double> density;  ///< kg/m³, of the discs themselves
+  std::optional<double> density;             ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 
   /// Whether each seed makes another assembly.

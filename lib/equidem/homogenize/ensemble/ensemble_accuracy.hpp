@@ -3,11 +3,10 @@
 /// Number and size of random cells: the cheapest ensemble that determines the moduli to an accuracy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
-
-#include <array>
 
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"

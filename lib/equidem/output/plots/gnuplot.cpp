@@ -48,8 +48,7 @@ class Gnuplot {
     posix_spawnattr_setsigdefault(&attributes, &usual);
     posix_spawnattr_setpgroup(&attributes, 0);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-    failure_ =
-        posix_spawnp(&child_, arguments[0], &actions, &attributes, const_cast<char* const*>(arguments), environ);
+    failure_ = posix_spawnp(&child_, arguments[0], &actions, &attributes, const_cast<char* const*>(arguments), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);

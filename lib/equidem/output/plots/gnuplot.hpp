@@ -15,8 +15,8 @@ struct GnuplotRun {
   bool timed_out = false;
 };
 
-/// Run `gnuplot script` in a folder, no shell between; it and what it has started are killed after `time_limit` seconds.
-/// \param script a plain file name in the folder
+/// Run `gnuplot script` in a folder, no shell between; it and what it has started are killed after `time_limit`
+/// seconds. \param script a plain file name in the folder
 /// \throws Error of kind interrupted where the user asked to stop
 GnuplotRun run_gnuplot(const std::filesystem::path& folder, const std::string& script, double time_limit = 30);
 
