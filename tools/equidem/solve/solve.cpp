@@ -131,8 +131,8 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   Case resolved = read_case(options);
   check_solution_files(options, resolved);
   const auto lock = lock_out(options);
-  const bool search = accuracy && BlockSearch::serves(resolved);
-  if (search && !options.dry_run) {
+  const bool searched = accuracy && BlockSearch::serves(resolved);
+  if (searched && !options.dry_run) {
     BlockSearch search(options, resolved, *accuracy);
     while (!solve_once(options, std::make_shared<const Problem>(prestressed(build_problem(search.propose()))), accuracy,
                        &search)) {
@@ -142,7 +142,7 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   const auto problem = std::make_shared<const Problem>(prestressed(build_problem(std::move(resolved))));
   if (options.dry_run) {
     Results further;
-    if (accuracy) further = accuracy_plan(*accuracy, search ? BlockSearch::plan : bound_is_compared);
+    if (accuracy) further = accuracy_plan(*accuracy, searched ? BlockSearch::plan : bound_is_compared);
     deliver(options, "dry_run", dry_run_results(*problem, 1, further), problem->times);
     return 0;
   }
