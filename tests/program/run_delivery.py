@@ -72,7 +72,7 @@ class Streams(ProgramTest):
         done = subprocess.run([PROGRAM, *map(str, command)], timeout=240, check=False, preexec_fn=lambda: os.closerange(0, 3))
         self.assertEqual(done.returncode, 0)
         for path in out.iterdir():
-            if path.name not in ("result.json", "index.html"):
+            if path.is_file() and path.name not in ("result.json", "index.html"):
                 self.assertNotIn(b"assembly        ", path.read_bytes(), path)
         self.check_done(equidem(*command, "--resume"))
 
@@ -93,7 +93,7 @@ class Parts(ProgramTest):
         return {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}"}
 
     def test_a_gnuplot_that_fails_costs_its_picture_alone(self):
-        for name in ("sweep", "quasistatic", "stability", "ensemble"):
+        for name in ("sweep", "quasistatic", "ensemble"):
             with self.subTest(verb=name):
                 out = self.folder / name
                 done = run(*VERBS[name], "--out", out, stdout=subprocess.PIPE,
@@ -138,15 +138,18 @@ class Parts(ProgramTest):
         self.assertIn("cannot write", done.stderr.splitlines()[-1])
         result = parse_json((self.folder / "out" / "result.json").read_text())
         self.assertGreater(result["shear_modulus"], 0)
-        self.assertIn("contacts_strain_xx.csv", " ".join(result["warnings"]))
+        self.assertIn("_strain_xx.csv", " ".join(result["warnings"]))
         self.assertIn("plane strain", done.stdout)
         self.assertTrue((self.folder / "out" / "case.toml").exists())
 
     def test_a_sweep_and_an_ensemble_go_on_where_their_tables_cannot_be_saved(self):
-        for name, words in (("sweep", "nu theory"), ("ensemble", "discs")):
-            done = run(*VERBS[name], "--out", self.folder / name, stdout=subprocess.PIPE,
-                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (600, 600)))
+        limit = 3000  # of a file: the case fits, the tables do not
+        for command, words in ((("sweep", TENSION, "--key", "ratio", "--from", 0, "--to", 1, "--steps", 41), "nu theory"),
+                               (("homogenize", ENSEMBLE, "--set", "ensemble.discs=[20, 40]", "--set", "ensemble.samples=20"), "discs")):
+            done = run(*command, "--out", self.folder / command[0], stdout=subprocess.PIPE,
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
             self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn("cannot write", done.stderr)
             self.assertIn(words, done.stdout)
 
 
