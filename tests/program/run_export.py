@@ -275,7 +275,6 @@ force = [0.0, 1.0]
         script = (self.folder / "middle_yade" / "run_equidem.py").read_text()
         for radius in ("0.001", "0.002"):  # contact points of YADE: (d + r_i - r_j)/2 by the radii of its bodies
             self.assertIn(radius, script)
-        motions = {}
         for levers in ("radii", "middle", "halfway"):
             out = self.folder / f"solved_{levers}"
             case.write_text(text.format(levers=f'levers = "{levers}"'))
@@ -290,8 +289,13 @@ force = [0.0, 1.0]
                 wanted = {"radii": d * a / (a + b), "middle": (d + a - b) / 2, "halfway": d / 2}[levers]
                 self.assertAlmostEqual(float(row["lever_i_m"]), wanted, delta=1e-12 * d)
                 self.assertAlmostEqual(float(row["lever_i_m"]) + float(row["lever_j_m"]), d, delta=1e-12 * d)
-            motions[levers] = parse_json((out / "result.json").read_text())["energy"]
-        self.assertNotEqual(motions["radii"], motions["middle"])
+        packing = ("homogenize", CASES / "packed_rock.toml", "--set", "packing.grains=200", "--set", "packing.solid_fraction=0.78",
+                   "--set", "material=none", "--set", "springs={kN=1e9,kT=0.5e9}", "--json", "-")
+        bulk = {levers: parse_json(self.check_done(equidem(*packing, "--set", f'assembly.levers="{levers}"')).stdout)["bulk_modulus_2d"]
+                for levers in ("radii", "middle", "halfway")}
+        self.assertEqual(bulk["radii"], parse_json(self.check_done(equidem(*packing)).stdout)["bulk_modulus_2d"])
+        self.assertTrue(1e-7 < abs(bulk["middle"] / bulk["radii"] - 1) < 1e-3, bulk)
+        self.assertTrue(1e-4 < abs(bulk["halfway"] / bulk["radii"] - 1) < 1e-2, bulk)
 
     def test_ellipses_and_clumps(self):
         self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "ellipses and clumps", "here grain 1")

@@ -167,7 +167,7 @@ class Memory(ProgramTest):
         return done[1]
 
     def test_threads_that_cannot_be_started_are_an_error_with_a_remedy(self):
-        for command in (("solve", TENSION), ("pack", CASES / "pack_jammed.toml")):
+        for command in (("homogenize", ENSEMBLE), ("sweep", TENSION, "--key", "ratio", "--values", "0,0.5,1")):
             done = self.within(2 << 30, *command, "--threads", 2000)
             self.check_error(done, 1, "2000 threads cannot be started", "ulimit")
 

@@ -50,7 +50,7 @@ void check_verb(const std::string& name) {
   const bool exists = std::ranges::find(verbs, name, &Verb::name) != verbs.end();
   bad_input_at(
       "--verb", exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
-      exists ? "it gives no numbers that would depend on the keys of a case" : "a sweep varies the case of a verb",
+      exists ? "it has no case, or no numbers that depend on its keys" : "a sweep varies the case of a verb",
       fmt::format("Give one of {}", joined(names)));
 }
 
