@@ -7,7 +7,6 @@
 
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {

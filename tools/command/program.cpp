@@ -20,9 +20,9 @@
 
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
-#include "equidem/core/protected_inputs.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/json.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/core/protected_inputs.hpp"
+#include "equidem/core/file.hpp"
 
 #include "command.hpp"
 

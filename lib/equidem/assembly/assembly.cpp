@@ -9,11 +9,9 @@
 #include <numeric>
 #include <utility>
 
-#include "equidem/assembly/contact_points.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {

@@ -18,7 +18,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
-#include "equidem/core/protected_inputs.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "equidem/core/words.hpp"
 
 namespace equidem {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "equidem/assembly/contact_points.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"

@@ -8,7 +8,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/words.hpp"
 
 namespace equidem {
 namespace {
