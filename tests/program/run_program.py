@@ -2,13 +2,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Usage and solve, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
+import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import unittest
+import xml.etree.ElementTree
 
 from program import CASES, PROGRAM, SOURCE, TENSION, ProgramTest, equidem, parse_json
+
+
+def grouped(count):
+    return f"{count:,}".replace(",", " ")
 
 
 class Usage(ProgramTest):
@@ -247,6 +254,31 @@ class Hostile(ProgramTest):
 
     def test_an_empty_assembly_file_is_called_empty(self):
         self.check_error(self.truss_reading(lambda path: path.write_text(" \n")), 2, "truss.json", "empty")
+
+    def test_control_characters_reach_neither_terminals_nor_pages(self):
+        text = (CASES / "notched_plate.toml").read_text()
+        case = self.folder / "titled.toml"
+        for title in (r"a\u001b[31m", r"a\u0001", r"a\u007f", r"a\u009b2J"):
+            case.write_text(re.sub(r'title *=.*', lambda _: f'title = "{title}"', text))
+            line = case.read_text().split("title", 1)[0].count("\n") + 1
+            self.check_error(equidem("quasistatic", case), 2, f"titled.toml:{line}", "control characters")
+        done = equidem("sweep", TENSION, "--key", "ratio", "--values", "0,1", "--title", "a\x1b[2J")
+        self.check_error(done, 2, "--title", "control characters")
+        self.assertNotIn("\x1b", done.stderr)
+        case.write_text(re.sub(r'title *=.*', lambda _: 'title = "a ]]> b <c> & d"', text))
+        self.check_done(equidem("quasistatic", case, "--out", self.folder / "out"))
+        for name in ("curve.svg", "cracks.svg"):
+            if (self.folder / "out" / name).exists():
+                xml.etree.ElementTree.parse(self.folder / "out" / name)
+
+    def test_a_list_of_many_names_is_cut(self):
+        text = json.loads((CASES / "truss.json").read_text())
+        text["groups"].update({f"group_{k}": [0] for k in range(3000)})
+        (self.folder / "truss.json").write_text(json.dumps(text))
+        (self.folder / "truss.toml").write_text(re.sub(r'group *= *"[^"]*"', 'group = "nowhere"', (CASES / "truss.toml").read_text()))
+        done = equidem("solve", self.folder / "truss.toml")
+        self.check_error(done, 2, "no group 'nowhere'", f"{grouped(len(text['groups']))} in all")
+        self.assertLess(len(done.stderr), 500)
 
     def test_a_key_given_twice_is_refused(self):
         text = (CASES / "truss.json").read_text().replace('"discs"', '"discs": [], "discs"', 1)

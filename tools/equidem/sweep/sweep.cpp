@@ -48,10 +48,10 @@ void check_verb(const std::string& name) {
   const std::vector<std::string> names = swept_verbs();
   if (std::ranges::find(names, name) != names.end()) return;
   const bool exists = std::ranges::find(verbs, name, &Verb::name) != verbs.end();
-  bad_input_at(
-      "--verb", exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
-      exists ? "it has no case, or no numbers that depend on its keys" : "a sweep varies the case of a verb",
-      fmt::format("Give one of {}", joined(names)));
+  bad_input_at("--verb",
+               exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
+               exists ? "it has no case, or no numbers that depend on its keys" : "a sweep varies the case of a verb",
+               fmt::format("Give one of {}", joined(names)));
 }
 
 /// The case as the verb reads it.
