@@ -41,7 +41,7 @@ PARTS = [
     ("catch2/*", ["tests/support/*"], 0),
 ]
 # Headers of the operating system and the compiler.
-SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "pthread.h", "spawn.h", "sched.h", "immintrin.h", "malloc.h"]
+SYSTEM = ["sys/*", "unistd.h", "dlfcn.h", "fcntl.h", "pthread.h", "poll.h", "spawn.h", "sched.h", "immintrin.h", "malloc.h"]
 
 SOURCES = (".cpp", ".hpp", ".h", ".c", ".py")
 SCRIPTS = ("tools/prepare", "tools/test", "tools/demo", "tools/docs", "tools/package", "docs/site/build", ".ci/run",

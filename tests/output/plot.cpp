@@ -7,6 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
 #include "equidem/output/plots/plot_script.hpp"
 #include "equidem/output/plots/plot_series.hpp"
@@ -361,6 +362,30 @@ TEST_CASE("a_script_that_gnuplot_refuses_is_told") {
   CAPTURE(slow.reason);
   CHECK_FALSE(slow.succeeded);
   CHECK(slow.reason.find("took more than 0.2 s") != std::string::npos);
+}
+
+TEST_CASE("a_gnuplot_that_ignores_signals_is_killed_with_all_that_it_has_started") {
+  const TemporaryFolder folder, programs;
+  write_file(programs / "gnuplot",
+             "#!/bin/sh\ntrap '' TERM INT HUP\n/bin/sleep 100 &\nwhile :; do /bin/sleep 1; done\n", false);
+  fs::permissions(programs / "gnuplot", fs::perms::owner_all);
+  const SearchPath path(programs.path().string());
+  const Stopwatch watch;
+  const GnuplotRun run = run_gnuplot(folder.path(), "any.gp", 0.3);
+  CAPTURE(run.reason);
+  CHECK_FALSE(run.succeeded);
+  CHECK(run.timed_out);
+  CHECK(watch.seconds() < 5);  // not the 100 s of what holds its stderr
+}
+
+TEST_CASE("titles_are_xml_whatever_they_hold") {
+  const TemporaryFolder folder;
+  Plot plot = rich_plot();
+  plot.title = "a ]]> b ]]]]>> <c> & \x01\x1b d";
+  const PlotResult result = write_plot(folder.path(), "title", plot, false);
+  CAPTURE(result.message);
+  if (!result.drawn) return;
+  CHECK(run_python("well_formed.py", {(folder / "title.svg").string()}) == 0);
 }
 
 TEST_CASE("a_plot_that_cannot_be_drawn_is_refused") {

@@ -241,6 +241,62 @@ force = [0.0, -1.0]
         (self.folder / "three.json").write_text(json.dumps(text))
         self.check_error(self.export(case, "yade", out="gaps"), 2, "levers")
 
+    def test_unequal_discs_bonded_across_gaps_are_exported_with_the_levers_of_the_engine(self):
+        (self.folder / "gaps.csv").write_text("x,y,radius\n0,0,1\n3.1,0,2\n1.4,2.9,2\n")
+        case = self.folder / "gaps.toml"
+        text = '''schema = "equidem/1"
+[assembly]
+kind = "file"
+path = "gaps.csv"
+unit_of_length = "mm"
+gap_tolerance = 0.1
+{levers}
+[springs]
+kN = 1e9
+kT = 0.5e9
+[[support]]
+group = "bottom"
+ux = true
+uy = true
+[[load]]
+group = "top"
+force = [0.0, 1.0]
+'''
+        case.write_text(text.format(levers=""))
+        for engine in ("lammps", "yade"):
+            self.check_error(self.export(case, engine), 2, "assembly.levers", "middle", "halfway")
+        for levers, engine in (("middle", "yade"), ("halfway", "lammps"), ("halfway", "yade")):
+            with self.subTest(levers=levers, engine=engine):
+                case.write_text(text.format(levers=f'levers = "{levers}"'))
+                out = self.exported(case, engine, out=f"{levers}_{engine}")
+                self.assertTrue((out / "README").exists())
+        case.write_text(text.format(levers='levers = "middle"'))
+        self.check_error(self.export(case, "lammps", out="no"), 2, "halfway")
+        script = (self.folder / "middle_yade" / "run_equidem.py").read_text()
+        for radius in ("0.001", "0.002"):  # contact points of YADE: (d + r_i - r_j)/2 by the radii of its bodies
+            self.assertIn(radius, script)
+        for levers in ("radii", "middle", "halfway"):
+            out = self.folder / f"solved_{levers}"
+            case.write_text(text.format(levers=f'levers = "{levers}"'))
+            self.check_done(equidem("solve", case, "--out", out))
+            with open(out / "contacts.csv", encoding="utf-8") as table:
+                rows = list(csv.DictReader(table))
+            discs = [(0, 0, 1e-3), (3.1e-3, 0, 2e-3), (1.4e-3, 2.9e-3, 2e-3)]
+            for row in rows:
+                i, j = int(row["i"]), int(row["j"])
+                d = math.dist(discs[i][:2], discs[j][:2])
+                a, b = discs[i][2], discs[j][2]
+                wanted = {"radii": d * a / (a + b), "middle": (d + a - b) / 2, "halfway": d / 2}[levers]
+                self.assertAlmostEqual(float(row["lever_i_m"]), wanted, delta=1e-12 * d)
+                self.assertAlmostEqual(float(row["lever_i_m"]) + float(row["lever_j_m"]), d, delta=1e-12 * d)
+        packing = ("homogenize", CASES / "packed_rock.toml", "--set", "packing.grains=200", "--set", "packing.solid_fraction=0.78",
+                   "--set", "material=none", "--set", "springs={kN=1e9,kT=0.5e9}", "--json", "-")
+        bulk = {levers: parse_json(self.check_done(equidem(*packing, "--set", f'assembly.levers="{levers}"')).stdout)["bulk_modulus_2d"]
+                for levers in ("radii", "middle", "halfway")}
+        self.assertEqual(bulk["radii"], parse_json(self.check_done(equidem(*packing)).stdout)["bulk_modulus_2d"])
+        self.assertTrue(1e-7 < abs(bulk["middle"] / bulk["radii"] - 1) < 1e-3, bulk)
+        self.assertTrue(1e-4 < abs(bulk["halfway"] / bulk["radii"] - 1) < 1e-2, bulk)
+
     def test_ellipses_and_clumps(self):
         self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "ellipses and clumps", "here grain 1")
 

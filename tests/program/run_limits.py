@@ -234,6 +234,11 @@ class Memory(ProgramTest):
             self.skipTest("this build needs more address space to start")
         return done[1]
 
+    def test_threads_that_cannot_be_started_are_an_error_with_a_remedy(self):
+        for command in (("homogenize", ENSEMBLE), ("sweep", TENSION, "--key", "ratio", "--values", "0,0.5,1")):
+            done = self.within(2 << 30, *command, "--threads", 2000)
+            self.check_error(done, 1, "2000 threads cannot be started", "ulimit")
+
     def test_what_cannot_fit_is_refused_before_it_is_built(self):
         for verb, case, keys in (("solve", TENSION, ("columns=40000", "rows=40000")),
                                  ("homogenize", CELL, ("discs=1000000000",)),
@@ -272,7 +277,7 @@ class Outputs(ProgramTest):
             with self.subTest(command=command), open("/dev/full", "w", encoding="utf-8") as full:
                 done = subprocess.run([PROGRAM, *map(str, command)], stdout=full, stderr=subprocess.PIPE, text=True,
                                       timeout=120, check=False)
-                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.returncode, 1, done.stderr)
                 self.assertIn("cannot write to stdout (No space left on device)", done.stderr)
 
     def test_a_pipe_gets_the_json_and_stays_a_pipe(self):

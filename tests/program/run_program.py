@@ -2,13 +2,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Usage and solve, as a user does: run_program.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
+import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import unittest
+import xml.etree.ElementTree
 
 from program import CASES, PROGRAM, SOURCE, TENSION, ProgramTest, equidem, parse_json
+
+
+def grouped(count):
+    return f"{count:,}".replace(",", " ")
 
 
 class Usage(ProgramTest):
@@ -29,6 +36,18 @@ class Usage(ProgramTest):
         for word in ("[assembly]", "[springs]", "[material]", "[test]", "[[support]]", "[[load]]", "kN", "default"):
             self.assertIn(word, text)
         self.assertLessEqual(max(map(len, text.splitlines())), 110)
+
+    def test_help_case_shows_one_table_alone(self):
+        for name in ("springs", "[springs]", "springs.kT"):
+            text = self.check_done(equidem("help", "case", name)).stdout
+            self.assertIn("kT", text)
+            self.assertNotIn("[material]", text)
+            self.assertLess(len(text.splitlines()), 60)
+        walls = self.check_done(equidem("help", "case", "wall")).stdout
+        self.assertEqual(walls.count("[[wall]]"), 2, walls)
+        self.check_error(equidem("help", "case", "sprigns"), 2, "no table [sprigns]", "'springs'")
+        for words in (("case", "springs", "kT"), ("result", "nu"), ("solve", "x"), ("engines", "x"), ("case", "--markdown", "x")):
+            self.check_error(equidem("help", *words), 2, "one argument too many")
 
     def test_help_case_as_markdown_is_the_reference_page(self):
         page = (SOURCE / "docs" / "case_file.md").read_text(encoding="utf-8")
@@ -235,6 +254,31 @@ class Hostile(ProgramTest):
 
     def test_an_empty_assembly_file_is_called_empty(self):
         self.check_error(self.truss_reading(lambda path: path.write_text(" \n")), 2, "truss.json", "empty")
+
+    def test_control_characters_reach_neither_terminals_nor_pages(self):
+        text = (CASES / "notched_plate.toml").read_text()
+        case = self.folder / "titled.toml"
+        for title in (r"a\u001b[31m", r"a\u0001", r"a\u007f", r"a\u009b2J"):
+            case.write_text(re.sub(r'title *=.*', lambda _: f'title = "{title}"', text))
+            line = case.read_text().split("title", 1)[0].count("\n") + 1
+            self.check_error(equidem("quasistatic", case), 2, f"titled.toml:{line}", "control characters")
+        done = equidem("sweep", TENSION, "--key", "ratio", "--values", "0,1", "--title", "a\x1b[2J")
+        self.check_error(done, 2, "--title", "control characters")
+        self.assertNotIn("\x1b", done.stderr)
+        case.write_text(re.sub(r'title *=.*', lambda _: 'title = "a ]]> b <c> & d"', text))
+        self.check_done(equidem("quasistatic", case, "--out", self.folder / "out"))
+        for name in ("curve.svg", "cracks.svg"):
+            if (self.folder / "out" / name).exists():
+                xml.etree.ElementTree.parse(self.folder / "out" / name)
+
+    def test_a_list_of_many_names_is_cut(self):
+        text = json.loads((CASES / "truss.json").read_text())
+        text["groups"].update({f"group_{k}": [0] for k in range(3000)})
+        (self.folder / "truss.json").write_text(json.dumps(text))
+        (self.folder / "truss.toml").write_text(re.sub(r'group *= *"[^"]*"', 'group = "nowhere"', (CASES / "truss.toml").read_text()))
+        done = equidem("solve", self.folder / "truss.toml")
+        self.check_error(done, 2, "no group 'nowhere'", f"{grouped(len(text['groups']))} in all")
+        self.assertLess(len(done.stderr), 500)
 
     def test_a_key_given_twice_is_refused(self):
         text = (CASES / "truss.json").read_text().replace('"discs"', '"discs": [], "discs"', 1)

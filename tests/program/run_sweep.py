@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem sweep, and the numbers of all results, as a user does: run_sweep.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import csv
+import resource
 import signal
 import subprocess
 import time
@@ -110,6 +111,43 @@ class Sweep(ProgramTest):
                            "--values", "true,false")["points"]
         self.assertEqual([point["solver.method"] for point in words], ["multifrontal"] * 2 + ["cholmod"] * 2)
         self.assertEqual([point["status"] for point in words], ["solved"] * 4)
+
+    def test_seeds_and_whole_numbers_keep_all_their_digits(self):
+        for most in (2**53 + 1, 2**63 - 1):
+            command = (CASES / "random_cell.toml", "--verb", "homogenize", *sets("assembly.discs=60"))
+            by_seed = self.sweep(*command, "--seeds", f"{most - 1}-{most}")
+            self.assertEqual([point["seed"] for point in by_seed["points"]], [most - 1, most])
+            self.assertEqual(by_seed["keys"][0]["values"], [most - 1, most])
+            by_key = self.sweep(*command, "--key", "assembly.seed", "--values", f"{most - 1},{most}")
+            self.assertEqual([point["assembly.seed"] for point in by_key["points"]], [most - 1, most])
+            self.assertEqual([point["shear_modulus"] for point in by_key["points"]],
+                             [point["shear_modulus"] for point in by_seed["points"]])
+
+    def test_too_many_points_are_refused_before_they_take_memory(self):
+        steps = ("--key", "ratio", "--from", "0", "--to", "1", "--steps", "1000000", "--seeds", "0-1")
+        for words, points in ((("--seeds", f"0-{2**63 - 1}"), "9.22e+18"), (("--seeds", "0-999999", "--seeds", "0-999999"), "2e+06"),
+                              (steps, "2e+06")):
+            done = subprocess.run([PROGRAM, "sweep", CASES / "random_cell.toml", "--verb", "homogenize", *words, "--dry-run"],
+                                  capture_output=True, text=True, timeout=60, check=False,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30)))
+            self.check_error(done, 2, f"the sweep has {points} points", "Give at most")
+
+    def test_samples_beyond_the_largest_seed_are_refused_with_their_line(self):
+        last = 2**63 - 1
+        for verb, case, key in (("homogenize", "ensemble.toml", "assembly.seed"), ("calibrate", "calibrate_strength.toml", "assembly.seed"),
+                                ("calibrate", "calibrate_strength.toml", "strength.seed")):
+            done = equidem(verb, CASES / case, *sets(f"{key}={last}"), "--dry-run")
+            self.check_error(done, 2, key, f"the largest seed is {last}")
+
+    def test_what_is_no_ratio_is_refused_and_a_verb_without_numbers_is_not_offered(self):
+        for value in ("x", "true", "none"):
+            self.check_error(equidem("sweep", TENSION, "--key", "ratio", "--values", f"0,{value}"), 2, f"'{value}'", "kT/kN")
+        done = equidem("sweep", TENSION, "--verb", "export", "--key", "ratio", "--values", "0,1")
+        self.check_error(done, 2, "cannot vary 'export'")
+        self.assertNotIn("export", done.stderr.split("Give one of")[1])
+        offered = done.stderr.split("Give one of ")[1].strip(".\n")
+        self.assertIn(offered, " ".join(self.check_done(equidem("sweep", "--help")).stdout.split()))
+        self.assertIn("quasistatic", offered)
 
     def test_seeds_are_drawn_with_their_mean(self):
         out = self.folder / "out"

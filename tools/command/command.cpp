@@ -5,12 +5,16 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <iterator>
+#include <new>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -52,6 +56,48 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--dry-run", options.dry_run,
                    "say how large the computation is and how long it takes, without doing it");
   add_result_options(command, options);
+}
+
+namespace {
+
+/// Files with the names of texts in a document, and those that they name in turn.
+void add_named_files(const TomlValue& value, const std::filesystem::path& folder, int depth,
+                     std::vector<std::filesystem::path>& files);
+
+void add_document(const std::filesystem::path& file, std::span<const std::string> overrides, int depth,
+                  std::vector<std::filesystem::path>& files) {
+  files.push_back(file);
+  try {
+    add_named_files(casefile::read_document(file, overrides), file.parent_path(), depth, files);
+  } catch (const Error&) {  // the verb reports what is wrong with it
+  }
+}
+
+void add_named_files(const TomlValue& value, const std::filesystem::path& folder, int depth,
+                     std::vector<std::filesystem::path>& files) {
+  for (const TomlValue& item : value.items) add_named_files(item, folder, depth, files);
+  for (const TomlEntry& entry : value.entries) add_named_files(entry.value, folder, depth, files);
+  std::error_code ignored;
+  if (value.type != TomlValue::Type::text || value.text.find('\0') != std::string::npos) return;
+  const std::filesystem::path path = folder / value.text;
+  if (!std::filesystem::is_regular_file(path, ignored)) return;
+  depth > 0 && path.extension() == ".toml" ? add_document(path, {}, depth - 1, files) : files.push_back(path);
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> replaceable_inputs(const CLI::App& command) {
+  const auto given = [&](const char* name) {
+    const CLI::Option* option = command.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0 ? option->results() : std::vector<std::string>{};
+  };
+  std::vector<std::filesystem::path> files;
+  if (given("--overwrite").empty() || !given("--resume").empty()) return files;
+  constexpr int documents_in_documents = 2;  // of a study: its case, and the springs of that
+  for (const char* name : {"CASE", "STUDY"})
+    for (const std::string& file : given(name)) add_document(file, given("--set"), documents_in_documents, files);
+  for (const std::string& file : given("--begin-from")) files.emplace_back(file);
+  return files;
 }
 
 void add_require_stable(CLI::App& command, CommonOptions& options) {
@@ -135,9 +181,21 @@ void OutputPlan::expect_plot(const std::string& name) const {
   for (const char* end : {".csv", ".gp", ".svg", ".png"}) expect(name + end);
 }
 
+namespace {
+
+/// \return errno; 0: written
+int write_to_stdout(const std::string& text) {
+  return std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0 ? errno : 0;
+}
+
+[[noreturn]] void stdout_failed(int error) {
+  computation_failed("cannot write to stdout", std::strerror(error), "Send the output somewhere that has room for it");
+}
+
+}  // namespace
+
 void print(const std::string& text) {
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
-    bad_input("cannot write to stdout", std::strerror(errno), "Send the output somewhere that has room for it");
+  if (const int error = write_to_stdout(text); error != 0 && error != EPIPE) stdout_failed(error);
 }
 
 std::optional<FolderLock> lock_out(const CommonOptions& options) {
@@ -255,53 +313,122 @@ std::string Delivery::json() const {
   return numbers().append(texts()).json();
 }
 
-void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,
-             const std::vector<DrawnFigure>& figures) {
-  Delivery delivery{status, results, times};
-  delivery.verb = options.verb;
-  delivery.command = collected != nullptr ? collected_command : command_line();
-  if (collected != nullptr) {
-    collected->status = status;
-    collected->results = results;
-    collected->times = times;
-    collected->verb = delivery.verb;
-    collected->command = delivery.command;
-  }
-  const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
-  if (printed && !to_stdout && !options.quiet) print(delivery.report());
-  const bool filed = options.out && !options.dry_run;
-  if ((printed && options.json) || filed) {
-    const std::string json = delivery.json();
-    if (to_stdout) print(json);
-    // The files were found writable before the computation.
-    if (options.json && !to_stdout) write_file(*options.json, json, true);
-    if (filed) {
-      write_file(*options.out / "result.json", json, true);
-      if (has_page(options.verb)) write_file(*options.out / page_name, delivery.page(*options.out, figures), true);
-      say(options, fmt::format("written to {}", options.out->string()));
+namespace {
+
+/// Carries out the parts of a delivery. What fails is a warning of the results.
+class Deliverer {
+ public:
+  explicit Deliverer(Results& results) : results_(results) {}
+
+  /// \param lost where it fails the delivery has failed
+  /// \return whether it succeeded
+  bool attempt(const std::string& what, const std::function<void()>& task, bool lost = true) {
+    if (interruption_) return false;
+    try {
+      task();
+      return true;
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) {
+        interruption_ = error;
+      } else {
+        fail(error, lost);
+      }
+    } catch (const std::bad_alloc&) {
+      fail({ErrorKind::computation_failed, what + " is missing", "there is too little memory for it", ""}, lost);
+    } catch (const std::exception& error) {
+      fail({ErrorKind::computation_failed, what + " is missing", error.what(), "Please report it with the case"}, lost);
     }
+    return false;
   }
+  void fail(const Error& error, bool lost) {
+    if (lost && !failure_)
+      failure_.emplace(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where());
+    warn(error.what());
+  }
+  void warn(const std::string& sentence) {
+    if (std::ranges::find(warnings_, sentence) != warnings_.end()) return;
+    warnings_.push_back(sentence);
+    results_.line("WARNING", sentence);
+  }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  /// \param printed warnings go to stderr, and the failure ends the verb; else a caller in memory has both
+  void finish(bool printed) const {
+    for (const std::string& warning : warnings_)
+      if (printed && !(failure_ && warning == failure_->what())) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (interruption_) throw *interruption_;
+    if (printed && failure_) throw *failure_;
+  }
+
+ private:
+  Results& results_;
+  std::vector<std::string> warnings_;
+  std::optional<Error> failure_, interruption_;
+};
+
+}  // namespace
+
+void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
+             const std::vector<OutputPart>& parts) {
+  const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
+  const bool filed = options.out && !options.dry_run, file_of_json = printed && options.json && !to_stdout;
+  Deliverer all(results);
+  const auto delivery = [&] {
+    Delivery made{status, results, times};
+    if (!all.warnings().empty()) made.results.set("warnings", all.warnings());
+    made.verb = options.verb;
+    made.command = printed ? command_line() : collected_command;
+    return made;
+  };
+  // The files were found writable before the computation.
+  const auto write_json = [&] {
+    if (!filed && !file_of_json) return true;
+    const std::string json = delivery().json();
+    bool written = true;
+    if (filed) written = all.attempt("result.json", [&] { write_file(*options.out / "result.json", json, true); });
+    if (file_of_json) written &= all.attempt(*options.json, [&] { write_file(*options.json, json, true); });
+    return written;
+  };
+  const bool written = write_json() && (filed || file_of_json);
+  const Stopwatch watch;
+  const DrawnFigures drawn;
+  for (const OutputPart& part : parts) all.attempt(part.name, part.write);
+  for (const DrawnFigure& figure : drawn.list())
+    if (!figure.missing.empty()) all.warn(figure.missing);
+  if (options.out && !parts.empty()) times.add("files", watch.seconds());
+  if (filed && has_page(options.verb)) {
+    all.attempt(page_name,
+                [&] { write_file(*options.out / page_name, delivery().page(*options.out, drawn.list()), true); });
+  }
+  if (!printed) {
+    Delivery made = delivery();
+    collected->status = status;
+    collected->results = std::move(made.results);
+    collected->times = times;
+    collected->verb = made.verb;
+    collected->command = made.command;
+  } else if (to_stdout || !options.quiet) {
+    const int error = write_to_stdout(to_stdout ? delivery().json() : delivery().report());
+    if (error != 0)
+      all.attempt(
+          "stdout", [&] { stdout_failed(error); }, !written);
+  }
+  if (!parts.empty() || !all.warnings().empty()) write_json();
+  if (filed) say(options, fmt::format("written to {}", options.out->string()));
+  all.finish(printed);
   if (options.require_stable && (status == "unstable" || status == "unjudged" || status == "mechanism")) {
     computation_failed(fmt::format("the assembly is not stable: its status is \"{}\"", status),
                        "--require-stable was given", "Raise kT, hold more discs, or leave the option out");
   }
 }
 
-void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
-             const std::function<void(Results&)>& write_files) {
-  CommonOptions delivered = options;
-  std::optional<Error> failure;
-  const Stopwatch watch;
-  const DrawnFigures drawn;
+void SavedOnTheWay::operator()(const std::function<void()>& save) {
   try {
-    write_files(results);
+    save();
   } catch (const Error& error) {
-    failure = error;
-    delivered.out.reset();
+    if (error.kind() == ErrorKind::interrupted) throw;
+    if (!failed_) say(options_, fmt::format("warning: {}", error.what()));
+    failed_ = true;
   }
-  if (options.out) times.add("files", watch.seconds());
-  deliver(delivered, status, results, times, drawn.list());
-  if (failure) throw *failure;
 }
 
 void throw_stopped(const CommonOptions& options, const std::string& done, const std::string& again) {

@@ -48,6 +48,9 @@ struct CommonOptions {
 void add_result_options(CLI::App& command, CommonOptions& options);
 /// The case file, its overrides, and add_result_options.
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// Where --overwrite allows a verb to replace files: what it reads, its case and the files that the case names. A run
+/// that goes on with --resume replaces its own files, which may be its case.
+std::vector<std::filesystem::path> replaceable_inputs(const CLI::App& command);
 /// --require-stable, which deliver applies.
 void add_require_stable(CLI::App& command, CommonOptions& options);
 
@@ -93,19 +96,22 @@ class OutputPlan {
 /// \throws Error (bad_input) where another process has the folder
 [[nodiscard]] std::optional<FolderLock> lock_out(const CommonOptions& options);
 
-/// Report and JSON of a list of results, with the times of the stages: the report to stdout, unless quiet or --json is
-/// "-"; the JSON to --json and OUT/result.json; the page to OUT/index.html; then the folder on stderr. A dry run does
-/// not write to the folder.
-/// \param figures that the page shows
+/// What a verb writes beside its results: a table, a picture, the case. It fails alone.
+struct OutputPart {
+  std::string name;  ///< for warnings
+  std::function<void()> write;
+};
+
+/// Delivers the results of a verb in the order of their worth: OUT/result.json and --json FILE; the parts, one after
+/// the other; OUT/index.html; the report to stdout, unless quiet, or the JSON where --json is "-". What fails on the
+/// way is a warning in all that follows and on stderr; result.json is then written again with the warnings. A dry run
+/// does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
-/// \throws Error (bad_input) where they cannot be written; (computation_failed) afterwards with --require-stable, where
-///         the status is "unstable", "unjudged" or "mechanism"
-void deliver(const CommonOptions& options, const std::string& status, const Results& results, const StageTimes& times,
-             const std::vector<DrawnFigure>& figures = {});
-/// Write files, which may add to the results, then deliver. Where a file cannot be written (the disk is full), report
-/// and --json are delivered before the error is thrown.
+/// \throws Error (computation_failed) afterwards, where a file was lost or the answer reached neither the folder nor
+///         stdout; where --require-stable is given and the status is "unstable", "unjudged" or "mechanism".
+///         (interrupted) where the user stopped the parts
 void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
-             const std::function<void(Results&)>& write_files);
+             const std::vector<OutputPart>& parts = {});
 
 /// Numbers of a result in memory, too many for the JSON.
 struct ResultArray {
@@ -162,6 +168,18 @@ void hand_over(std::vector<ResultArray> arrays);
 void hand_over(std::shared_ptr<const Assembly> assembly);
 void hand_over(FigureWriter figures);
 
+/// Saves a table on the way to an end that writes it again: a disk that is full then costs no computation.
+class SavedOnTheWay {
+ public:
+  explicit SavedOnTheWay(const CommonOptions& options) : options_(options) {}
+  /// What fails is a warning on stderr, once.
+  void operator()(const std::function<void()>& save);
+
+ private:
+  const CommonOptions& options_;
+  bool failed_ = false;
+};
+
 /// case.toml in --out, if there is one, which reproduces the computation.
 /// \param resolved a Case or the document of another kind of case
 template <typename Resolved>
@@ -180,8 +198,8 @@ std::string build_description();
 /// The sentence without its full stop, as a part of another one.
 std::string without_full_stop(std::string sentence);
 
-/// Write to stdout, at once.
-/// \throws Error (bad_input) where that fails
+/// Write to stdout, at once; nothing more to a reader that has gone.
+/// \throws Error (computation_failed) where that fails
 void print(const std::string& text);
 /// One line on stderr, unless quiet.
 void say(const CommonOptions& options, const std::string& line);

@@ -41,6 +41,10 @@ OptionCheck number(double least, double most) {
   };
 }
 
+OptionCheck plain_text() {
+  return [](const std::string& given) { return has_controls(given) ? std::string("it has control characters") : ""; };
+}
+
 OptionCheck file_name() {
   return [](const std::string& given) {
     if (given.empty()) return std::string("the name is empty");

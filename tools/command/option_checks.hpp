@@ -43,6 +43,8 @@ OptionCheck whole_number(std::int64_t least, std::int64_t most = std::numeric_li
 /// A finite number, or one in [least, most].
 OptionCheck finite_number();
 OptionCheck number(double least, double most);
+/// A text without control characters.
+OptionCheck plain_text();
 /// The name of a file or folder: not empty, and no option that stands where a name was forgotten.
 OptionCheck file_name();
 

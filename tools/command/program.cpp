@@ -2,21 +2,25 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <optional>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -113,25 +117,32 @@ void show_help(const Program& program, const CLI::App& app, const std::vector<st
     print(app.help());
     return;
   }
+  const auto take = [&](std::size_t most) {
+    if (arguments.size() > most)
+      bad_input(fmt::format("'{}' is one argument too many", arguments[most]), "",
+                fmt::format("'{} help' shows what there is help on", program.name));
+  };
   std::vector<std::string> topics{manual_topic, completion_topic};
   if (std::ranges::find(topics, arguments[1]) != topics.end()) {
+    take(3);
     print(generated_text(program, app, arguments[1], arguments.size() > 2 ? arguments[2] : ""));
     return;
   }
   for (const HelpTopic& topic : program.topics) {
-    if (arguments[1] == topic.name) {
-      const bool markdown = topic.markdown && arguments.size() > 2 && arguments[2] == "--markdown";
-      print((markdown ? topic.markdown : topic.text)());
-      return;
-    }
     topics.emplace_back(topic.name);
+    if (arguments[1] != topic.name) continue;
+    const bool further = arguments.size() > 2;
+    const bool markdown = topic.markdown != nullptr && further && arguments[2] == "--markdown";
+    take(markdown || topic.entry != nullptr ? 3 : 2);
+    print(markdown ? topic.markdown() : further ? topic.entry(arguments[2]) : topic.text());
+    return;
   }
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (arguments[1] == command->get_name()) {
-      print(command->help(program.name));
-      return;
-    }
     topics.push_back(command->get_name());
+    if (arguments[1] != command->get_name()) continue;
+    take(2);
+    print(command->help(program.name));
+    return;
   }
   bad_input(fmt::format("there is no help on '{}'", arguments[1]), "",
             did_you_mean(arguments[1], topics, fmt::format("There is help on {}", joined(topics))));
@@ -185,6 +196,8 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   std::vector<std::string> words{program.name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   set_command_line(words);
+  const ProtectedInputs inputs(verb == commands.end() ? std::vector<std::filesystem::path>{}
+                                                      : replaceable_inputs(**verb));
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 
@@ -262,7 +275,21 @@ void start_without_blas_threads(char** argv) {
 
 }  // namespace
 
+namespace {
+
+/// A descriptor of the standard streams that is closed would become that of the first file that is opened: what cannot
+/// be written to takes its place. A pipe or a file that takes no more is an error of the write, not a signal.
+void keep_streams_apart() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) static_cast<void>(open("/dev/null", O_RDONLY));
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace
+
 int run_program(const Program& program, int argc, char** argv) {
+  keep_streams_apart();
   const auto fail = [&](const std::string& sentence, int exit_code) {
     std::fprintf(stderr, "%s: %s\n", program.name, one_line(sentence).c_str());
     return exit_code;

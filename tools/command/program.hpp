@@ -22,6 +22,7 @@ struct Verb {
   const char* name;
   const char* summary;                ///< one line of the help
   Run (*declare)(CLI::App& command);  ///< adds its options to the command line
+  bool swept = false;                 ///< gives numbers of a case whose keys a sweep may vary
 };
 
 /// An option or command that is not accepted, with the message for it.
@@ -37,7 +38,8 @@ struct HelpTopic {
   const char* name;
   const char* summary;  ///< one line of the manual
   std::string (*text)();
-  std::string (*markdown)() = nullptr;  ///< printed with --markdown
+  std::string (*markdown)() = nullptr;                      ///< printed with --markdown
+  std::string (*entry)(const std::string& name) = nullptr;  ///< on one of its entries, `help TOPIC NAME`
 };
 
 /// Topics of help that every program has: a page of its manual, completion for a shell.

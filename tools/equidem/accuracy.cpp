@@ -38,10 +38,8 @@ void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, con
   command.add_option("--accuracy", accuracy, what)->check(wrong)->type_name("X");
 }
 
-void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy) {
-  if (accuracy && options.dry_run)
-    bad_input("--accuracy and --dry-run exclude each other",
-              "settings are chosen by computing coarser ones, and a dry run computes nothing", "Leave one of them out");
+Results accuracy_plan(double accuracy, const std::string& how) {
+  return Results().line("accuracy").add("accuracy/requested", "asked", accuracy, "", {.digits = 3}).note("; " + how);
 }
 
 Results accuracy_results(const ReachedAccuracy& reached) {

@@ -43,8 +43,9 @@ inline constexpr const char* has_it_already = "nothing: what was chosen has it a
 /// --accuracy X, 0 < X < 1. \param what it does
 void add_accuracy_option(CLI::App& command, std::optional<double>& accuracy, const std::string& what);
 
-/// \throws Error (bad_input) where both are given: settings are chosen by computing, and a dry run computes nothing
-void refuse_dry_run_with_accuracy(const CommonOptions& options, bool accuracy);
+/// Line of a dry run. \param how the accuracy is reached
+Results accuracy_plan(double accuracy, const std::string& how);
+inline constexpr const char* bound_is_compared = "the error bound is compared with it, and nothing else is computed";
 
 /// accuracy: {requested, estimated, of, knob, value, pilots, pilots_factor, ten_times_more: {time_factor, seconds,
 /// value, note}}.

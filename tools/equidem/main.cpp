@@ -22,6 +22,7 @@ constexpr const char* footer = R"(Examples:
   equidem export data/cases/abe1996_fig6.toml --to lammps --out handed
   equidem study integrators --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
+  equidem help case springs  the keys of one table
   equidem help result        numbers of result.json, their units and meanings
   equidem help engines       what LAMMPS, YADE and PFC carry of a model
   equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
@@ -30,8 +31,8 @@ constexpr const char* footer = R"(Examples:
 The files of data/cases are installed in share/doc/equidem/examples.
 The tables and figures of published papers are computed by the program equidem-papers.
 
-Exit codes: 0 done, of a sweep some of its points; 1 the computation failed, and the message says why; 2 bad input or
-usage; 130 interrupted.)";
+Exit codes: 0 done, of a sweep some of its points; 1 the computation failed or its results could not all be written, and
+the message says why; 2 bad input or usage; 130 interrupted.)";
 
 }  // namespace
 
@@ -45,7 +46,7 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS]",
       .footer = footer,
       .verbs = verbs,
-      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page},
+      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page, describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
                  {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",

@@ -9,6 +9,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/core/file.hpp"
+
 #include "command.hpp"
 
 namespace equidem {
@@ -25,6 +27,7 @@ class VerbRun {
 
   /// \throws Error as the verb does
   [[nodiscard]] Delivery operator()(Arrays arrays = Arrays::not_wanted) const {
+    const ProtectedInputs inputs(replaceable_inputs(command_));
     return collect(run_, arrays, command_line_);
   }
 

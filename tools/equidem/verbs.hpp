@@ -21,13 +21,13 @@ Run declare_sweep(CLI::App& command);
 Run declare_study(CLI::App& command);
 
 inline constexpr std::array verbs{
-    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve},
-    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize},
-    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate},
-    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability},
-    Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack},
-    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run},
-    Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic},
+    Verb{"solve", "equilibrium under supports and loads, or Abe's tension test", declare_solve, true},
+    Verb{"homogenize", "effective stiffness and moduli of an assembly, with bounds", declare_homogenize, true},
+    Verb{"calibrate", "wanted moduli -> springs, as a file that every other verb accepts", declare_calibrate, true},
+    Verb{"stability", "mechanisms, waves, critical kT/kN, highest frequency and time step", declare_stability, true},
+    Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack, true},
+    Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run, true},
+    Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic, true},
     Verb{"export", "the model as input of LAMMPS, YADE or PFC, or its equations as matrices", declare_export},
     Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},

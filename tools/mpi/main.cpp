@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
       .usage = "VERB CASE.toml [OPTIONS] [OPTIONS OF PETSC]",
       .footer = footer,
       .verbs = parallel_verbs,
-      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page},
+      .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page, describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result}},
       .refusals = {{"calibrate", "equidem-mpi has no verb 'calibrate'", "it solves and homogenizes", "Use 'equidem'"},
                    {"stability", "equidem-mpi has no verb 'stability'", "it solves and homogenizes", "Use 'equidem'"},

@@ -83,7 +83,7 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
   deliver(options, status_of(result), std::move(all), std::move(times),
-          [&](Results&) { write_case(options, p.problem.resolved); });
+          {{"case.toml", [&] { write_case(options, p.problem.resolved); }}});
 }
 
 }  // namespace

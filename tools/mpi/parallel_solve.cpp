@@ -72,7 +72,7 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
   deliver(options, results.front().status(), std::move(all), std::move(times),
-          [&](Results&) { write_case(options, problem.resolved); });
+          {{"case.toml", [&] { write_case(options, problem.resolved); }}});
 }
 
 }  // namespace

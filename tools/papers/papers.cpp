@@ -40,19 +40,18 @@ int finish_paper(const CommonOptions& options, const PaperResult& result) {
   add_effects(effects, result.effects);
   results.block(text).set("paper", result.paper).append(effects.hidden());
   result.add_numbers(results);
-  deliver(options, result.status, std::move(results), result.times, [&](Results& out) {
-    if (!options.out) return;
-    write_file(*options.out / "report.txt", text, options.overwrite);
-    for (const auto& [name, content] : result.texts) write_file(*options.out / name, content, options.overwrite);
-    for (const auto& [name, table] : result.tables) write_csv(*options.out / (name + ".csv"), table, options.overwrite);
-    std::string failure;
-    for (const auto& [name, plot] : result.plots) {
-      const PlotResult written = write_plot(*options.out, name, plot, options.overwrite);
-      if (!written.drawn) failure = written.message;
-    }
-    const std::string plots = counted(static_cast<long long>(result.plots.size()), "plot");
-    out.block("\n" + (failure.empty() ? fmt::format("{} in '{}'", plots, options.out->string()) : failure) + "\n");
-  });
+  std::vector<OutputPart> parts;
+  if (options.out) {
+    const std::filesystem::path& out = *options.out;
+    parts.push_back({"report.txt", [&] { write_file(out / "report.txt", text, options.overwrite); }});
+    for (const auto& made : result.texts)
+      parts.push_back({made.first, [&] { write_file(out / made.first, made.second, options.overwrite); }});
+    for (const auto& made : result.tables)
+      parts.push_back({made.first, [&] { write_csv(out / (made.first + ".csv"), made.second, options.overwrite); }});
+    for (const auto& made : result.plots)
+      parts.push_back({made.first, [&] { write_plot(out, made.first, made.second, options.overwrite); }});
+  }
+  deliver(options, result.status, std::move(results), result.times, parts);
   return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -353,7 +354,9 @@ double bytes_of_network(double discs) {
 const DiscGroup& group(const Assembly& assembly, const std::string& name) {
   const auto found = assembly.groups.find(name);
   if (found != assembly.groups.end()) return found->second;
-  const std::string names = joined(assembly.groups, [](const auto& known) { return known.first; });
+  std::vector<std::string> known;
+  for (const auto& [other, discs] : assembly.groups) known.push_back(other);
+  const std::string names = first_words(std::move(known));
   bad_input(fmt::format("the assembly has no group '{}'", name),
             names.empty() ? std::string("it has no groups at all") : "its groups are " + names,
             assembly.periodic() ? "Name one of them; a periodic cell has no sides of its own" : "Name one of them");
@@ -386,6 +389,22 @@ std::vector<Inertia> inertia_of(const Assembly& assembly, double density, Body b
   for (std::size_t d = 0; d < assembly.sections.size(); ++d)
     all[d] = {density * assembly.sections[d].area, density * assembly.sections[d].polar_moment};
   return all;
+}
+
+void place_contact_points(Assembly& assembly, ContactPoints points) {
+  if (!assembly.contact_arms.empty() || !assembly.sections.empty())
+    bad_input("levers are chosen for bodies that are no discs", "their contact points are where their outlines meet",
+              "Leave the choice out");
+  for (Contact& c : assembly.contacts) {
+    const double d = norm(assembly.branch(c)), r_i = assembly.radii[c.i], r_j = assembly.radii[c.j];
+    c.lever_i = points == ContactPoints::radii    ? d * r_i / (r_i + r_j)
+                : points == ContactPoints::middle ? 0.5 * (d + r_i - r_j)
+                                                  : 0.5 * d;
+    c.lever_j = d - c.lever_i;
+    if (c.lever_i > 0 && c.lever_j > 0) continue;
+    bad_input(fmt::format("discs {} and {} overlap so far that the middle of the overlap is beyond a centre", c.i, c.j),
+              "a lever would be negative", "Choose levers by the radii or half-way");
+  }
 }
 
 }  // namespace equidem

@@ -6,6 +6,8 @@
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/casefile/study/study_case.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -171,6 +173,26 @@ std::string describe_case_file() {
     out += tables_of(part, casefile::describe_table);
   }
   return out;
+}
+
+std::string describe_case_table(const std::string& given) {
+  std::string name = given;
+  std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
+  std::string out;
+  std::vector<std::string> names;
+  for (const Part& part : parts()) {
+    const casefile::TableSpec* table = part.spec.table(name);
+    for (const casefile::KeySpec& key : part.spec.keys)
+      if (table == nullptr && key.path() == name) table = part.spec.table(name.substr(0, name.rfind('.')));
+    for (const casefile::TableSpec& other : part.spec.tables) names.push_back(other.name);
+    const bool left_out = table != nullptr && std::ranges::find(part.left_out, table->name) != part.left_out.end();
+    if (table == nullptr || left_out) continue;
+    out += fmt::format("{}{}:\n{}", out.empty() ? "" : "\n", part.title, describe_table(part.spec, *table));
+  }
+  if (!out.empty()) return out;
+  const auto meant = nearest(name, names);
+  bad_input(fmt::format("there is no table [{}] of a case file", name), "",
+            meant ? fmt::format("Did you mean '{}'?", *meant) : "'equidem help case' lists all tables");
 }
 
 std::string case_file_page() {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/core/file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <sys/stat.h>
@@ -54,7 +57,44 @@ bool is_abandoned(std::string_view name) {
   bad_input(fmt::format("cannot write '{}'", path.string()), reason, "Choose a place that can be written to");
 }
 
+/// A disk that is full or broken is no fault of what was asked for.
+[[noreturn]] void cannot_write(const fs::path& path, int error, const std::string& where = {}) {
+  const std::string reason = where + std::strerror(error);
+  constexpr int of_the_disk[] = {ENOSPC, EDQUOT, EFBIG, EIO};
+  if (std::ranges::find(of_the_disk, error) == std::end(of_the_disk)) cannot_write(path, reason);
+  computation_failed(fmt::format("cannot write '{}'", path.string()), reason, "Make room on its disk");
+}
+
+/// The same for all names of a file.
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+std::optional<FileIdentity> identity_of(const fs::path& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0 || !S_ISREG(found.st_mode)) return std::nullopt;
+  return FileIdentity(found.st_dev, found.st_ino);
+}
+
+thread_local const std::vector<fs::path>* inputs = nullptr;
+
+void refuse_input(const fs::path& path) {
+  if (inputs == nullptr) return;
+  const auto there = identity_of(path);
+  if (!there || std::ranges::none_of(*inputs, [&](const fs::path& input) { return identity_of(input) == there; }))
+    return;
+  bad_input(fmt::format("'{}' is to be replaced, and is an input of the case", path.string()),
+            "a result in its place would change what the same command computes the next time",
+            "Choose another --out or file name");
+}
+
 }  // namespace
+
+ProtectedInputs::ProtectedInputs(std::vector<fs::path> files) : files_(std::move(files)), outer_(inputs) {
+  inputs = &files_;
+}
+
+ProtectedInputs::~ProtectedInputs() {
+  inputs = outer_;
+}
 
 void check_readable(const fs::path& path) {
   std::error_code ignored;
@@ -96,8 +136,9 @@ void check_writable(const fs::path& path, bool overwrite) {
     bad_input(fmt::format("'{}' exists already", path.string()), "nothing of yours is overwritten unasked",
               "Choose another name, or pass --overwrite");
   }
+  refuse_input(path);
   if (is_kept(path)) {
-    if (access(path.c_str(), W_OK) != 0) cannot_write(path, std::strerror(errno));
+    if (access(path.c_str(), W_OK) != 0) cannot_write(path, errno);
     return;
   }
   fs::path folder = folder_of(path);
@@ -110,7 +151,7 @@ void check_writable(const fs::path& path, bool overwrite) {
   // time.
   const fs::path trial = folder / temporary_suffix();
   if (mkdir(trial.c_str(), 0700) != 0 && errno != EEXIST)
-    cannot_write(path, fmt::format("'{}': {}", folder.string(), std::strerror(errno)));
+    cannot_write(path, errno, fmt::format("'{}': ", folder.string()));
   fs::remove(trial, ignored);
 }
 
@@ -118,28 +159,27 @@ void write_file(const fs::path& path, std::string_view content, bool overwrite) 
   check_writable(path, overwrite);
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
-  if (failed) cannot_write(path, failed.message());
+  if (failed) cannot_write(path, failed.value());
   const auto write_to = [&](const fs::path& place) {
+    errno = 0;
     std::ofstream file(place, std::ios::binary | std::ios::trunc);
     file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.flush();
-    return file ? std::string() : std::string(std::strerror(errno));
+    file.close();
+    return file ? 0 : errno == 0 ? EIO : errno;
   };
   if (is_kept(path)) {
-    if (const std::string reason = write_to(path); !reason.empty()) cannot_write(path, reason);
+    if (const int error = write_to(path); error != 0) cannot_write(path, error);
     return;
   }
   const fs::path temporary = path.string() + temporary_suffix();
-  if (const std::string reason = write_to(temporary); !reason.empty()) {
-    fs::remove(temporary, failed);
-    cannot_write(path, reason);
+  int error = write_to(temporary);
+  if (error == 0) {
+    fs::rename(temporary, path, failed);
+    error = failed.value();
   }
-  fs::rename(temporary, path, failed);
-  if (failed) {
-    const std::string reason = failed.message();
-    fs::remove(temporary, failed);
-    cannot_write(path, reason);
-  }
+  if (error == 0) return;
+  fs::remove(temporary, failed);
+  cannot_write(path, error);
 }
 
 void remove_abandoned_files(const fs::path& folder) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace equidem {
 
@@ -19,7 +20,7 @@ std::string read_file(const std::filesystem::path& path);
 /// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made. Devices,
 /// pipes and links are written into.
 /// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the
-///         reason)
+///         reason); (computation_failed) where the disk is full or fails
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);
 
 /// Remove the temporary files that processes which have ended since, killed in the middle of write_file, left in a
@@ -28,5 +29,18 @@ void remove_abandoned_files(const std::filesystem::path& folder);
 
 /// Fail early: the error that write_file would give, without writing.
 void check_writable(const std::filesystem::path& path, bool overwrite);
+
+/// While one exists, check_writable and write_file refuse to replace these files on its thread, whatever their names.
+class ProtectedInputs {
+ public:
+  explicit ProtectedInputs(std::vector<std::filesystem::path> files);
+  ~ProtectedInputs();
+  ProtectedInputs(const ProtectedInputs&) = delete;
+  ProtectedInputs& operator=(const ProtectedInputs&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  const std::vector<std::filesystem::path>* outer_;
+};
 
 }  // namespace equidem

@@ -13,6 +13,24 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
   return text;
 }
 
+bool has_controls(std::string_view text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    if ((byte < ' ' && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7f) return true;
+    const auto next = static_cast<unsigned char>(k + 1 < text.size() ? text[k + 1] : 0);
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) return true;  // U+0080 to U+009F
+  }
+  return false;
+}
+
+std::string first_words(std::vector<std::string> words) {
+  constexpr std::size_t most = 10;
+  const auto count = std::ssize(words);
+  if (words.size() <= most) return joined(words);
+  words.resize(most);
+  return fmt::format("{}, ..., {} in all", joined(words), grouped(count));
+}
+
 std::string listed(std::vector<std::string> words, std::string_view last) {
   if (words.size() < 2) return joined(words);
   const std::string end = words.back();

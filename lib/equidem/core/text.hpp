@@ -32,8 +32,14 @@ std::string joined(Range&& range, const WordOf& word_of, std::string_view separa
   return joined(words, separator);
 }
 
+/// "a, b, ..., 300 000 in all": the first ten words, for lists that may be long.
+std::string first_words(std::vector<std::string> words);
+
 /// "a, b and c".
 std::string listed(std::vector<std::string> words, std::string_view last = " and ");
+
+/// Whether a text in UTF-8 has control characters but for tabs and line breaks: terminals obey them, XML forbids them.
+bool has_controls(std::string_view text);
 
 /// The parts of a text between separators, trimmed; one more than there are separators.
 std::vector<std::string_view> parts_of(std::string_view text, char separator);

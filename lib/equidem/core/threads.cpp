@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -101,8 +102,13 @@ class Pool {
     for (auto& helper : helpers_) helper.join();
     helpers_.clear();
     stop_ = false;
-    for (int worker = 1; worker <= count; ++worker) {
-      helpers_.emplace_back([this, worker, seen = round_.load()] { serve(worker, seen); });
+    try {
+      for (int worker = 1; worker <= count; ++worker)
+        helpers_.emplace_back([this, worker, seen = round_.load()] { serve(worker, seen); });
+    } catch (const std::system_error& error) {
+      resize(0);
+      computation_failed(fmt::format("{} threads cannot be started", count + 1), error.code().message(),
+                         "Give fewer threads, or raise the limits of memory and processes (ulimit -v, -u)");
     }
   }
 

@@ -30,6 +30,15 @@ struct Delivered {
   }
 };
 
+/// What could not be delivered, a file or a figure, as warnings of Python: the numbers are there all the same.
+void warn_of(const Results& results) {
+  const Result* const found = find_result(results, "warnings");
+  const auto* sentences = found != nullptr ? std::get_if<std::vector<std::string>>(&found->value.value) : nullptr;
+  if (sentences == nullptr) return;
+  for (const std::string& sentence : *sentences)
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, sentence.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 /// Carry out a verb. Returns (JSON of the numbers, arrays, assembly or None where it is the given one, wall clock of
 /// the verb in s, Delivered).
 py::tuple run_verb(const std::string& verb, const std::string& case_text, const std::string& case_file,
@@ -50,6 +59,7 @@ py::tuple run_verb(const std::string& verb, const std::string& case_text, const 
     seconds = watch.seconds();
     json = delivery.numbers().json();
   }
+  warn_of(delivery.results);
   const py::dict arrays = arrays_of(std::exchange(delivery.arrays, {}));
   auto made = std::const_pointer_cast<Assembly>(std::exchange(delivery.assembly, nullptr));
   return py::make_tuple(json, arrays, std::move(made), seconds, Delivered{std::move(delivery)});

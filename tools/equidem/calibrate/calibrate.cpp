@@ -178,11 +178,12 @@ int calibrate(const CalibrateVerb& options) {
   } else {
     results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
   }
-  deliver(common, "calibrated", std::move(results), std::move(times), [&](Results&) {
-    if (path) write_file(*path, file, common.overwrite);
-    if (common.out) write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite);
-    write_case(common, resolved);
-  });
+  std::vector<OutputPart> parts{{"case.toml", [&] { write_case(common, resolved); }}};
+  if (path) parts.push_back({"the springs file", [&] { write_file(*path, file, common.overwrite); }});
+  if (common.out)
+    parts.push_back(
+        {assembly_name, [&] { write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite); }});
+  deliver(common, "calibrated", std::move(results), std::move(times), parts);
   hand_over([kept = resolved](const CommonOptions& into) { write_case(into, kept); });
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;

@@ -112,10 +112,16 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   const StrengthTargetCase& target = *resolved.strength_target;
   StrengthOptions strengths = resolved.strength.value_or(StrengthOptions{});
   Progress progress("testing");
+  std::optional<Error> refusal;
   const StrengthCalibration found = casefile::with_place(place, [&] {
-    return calibrate_strength(samples, target.wanted,
-                              {.strengths = strengths, .shear_over_tension = target.shear_over_tension},
-                              [&](double share) { progress.update(share); });
+    try {
+      return calibrate_strength(samples, target.wanted,
+                                {.strengths = strengths, .shear_over_tension = target.shear_over_tension},
+                                [&](double share) { progress.update(share); });
+    } catch (const InfeasibleStrengths& infeasible) {
+      refusal = infeasible.at(place);
+      return infeasible.nearest();
+    }
   });
   problem.times.add("tests", watch.lap());
   strengths.tension = found.tension;
@@ -123,15 +129,20 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   strengths.friction = found.friction;
   const std::string text = text_of_strengths(resolved, found, strengths);
   Results results = strength_results(problem, samples.front().sample, found);
-  if (path) {
+  if (refusal) {
+    results.line("NOT FEASIBLE", refusal->what()).set("refusal", refusal->what());
+    results.line("strength file", "none: what is above has the nearest ratio that was found")
+        .set("strength_file", nullptr);
+    path.reset();
+  } else if (path) {
     results.line("strength file").add("strength_file", "", path->string());
   } else {
     results.block("\nstrength file (--strength FILE writes it):\n" + text + "\n").set("strength_file", nullptr);
   }
-  deliver(options, "calibrated", std::move(results), problem.times, [&](Results&) {
-    if (path) write_file(*path, text, options.overwrite);
-    write_case(options, resolved);
-  });
+  std::vector<OutputPart> parts{{"case.toml", [&] { write_case(options, resolved); }}};
+  if (path) parts.push_back({"the strength file", [&] { write_file(*path, text, options.overwrite); }});
+  deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts);
+  if (refusal) throw *refusal;
   if (path) say(options, fmt::format("strengths written to {}", path->string()));
   return 0;
 }

@@ -33,10 +33,10 @@ int export_case(const ExportOptions& options) {
     deliver(options, "dry_run", made.results, made.times);
     return 0;
   }
-  deliver(options, "done", made.results, made.times, [&](Results&) {
-    for (const ExportedFile& file : made.files) write_file(*options.out / file.name, file.text(), options.overwrite);
-    made.write_case(options);
-  });
+  std::vector<OutputPart> parts{{"case.toml", [&] { made.write_case(options); }}};
+  for (const ExportedFile& file : made.files)
+    parts.push_back({file.name, [&] { write_file(*options.out / file.name, file.text(), options.overwrite); }});
+  deliver(options, "done", made.results, made.times, parts);
   return 0;
 }
 

@@ -181,6 +181,10 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
 
 }  // namespace
 
+double estimated_seconds(const Case& resolved, const EnsemblePlan& plan) {
+  return time_of(resolved, plan).seconds;
+}
+
 const char* joins_sides(const AssemblyCase& assembly) {
   return assembly.packing ? "packing.sides = \"periodic\"" : "assembly.periodic = true";
 }
@@ -214,17 +218,20 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 }
 
 void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
-                      const std::string& status, StageTimes times) {
+                      const std::string& status, StageTimes times, const std::function<void()>& save_samples) {
   const bool complete = status != "interrupted";
   results.set("complete", complete);
-  deliver(options, status, std::move(results), std::move(times), [&](Results& out) {
-    if (!options.out || !complete) return;
-    write_csv(*options.out / statistics_name, statistics_table(result.statistics), true);
-    for (const auto& [name, plot] : ensemble_plots(result))
-      out.block(write_plot(*options.out, name, plot, true).message + "\n");
-  });
-  if (!arrays_wanted()) return;
-  hand_over([plots = ensemble_plots(result)](const CommonOptions& into) {
+  const auto plots = ensemble_plots(result);
+  std::vector<OutputPart> parts;
+  if (options.out) parts.push_back({"samples.csv", save_samples});
+  if (options.out && complete) {
+    parts.push_back({statistics_name,
+                     [&] { write_csv(*options.out / statistics_name, statistics_table(result.statistics), true); }});
+    for (const auto& plot : plots)
+      parts.push_back({plot.first, [&] { write_plot(*options.out, plot.first, plot.second, true); }});
+  }
+  deliver(options, status, std::move(results), std::move(times), parts);
+  hand_over([plots](const CommonOptions& into) {
     for (const auto& [name, plot] : plots) write_plot(*into.out, name, plot, into.overwrite);
   });
 }
@@ -252,9 +259,10 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   };
   StageTimes times;
   Stopwatch watch;
+  SavedOnTheWay saved(options);
   EnsembleSamples sampled = sample_ensemble(
       result.plan, [&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); }, kept,
-      save);
+      [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
   result.samples = std::move(sampled.samples);
   result.statistics = analyze_ensemble(result.plan, result.samples, asked.confidence);
@@ -268,7 +276,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
                    sampled.stopped ? "interrupted"
                    : all_refused   ? "failed"
                                    : "done",
-                   std::move(times));
+                   std::move(times), [&] { save(result.samples); });
   if (sampled.stopped) {
     throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
                   "Run the same command with --resume to do the rest");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "equidem/casefile/assembly/case.hpp"
@@ -39,9 +40,13 @@ HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::u
 /// \param plan what is sampled, in words; empty: left out
 Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan = {});
 
-/// Writes statistics and plots into --out, and delivers the results.
+/// Writes samples, statistics and plots into --out, and delivers the results.
+/// \param save_samples writes the table of the samples
 void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
-                      const std::string& status, StageTimes times);
+                      const std::string& status, StageTimes times, const std::function<void()>& save_samples);
+
+/// s for the cells of a plan, from some of its cells.
+double estimated_seconds(const Case& resolved, const EnsemblePlan& plan);
 
 /// \throws Error (bad_input) where a file of an ensemble could not be written
 void check_ensemble_outputs(const CommonOptions& options);

@@ -69,21 +69,38 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                  "their moduli depend on the boundary far more than on the number of samples",
                  fmt::format("Set {}", joins_sides(resolved.assembly)));
   }
-  check_ensemble_outputs(options);
+  OutputPlan(options).expect_json();
+  if (!options.dry_run) check_ensemble_outputs(options);
   const auto lock = lock_out(options);
   EnsembleAccuracy wanted{.accuracy = accuracy,
                           .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
                           .first_seed = resolved.assembly.seed()};
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
+  if (options.dry_run) {
+    double seconds = 0;
+    std::vector<std::string> pilots;
+    for (const EnsembleSetting& pilot : accuracy_pilots(wanted)) {
+      pilots.push_back(fmt::format("{} cells of {} discs", pilot.samples, pilot.discs));
+      seconds += estimated_seconds(resolved, {{pilot.discs}, pilot.samples, wanted.first_seed});
+    }
+    results.append(accuracy_plan(accuracy, fmt::format("first {}; the size and number of cells that reach it follow "
+                                                       "from them, with at most {:.0e} discs in all",
+                                                       joined(pilots, " and "), wanted.most_discs)));
+    results.line("time").add("estimated_seconds", "about", seconds, "s for the first cells alone", {.digits = 2});
+    deliver(options, "dry_run", results.block("the other cells were not solved (--dry-run)\n"), {});
+    return 0;
+  }
   const auto& folder = options.out;
   const auto save = [&](const std::vector<EnsembleSample>& done) {
     if (folder) write_samples(*folder / "samples.csv", samples_table(done));
   };
   StageTimes times;
   Stopwatch watch;
-  AccurateEnsemble sampled = sample_to_accuracy(
-      [&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); }, wanted, save);
+  SavedOnTheWay saved(options);
+  AccurateEnsemble sampled =
+      sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
+                         wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
   if (sampled.stopped) {
     throw Error(ErrorKind::interrupted, "stopped as asked",
@@ -103,7 +120,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
     write_case(options, read_case(chosen));
   }
   results.append(ensemble_results(result)).append(accuracy_results(reached));
-  deliver_ensemble(options, result, std::move(results), "done", std::move(times));
+  deliver_ensemble(options, result, std::move(results), "done", std::move(times), [&] { save(result.samples); });
   return 0;
 }
 

@@ -124,10 +124,9 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
   return result;
 }
 
-/// Writes the table and the plot. Returns a line for the report.
-std::string write_harmonic(const CommonOptions& into, const std::string& title, const ViscoelasticStiffness& result) {
+void write_harmonic(const CommonOptions& into, const std::string& title, const ViscoelasticStiffness& result) {
   write_csv(*into.out / viscoelastic_table_name, viscoelastic_table(result), true);
-  return write_plot(*into.out, moduli_over_frequency, viscoelastic_plot(title, result), true).message + "\n";
+  write_plot(*into.out, moduli_over_frequency, viscoelastic_plot(title, result), true);
 }
 
 void refuse_viscoelastic_samples(const Case& resolved, bool accuracy) {
@@ -146,7 +145,7 @@ void add_solver_of_fronts(Results& results, const SolverOptions& asked) {
                            to_string(asked.method)));
 }
 
-int dry_run_homogenization(const CommonOptions& options, const Problem& problem) {
+int dry_run_homogenization(const CommonOptions& options, const Problem& problem, std::optional<double> accuracy) {
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
   const std::string names = joined(boundaries, [](Boundary boundary) { return to_string(boundary); });
@@ -164,6 +163,7 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
     complex_solutions = 2 * static_cast<double>(frequencies.size());
     add_solver_of_fronts(results, problem.resolved.solver);
   }
+  if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   deliver(options, "dry_run",
           dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results, AssemblyKeys::all,
                           complex_solutions),
@@ -174,7 +174,6 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem)
 int homogenize(const HomogenizeVerb& options) {
   const CommonOptions& common = options.common;
   Case resolved = read_case(common);
-  refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
   refuse_viscoelastic_samples(resolved, options.accuracy.has_value());
   if (options.accuracy && resolved.assembly.random()) {
     if (options.resume)
@@ -190,7 +189,7 @@ int homogenize(const HomogenizeVerb& options) {
   if (options.accuracy) resolved.solver.accuracy = std::sqrt(0.1 * *options.accuracy);  // errors of moduli are squares
   const auto shared_problem = std::make_shared<const Problem>(prestressed(problem_of(std::move(resolved))));
   const Problem& problem = *shared_problem;
-  if (common.dry_run) return dry_run_homogenization(common, problem);
+  if (common.dry_run) return dry_run_homogenization(common, problem, options.accuracy);
 
   const auto shared_stiffness = std::make_shared<const BoundedStiffness>(homogenize(problem));
   const BoundedStiffness& homogenized = *shared_stiffness;
@@ -214,13 +213,16 @@ int homogenize(const HomogenizeVerb& options) {
     results.line("files", "without states: those are of prescribed strains");
   else if (common.out)
     results.line("files", fmt::format("states are those of strains of {}", written_strain));
-  deliver(common, status_of(result), std::move(results), std::move(times), [&](Results& out) {
-    if (!common.out) return;
-    if (harmonic) out.block(write_harmonic(common, problem.resolved.title, harmonic->stiffness));
-    write_assembly(common, problem.resolved.output, problem.assembly);
-    write_states(common, problem.resolved.output, problem, result);
-    write_case(common, problem.resolved);
-  });
+  std::vector<OutputPart> parts;
+  if (common.out) {
+    parts.push_back({"case.toml", [&] { write_case(common, problem.resolved); }});
+    if (harmonic)
+      parts.push_back(
+          {viscoelastic_table_name, [&] { write_harmonic(common, problem.resolved.title, harmonic->stiffness); }});
+    parts.push_back({"the assembly", [&] { write_assembly(common, problem.resolved.output, problem.assembly); }});
+    parts.push_back({"the states", [&] { write_states(common, problem.resolved.output, problem, result); }});
+  }
+  deliver(common, status_of(result), std::move(results), std::move(times), parts);
   constexpr const char* strains[] = {"xx", "yy", "xy"};
   for (std::size_t k = 0; arrays_wanted() && k < result.fluctuations.size(); ++k)
     hand_over(motion_arrays(fmt::format("fluctuations/{}/", strains[k]), {shared_stiffness, &result.fluctuations[k]}));

@@ -189,6 +189,7 @@ void add_order(Results& out, const BoundedStiffness& h, const ContactSprings& sp
     out.line("order",
              fmt::format("{} as quadratic forms: {}; least eigenvalues of the differences over the larger: {}",
                          joined(names, " <= "), holds ? "holds" : "BROKEN, do not trust this result", joined(margins)));
+    out.line("", "K and G lie between their bounds; nu, a ratio of both, need not");
   } else if (springs.any_negative()) {
     out.line("order", "kT < 0: energies are no minima, and nothing above is a bound");
   } else if (springs.prestressed()) {

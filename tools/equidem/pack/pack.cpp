@@ -48,24 +48,24 @@ void draw(const CommonOptions& common, const PackCase& resolved, const GrainPack
 }
 
 /// \param density kg/m³, of the bodies; not written where the case leaves it open
-void write_files(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
-                 const Assembly& network, double density) {
+void write_tables(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing, double density) {
+  if (!resolved.csv) return;
   const auto& folder = *common.out;
-  if (resolved.csv) {
-    const std::vector<std::string> groups(packing.grains.size(), "grains");
-    const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
-    const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
-    write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period},
-                    common.overwrite);
-    if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, {}, common.overwrite);
-  }
-  const auto place = [&](const char* stem) { return folder / assembly_file_name(stem, resolved.assembly); };
+  const std::vector<std::string> groups(packing.grains.size(), "grains");
+  const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
+  const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
+  write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period}, common.overwrite);
+  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, {}, common.overwrite);
+}
+
+void write_assemblies(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
+                      const Assembly& network) {
+  const auto place = [&](const char* stem) { return *common.out / assembly_file_name(stem, resolved.assembly); };
   write_assembly(place("assembly"), network, common.overwrite);
   if (!packing.box.periodic()) {
     const HeldNetwork held = held_network_of(packing, resolved.network);
     if (!held.bodies.empty()) write_assembly(place("assembly_with_walls"), held.assembly, common.overwrite);
   }
-  draw(common, resolved, packing);
 }
 
 /// Adds the line of the key at fault to the errors of a task. \param usual the key of an error that names none
@@ -115,14 +115,18 @@ int run(const CommonOptions& common) {
   const PackingMeasures measures = measured(resolved, packing);
   times.add("measures", watch.lap());
   const bool stopped = packing.failure && packing.failure->kind() == ErrorKind::interrupted;
+  std::vector<OutputPart> parts;
+  if (common.out) {
+    parts.push_back({"case.toml", [&] { write_case(common, resolved.document); }});
+    parts.push_back({"the tables", [&] { write_tables(common, resolved, packing, density); }});
+    parts.push_back({"the assembly", [&] { write_assemblies(common, resolved, packing, network); }});
+    parts.push_back({"the picture", [&] { draw(common, resolved, packing); }});
+  }
   deliver(common,
           stopped           ? "interrupted"
           : packing.failure ? "failed"
                             : "done",
-          packing_results(resolved, packing, network, density, measures, rest), std::move(times), [&](Results&) {
-            if (common.out) write_files(common, resolved, packing, network, density);
-            write_case(common, resolved.document);
-          });
+          packing_results(resolved, packing, network, density, measures, rest), std::move(times), parts);
   if (packing.failure) located(resolved, "method", [&] { throw *packing.failure; });
   hand_over(std::make_shared<const Assembly>(std::move(network)));
   hand_over([shared_case, shared_packing](const CommonOptions& into) {

@@ -17,12 +17,13 @@ std::string numbers_of(const std::vector<std::int32_t>& discs) {
       discs, [](std::int32_t disc) { return fmt::format("{}", disc); }, " ");
 }
 
-std::vector<std::int32_t> discs_of(const std::string& text) {
+std::vector<std::int32_t> discs_of(const StoredTable& table, std::size_t row, std::size_t column) {
+  const std::string& text = table.text(row, column);
   std::vector<std::int32_t> discs;
   if (text.empty()) return discs;
-  for (const std::string_view word : words_of(text)) {
+  for (const std::string_view word : parts_of(text, ' ')) {
     const auto disc = number_from<std::int32_t>(word);
-    if (!disc) bad_input(fmt::format("'{}' is no number of a disc", word), "the events name discs", "Start afresh");
+    if (!disc) table.refuse(fmt::format("line {} has '{}' in place of numbers of discs", row + 2, text));
     discs.push_back(*disc);
   }
   return discs;
@@ -119,7 +120,7 @@ StoredEvents read_events(const std::filesystem::path& path, const EventPath& run
     for (const Number& n : numbers(scene.path.driven_by)) event.*n.member = table.number(row, column.at(n.name));
     for (const StressColumn& c : stress_columns) event.stress.*c.member = table.number(row, column.at(c.name));
     event.mode = enum_from<BreakMode>(table.text(row, column.at("mode")));
-    event.loosened = discs_of(table.text(row, column.at("loosened")));
+    event.loosened = discs_of(table, row, column.at("loosened"));
   }
   return {std::move(events), table.cut()};
 }

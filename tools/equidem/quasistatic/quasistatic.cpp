@@ -366,13 +366,18 @@ int quasistatic(const QuasistaticOptions& given) {
   results.set("complete", !stop.interrupted && !stop.failure);
   if (options.out && !stop.state)
     results.line("state", "none is written: no equilibrium of what is left is known behind the last event");
-  deliver(
-      options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, [&](Results&) {
-        if (!options.out) return;
-        const OutputCase& wanted = sequence.problem.resolved.output;
-        write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut, sequence.problem.resolved.title);
-        write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
-      });
+  const OutputCase& wanted = sequence.problem.resolved.output;
+  std::vector<OutputPart> parts;
+  if (options.out) {
+    parts.push_back({"the state", [&] {
+                       write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
+                     }});
+    parts.push_back({"the figures", [&] {
+                       write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut,
+                                     sequence.problem.resolved.title);
+                     }});
+  }
+  deliver(options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, parts);
   const std::int64_t events = std::ssize(sequence.run().events());
   if (stop.failure && events == 0) throw *stop.failure;  // nothing of the path is known
   if (stop.interrupted) {

@@ -66,9 +66,10 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   times.add("steps", result.seconds);
   Results results = run_results(job, plan, result);
   if (search != nullptr) results.append(accuracy_results(search->reached()));
-  deliver(common, "done", std::move(results), std::move(times), [&](Results&) {
-    if (common.out) job.write_files(*common.out, result, common.overwrite || options.resume);
-  });
+  std::vector<OutputPart> parts;
+  if (common.out)
+    parts.push_back({"the tables", [&] { job.write_files(*common.out, result, common.overwrite || options.resume); }});
+  deliver(common, "done", std::move(results), std::move(times), parts);
   if (!arrays_wanted()) return true;
   hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
   hand_over([shared_job, shared_result, history = tables.history()](const CommonOptions& into) {
@@ -86,9 +87,9 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
   StageTimes times = job.times();
   Results results = job.relax(times);
   const CommonOptions& common = options.common;
-  deliver(common, "at_rest", std::move(results), std::move(times), [&](Results&) {
-    if (common.out) job.write_files(*common.out, {}, common.overwrite);
-  });
+  std::vector<OutputPart> parts;
+  if (common.out) parts.push_back({"the tables", [&] { job.write_files(*common.out, {}, common.overwrite); }});
+  deliver(common, "at_rest", std::move(results), std::move(times), parts);
   hand_over([shared_job](const CommonOptions& into) { shared_job->write_files(*into.out, {}, into.overwrite); });
 }
 
@@ -109,7 +110,6 @@ int run_to_accuracy(RunVerb options, double accuracy) {
 /// Combinations of options that are not possible.
 void check_options(const RunVerb& options, bool collide) {
   const CommonOptions& common = options.common;
-  refuse_dry_run_with_accuracy(common, options.accuracy.has_value());
   if (options.resume && !common.out)
     bad_input("--resume without --out", "the checkpoint lies in that folder",
               "Name the folder of the run that is to go on");
@@ -134,12 +134,14 @@ void check_options(const RunVerb& options, bool collide) {
 int run(const RunVerb& options) {
   const bool collide = describes_grains(casefile::read_document(options.common.case_file, options.common.set));
   check_options(options, collide);
-  if (options.accuracy) return run_to_accuracy(options, *options.accuracy);
+  if (options.accuracy && !options.common.dry_run) return run_to_accuracy(options, *options.accuracy);
   const std::shared_ptr<RunJob> job = make_run_job(options.common, options.resume, options.begin_from);
   check_outputs(options, *job);
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
-    deliver(options.common, "dry_run", dry_run_results(*job), job->times());
+    Results results = dry_run_results(*job);
+    if (options.accuracy) results.append(accuracy_plan(*options.accuracy, StepSearch::plan));
+    deliver(options.common, "dry_run", results, job->times());
   } else if (job->goes_to_rest()) {
     relax_to_rest(options, job);
   } else {

@@ -19,6 +19,9 @@ class BondedRun;
 /// converge by the order of the integrator); they write nothing.
 class StepSearch final : public CaseSearch {
  public:
+  static constexpr const char* plan =
+      "first runs with the step of the case, that over root 2 and its half; the longest step that reaches it follows "
+      "from them; above is the run with the step of the case";
   /// \param given the run with the step of the case
   /// \throws Error (bad_input) where the run goes to rest
   StepSearch(const CommonOptions& options, double accuracy, const BondedRun& given);

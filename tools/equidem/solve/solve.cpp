@@ -106,9 +106,16 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
   }
   Results all = solve_results(problem, problem_results(problem, effects), results);
   if (reached) all.append(accuracy_results(*reached));
-  deliver(options, results.front().status(), std::move(all), std::move(times), [&](Results&) {
-    if (options.out) write_outputs(options, problem.resolved.output, problem, results);
-  });
+  std::vector<OutputPart> parts;
+  if (options.out) {
+    const OutputCase& wanted = problem.resolved.output;
+    parts.push_back({"case.toml", [&] { write_case(options, problem.resolved); }});
+    parts.push_back({"the assembly", [&] { write_assembly(options, wanted, problem.assembly); }});
+    for (std::size_t k = 0; k < results.size(); ++k)
+      parts.push_back(
+          {"the state", [&, k] { write_state_of(options, wanted, problem, problem.load_cases[k].loads, results[k]); }});
+  }
+  deliver(options, results.front().status(), std::move(all), std::move(times), parts);
   if (!arrays_wanted()) return true;
   for (const SolvedCase& result : results) {
     hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",
@@ -122,11 +129,11 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
 }
 
 int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
-  refuse_dry_run_with_accuracy(options, accuracy.has_value());
   Case resolved = read_case(options);
   check_solution_files(options, resolved);
   const auto lock = lock_out(options);
-  if (accuracy && BlockSearch::serves(resolved)) {
+  const bool searched = accuracy && BlockSearch::serves(resolved);
+  if (searched && !options.dry_run) {
     BlockSearch search(options, resolved, *accuracy);
     while (!solve_once(options, std::make_shared<const Problem>(prestressed(build_problem(search.propose()))), accuracy,
                        &search)) {
@@ -135,7 +142,9 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   }
   const auto problem = std::make_shared<const Problem>(prestressed(build_problem(std::move(resolved))));
   if (options.dry_run) {
-    deliver(options, "dry_run", dry_run_results(*problem, 1), problem->times);
+    Results further;
+    if (accuracy) further = accuracy_plan(*accuracy, searched ? BlockSearch::plan : bound_is_compared);
+    deliver(options, "dry_run", dry_run_results(*problem, 1, further), problem->times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);

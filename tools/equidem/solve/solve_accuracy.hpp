@@ -19,6 +19,9 @@ namespace equidem {
 /// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
 class BlockSearch final : public CaseSearch {
  public:
+  static constexpr const char* plan =
+      "blocks from 9 rows on are solved until their errors give the size that reaches it, at most 1e6 discs; below is "
+      "the block of the case";
   /// Whether the case is such a test; where it is not there is nothing to choose.
   static bool serves(const Case& resolved);
   /// \param resolved read from `options`, one that it serves

@@ -154,13 +154,14 @@ int stability(const StabilityCommand& options) {
   const Stability& result = *shared_result;
   StageTimes times = problem.times;
   times.add(result.times);
-  deliver(options, result.status(), stability_results(problem, result), std::move(times), [&](Results&) {
-    if (options.out) {
-      write_survey(*options.out, problem.resolved.title, result, options.overwrite);
-      draw_mode(options, problem, result);
-    }
-    write_case(options, problem.resolved);
-  });
+  std::vector<OutputPart> parts;
+  if (options.out) {
+    parts.push_back({"case.toml", [&] { write_case(options, problem.resolved); }});
+    parts.push_back(
+        {"the waves", [&] { write_survey(*options.out, problem.resolved.title, result, options.overwrite); }});
+    parts.push_back({"the mode", [&] { draw_mode(options, problem, result); }});
+  }
+  deliver(options, result.status(), stability_results(problem, result), std::move(times), parts);
   if (arrays_wanted() && result.critical_load && !result.critical_load->motion.empty())
     hand_over(motion_arrays("buckling/", {shared_result, &result.critical_load->motion}));
   if (arrays_wanted() && result.survey) hand_over(dispersion_arrays(*result.survey));

@@ -212,9 +212,10 @@ int run_verb(const StudyVerb& verb) {
   const auto save = [&](const StudySamples& done) {
     write_samples(*folder / "samples.csv", samples_table(study, done, identity));
   };
+  SavedOnTheWay saved(verb.common);
   const StudySamples samples = run_study(study, verb.options, std::move(kept), [&](const StudySamples& done) {
     if (!folder || since_saved.seconds() < 1) return;
-    save(done);
+    saved([&] { save(done); });
     since_saved.lap();
   });
 
@@ -232,22 +233,20 @@ int run_verb(const StudyVerb& verb) {
     results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")));
   StageTimes times;
   times.add("study", watch.seconds());
-  deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times),
-          [&](Results& out) {
-            if (!folder) return;
-            save(samples);
-            write_csv(*folder / "study.csv", study_table(report), true);
-            for (const auto& [name, plot] : study_plots(report)) {
-              const auto write = [&, &file = name](const auto& one) { return write_plot(*folder, file, one, true); };
-              out.block(std::visit(write, plot).message + "\n");
-            }
-          });
-  if (arrays_wanted()) {
-    hand_over([plots = study_plots(report)](const CommonOptions& into) {
-      for (const auto& [name, plot] : plots)
-        std::visit([&, &file = name](const auto& one) { write_plot(*into.out, file, one, into.overwrite); }, plot);
-    });
+  const auto plots = study_plots(report);
+  const auto draw = [](const std::filesystem::path& into, const auto& named, bool overwrite) {
+    std::visit([&](const auto& plot) { write_plot(into, named.first, plot, overwrite); }, named.second);
+  };
+  std::vector<OutputPart> parts;
+  if (folder) {
+    parts.push_back({"samples.csv", [&] { save(samples); }});
+    parts.push_back({"study.csv", [&] { write_csv(*folder / "study.csv", study_table(report), true); }});
+    for (const auto& plot : plots) parts.push_back({plot.first, [&] { draw(*folder, plot, true); }});
   }
+  deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
+  hand_over([plots, draw](const CommonOptions& into) {
+    for (const auto& plot : plots) draw(*into.out, plot, into.overwrite);
+  });
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -36,15 +37,20 @@ std::string heading_of(const Sweep& sweep) {
   return fmt::format("# The case of a sweep by 'equidem {}'; what is varied stands at its end.\n", sweep.plan.verb);
 }
 
-void check_verb(const std::string& name) {
+std::vector<std::string> swept_verbs() {
   std::vector<std::string> names;
   for (const Verb& verb : verbs)
-    if (verb.declare != declare_sweep && verb.declare != declare_study) names.emplace_back(verb.name);
+    if (verb.swept) names.emplace_back(verb.name);
+  return names;
+}
+
+void check_verb(const std::string& name) {
+  const std::vector<std::string> names = swept_verbs();
   if (std::ranges::find(names, name) != names.end()) return;
   const bool exists = std::ranges::find(verbs, name, &Verb::name) != verbs.end();
   bad_input_at("--verb",
                exists ? fmt::format("a sweep cannot vary '{}'", name) : fmt::format("there is no verb '{}'", name),
-               exists ? "it has no case whose keys could be varied" : "a sweep varies the case of a verb",
+               exists ? "it has no case, or no numbers that depend on its keys" : "a sweep varies the case of a verb",
                fmt::format("Give one of {}", joined(names)));
 }
 
@@ -135,15 +141,27 @@ void check_outputs(const Sweep& sweep) {
   OutputPlan(sweep.options.common).expect_json();
 }
 
+/// None where one of them is no such number.
+template <class Number>
+std::optional<std::vector<Number>> all_numbers(const std::vector<std::string>& values) {
+  std::vector<Number> numbers;
+  for (const std::string& value : values) {
+    const auto number = number_from<Number>(value);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 Results results_of_keys(const SweepPlan& plan) {
   std::vector<Results> keys;
   for (const SweptKey& key : plan.keys) {
     Results one;
     one.set("key", key.name).set("unit", key.unit);
-    if (key.numeric()) {
-      std::vector<double> numbers;
-      for (const std::string& value : key.values) numbers.push_back(number_from<double>(value).value());
-      one.set("values", numbers, "", "values of the key, in its unit");
+    if (const auto whole = all_numbers<std::int64_t>(key.values)) {
+      one.set("values", *whole, "", "values of the key, in its unit");
+    } else if (const auto numbers = all_numbers<double>(key.values)) {
+      one.set("values", *numbers, "", "values of the key, in its unit");
     } else {
       one.set("values", key.values);
     }
@@ -215,16 +233,16 @@ int sweep(const SweepOptions& options) {
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
   StageTimes times;
   times.add("points", run.seconds());
+  std::vector<OutputPart> parts;
+  if (folder) parts.push_back({Sweep::table_name, [&] { run.save(); }});
+  if (folder && !run.stopped())
+    parts.push_back(
+        {"the curves", [&] { write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title)); }});
   deliver(options.common,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"
                         : "done",
-          std::move(results), std::move(times), [&](Results& out) {
-            if (!folder) return;
-            run.save();
-            if (!run.stopped())
-              out.block(write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title)));
-          });
+          std::move(results), std::move(times), parts);
   if (run.stopped()) {
     throw_stopped(options.common, fmt::format("{} of {} points are done", run.done(), sweep.plan.size()),
                   "Run the same command with --resume to do the rest");
@@ -293,14 +311,17 @@ Run declare_sweep(CLI::App& command) {
   const auto options = std::make_shared<SweepOptions>();
   add_common_options(command, options->common);
   command
-      .add_option("--verb", options->verb, "what is done at each point, any verb but sweep and study; left out: solve")
+      .add_option("--verb", options->verb,
+                  fmt::format("what is done at each point; solve where left out:\n{}", joined(swept_verbs())))
       ->type_name("VERB");
   add_key_options(command, options);
   command.add_flag("--list", options->side_by_side, "keys take their values side by side, not in all combinations");
   command.add_option("--seeds", options->seeds, "each point with each of these seeds: 1,2,3 or 1-5")
       ->allow_extra_args(false)
       ->type_name("S,T");
-  command.add_option("--title", options->title, "title of the curves; left out: that of the case")->type_name("TEXT");
+  command.add_option("--title", options->title, "title of the curves; left out: that of the case")
+      ->check(plain_text())
+      ->type_name("TEXT");
   command.add_flag("--resume", options->resume, "keep the points that lie in --out, compute the others");
   command.footer(
       "Examples:\n"

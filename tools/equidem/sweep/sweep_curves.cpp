@@ -157,10 +157,9 @@ std::vector<std::string> curve_names(const SweepPlan& plan) {
   return names;
 }
 
-std::string write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
-                         const std::string& title) {
+void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
+                  const std::string& title) {
   const bool seeds = plan.has_seeds() && plan.keys.back().values.size() > 1;
-  std::string written;
   for (const MainQuantity& quantity : drawn(plan)) {
     if (!has_curve(points, quantity)) continue;
     Plot plot{.title = title.empty() ? joined(plan.keys, name_of_key) + " varied" : literal(title),
@@ -177,9 +176,8 @@ std::string write_curves(const std::filesystem::path& folder, const SweepPlan& p
       if (!one_theory) add_theory(plot, curve, which, value, curve_colours[k % curve_colours.size()]);
       add_points(plot, curve, which, value, k, seeds);
     }
-    written += write_plot(folder, plot_name_of(quantity), plot, true).message + "\n";
+    write_plot(folder, plot_name_of(quantity), plot, true);
   }
-  return written;
 }
 
 }  // namespace equidem

@@ -19,9 +19,8 @@ std::vector<std::string> curve_names(const SweepPlan& plan);
 /// Draws each main quantity that some point has against the first key: one line for each value of the second; of
 /// several seeds the points and their mean. Points that are not stable are open and left out of the mean.
 /// \param title of the plots; empty: what is varied
-/// \return a line for each plot
 /// \throws Error (bad_input) as write_plot
-std::string write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
-                         const std::string& title);
+void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
+                  const std::string& title);
 
 }  // namespace equidem

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "equidem/casefile/assembly/case.hpp"
@@ -17,6 +18,16 @@ namespace {
 
 constexpr std::size_t most_points = 1000000;
 
+/// Before the memory for them is taken.
+void check_points(double points) {
+  constexpr double bytes_a_point = 1000, fastest = 1e-3;  // of the table in memory; s
+  if (points <= static_cast<double>(most_points)) return;
+  bad_input(fmt::format("the sweep has {:.3g} points", points),
+            fmt::format("the table alone would take {}, and at a millisecond for each they take {:.2g} hours",
+                        readable_bytes(points * bytes_a_point), points * fastest / 3600),
+            fmt::format("Give at most {} points: fewer values, or --list", grouped(std::int64_t{most_points})));
+}
+
 /// A whole number without a point, so that integer keys take it.
 std::string number_text(double value) {
   constexpr double exact = 1e15;
@@ -26,6 +37,7 @@ std::string number_text(double value) {
 
 /// A number as it is written in tables, or a word of the case file, "cholmod", "true", "none", "../a.json".
 std::string value_from(std::string_view part, const std::string& list) {
+  if (const auto whole = number_from<std::int64_t>(part)) return fmt::format("{}", *whole);
   if (const std::optional<double> number = number_from<double>(part)) {
     if (std::isfinite(*number)) return number_text(*number);
   } else if (!part.empty()) {
@@ -51,8 +63,7 @@ std::vector<std::string> values_of_range(double from, double to, int steps) {
     // The decimal number that is meant, 0.3 and not 0.30000000000000004; and a spring that is absent, not one
     // that is almost absent.
     const double rounding = 1e-13 * std::max(std::abs(from), std::abs(to));
-    const double meant =
-        std::abs(value) <= rounding ? 0 : number_from<double>(fmt::format("{:.12g}", value)).value_or(INFINITY);
+    const double meant = std::abs(value) <= rounding ? 0 : *number_from<double>(fmt::format("{:.12g}", value));
     if (!std::isfinite(meant))
       bad_input("the values from --from to --to overflow", "a sweep needs finite numbers", "Give smaller ones");
     values.push_back(number_text(meant));
@@ -75,10 +86,11 @@ SweptKey swept_key(const KeyOptions& given) {
   if (range) key.values = values_of_range(*given.from, *given.to, given.steps);
   for (const std::string& list : given.values)
     for (const std::string_view part : parts_of(list, ',')) key.values.push_back(value_from(part, list));
-  const auto word = std::ranges::find_if(key.values, [](const std::string& v) { return !number_from<double>(v); });
-  if (key.name == "ratio" && word != key.values.end())
-    bad_input_at("--values", fmt::format("'{}' is among the values of ratio", *word), "kT/kN is a number",
+  if (given.name == "ratio" && !key.numeric()) {
+    const auto word = std::ranges::find_if(key.values, [](const auto& value) { return !number_from<double>(value); });
+    bad_input_at("--values", fmt::format("'{}' is among the values of ratio", *word), "it is kT/kN, a number",
                  "Leave it out, or correct it");
+  }
   return key;
 }
 
@@ -89,10 +101,15 @@ SweptKey swept_seeds(const std::vector<std::string>& lists) {
       const std::size_t dash = part.find('-');
       const auto first = number_from<std::int64_t>(part.substr(0, dash));
       const auto last = dash == std::string_view::npos ? first : number_from<std::int64_t>(part.substr(dash + 1));
-      if (!first || !last || *first < 0 || *last < *first || *last - *first >= static_cast<std::int64_t>(most_points))
+      if (!first || !last || *first < 0 || *last < *first)
         bad_input_at("--seeds", fmt::format("'{}' is among the seeds", part),
-                     "a seed is a whole number from 0 on, a range two of them", "Write --seeds 1,2,3 or --seeds 1-3");
-      for (std::int64_t seed = *first; seed <= *last; ++seed) key.values.push_back(fmt::format("{}", seed));
+                     fmt::format("a seed is a whole number from 0 to {}, a range two of them",
+                                 std::numeric_limits<std::int64_t>::max()),
+                     "Write --seeds 1,2,3 or --seeds 1-3");
+      const auto count = static_cast<std::size_t>(*last - *first) + 1;
+      check_points(static_cast<double>(key.values.size()) + static_cast<double>(count));
+      for (std::size_t k = 0; k < count; ++k)
+        key.values.push_back(fmt::format("{}", *first + static_cast<std::int64_t>(k)));
     }
   }
   return key;
@@ -110,22 +127,17 @@ void check_lists(const SweepPlan& plan) {
 }
 
 void check_size(const SweepPlan& plan) {
-  constexpr double bytes_a_point = 1000, fastest = 1e-3;  // of the table in memory; s
   double points = 1;
   for (const SweptKey& key : plan.keys)
     if (!plan.side_by_side || &key == plan.keys.data() || key.name == SweepPlan::seed)
       points *= static_cast<double>(key.values.size());
-  if (points <= static_cast<double>(most_points)) return;
-  bad_input(fmt::format("the sweep has {:.3g} points", points),
-            fmt::format("the table alone would take {}, and at a millisecond for each they take {:.2g} hours",
-                        readable_bytes(points * bytes_a_point), points * fastest / 3600),
-            fmt::format("Give at most {} points: fewer values, or --list", grouped(std::int64_t{most_points})));
+  check_points(points);
 }
 
 /// [springs] with kT at the given ratio to kN, whatever file they were read from.
 std::string springs_of_ratio(const TomlValue& base, const std::string& ratio) {
   const TomlValue& springs = *base.find("springs");
-  const double kT = number_from<double>(ratio).value() * springs.find("kN")->real;
+  const double kT = *number_from<double>(ratio) * springs.find("kN")->real;
   std::string entries;
   for (const TomlEntry& entry : springs.entries) {
     const TomlValue& value = entry.value;

@@ -2,6 +2,7 @@
 #include "sweep/sweep_run.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <new>
 #include <set>
@@ -35,6 +36,9 @@ SweepPoint point_of(const Sweep& sweep, std::size_t number) {
   } catch (const std::bad_alloc&) {
     point.status = "failed";
     point.message = "there is too little memory";
+  } catch (const std::exception& error) {
+    point.status = "failed";
+    point.message = fmt::format("this is a defect of equidem: {}", error.what());
   }
   return point;
 }
@@ -57,7 +61,7 @@ VerbRun Sweep::run_of(const std::vector<std::string>& values, const std::vector<
 }
 
 SweepRun::SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept)
-    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()) {
+    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options.common) {
   std::map<std::vector<std::string>, const SweepPoint*> known;
   for (const SweepPoint& point : kept_)
     if (!point.failed()) known.emplace(point.values, &point);
@@ -116,7 +120,7 @@ bool SweepRun::compute_next() {
   ++computed_;
   if (since_saved_.seconds() >= save_after_) {
     const Stopwatch saving;
-    save();
+    saved_([&] { save(); });
     save_after_ = std::max(1.0, 20 * saving.seconds());
     since_saved_.lap();
   }

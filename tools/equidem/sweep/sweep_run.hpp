@@ -53,7 +53,7 @@ class SweepRun {
 
   /// Computes what is missing: the first point on all threads, the others on one each, as many at a time as there are
   /// threads and as fit into memory. Saves the table after the first one and then about every second.
-  /// \throws Error as the writing of the table; those of points become part of them
+  /// Errors of points become part of them.
   void operator()();
 
   [[nodiscard]] bool stopped() const { return stopped_; }  ///< by the user
@@ -76,6 +76,7 @@ class SweepRun {
   std::atomic<std::size_t> next_{0};          ///< position in missing_
   std::mutex mutex_;                          ///< of what follows, and of points_
   Progress progress_;
+  SavedOnTheWay saved_;
   Stopwatch watch_, since_saved_;
   double save_after_ = 0;  ///< s
   std::size_t computed_ = 0;

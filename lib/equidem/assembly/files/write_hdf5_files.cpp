@@ -169,8 +169,8 @@ void write_hdf5_assembly(const fs::path& path, const Assembly& assembly) {
     replacement.commit();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;
-    bad_input(fmt::format("cannot write '{}'", path.string()), error.why(),
-              "Make room on its disk, or choose a place that can be written to");
+    throw Error(error.kind(), fmt::format("cannot write '{}'", path.string()), error.why(),
+                "Make room on its disk, or choose a place that can be written to");
   }
 }
 

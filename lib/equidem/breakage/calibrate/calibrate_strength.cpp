@@ -62,7 +62,9 @@ class Search {
   void scan();
   [[nodiscard]] StrengthOptions strengths_at(double value) const;
   [[nodiscard]] SampleStrength measure(std::size_t sample, bool second, const ContactStrengths& strengths) const;
-  [[noreturn]] void refuse() const;
+  void refuse() const;
+  [[nodiscard]] std::string unit() const;
+  [[nodiscard]] std::string remedy(const Tried& least, const Tried& most) const;
   [[nodiscard]] StrengthCalibration result(const Tried& found) const;
   [[nodiscard]] double slope_at(const Tried& found) const;
 
@@ -142,30 +144,45 @@ const Tried& Search::at(double value) {
 void Search::refuse() const {
   const auto by_ratio = [](const Tried& a, const Tried& b) { return a.ratio < b.ratio; };
   const auto [least, most] = std::minmax_element(tried_.begin(), tried_.end(), by_ratio);
-  const std::string of = wanted_.compressive ? "compressive over tensile strength" : "toughness over tensile strength";
-  const std::string unit = wanted_.compressive ? "" : " sqrt(m)";
+  const auto give_up = [&](const std::string& why, const std::string& remedy) {
+    const std::string of =
+        wanted_.compressive ? "compressive over tensile strength" : "toughness over tensile strength";
+    const Error error(ErrorKind::computation_failed,
+                      fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit()), why, remedy);
+    throw InfeasibleStrengths(error, result(target_ < least->ratio ? *least : *most));
+  };
   const std::string what = finds_friction() ? "friction" : "f_s/f_t";
-  std::string remedy;
-  if (!wanted_.compressive) {
-    // Strength of a contact f, radius r: stresses are f/r, toughnesses f/sqrt(r).
-    remedy = fmt::format("Discs and notches {:.3g} to {:.3g} times as large have it", squared(target_ / most->ratio),
-                         squared(target_ / least->ratio));
-  } else {
-    remedy = finds_friction() ? "Take another strength_target.shear_over_tension"
-                              : "Take another friction, a Weibull modulus, or another assembly";
-  }
-  const std::string problem = fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit);
   if (!std::isfinite(least->ratio))
-    computation_failed(problem, "it has no compressive strength: the load never falls, whatever the " + what,
-                       "Load the sample along its other axis, or take one without straight rows of discs");
+    give_up("it has no compressive strength: the load never falls, whatever the " + what,
+            "Load the sample along its other axis, or take one without straight rows of discs");
   const auto shown = [](double ratio) {
     return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound");
   };
-  computation_failed(problem,
-                     fmt::format("it has {} to {}{}; at the ends, {} of {:g} and {:g}, {} and {}", shown(least->ratio),
-                                 shown(most->ratio), unit, what, tried_.front().value, tried_.back().value,
-                                 shown(tried_.front().ratio), shown(tried_.back().ratio)),
-                     remedy);
+  give_up(fmt::format("it has {} to {}{}, {} from {:g} to {:g}", shown(least->ratio), shown(most->ratio), unit(), what,
+                      tried_.front().value, tried_.back().value),
+          remedy(*least, *most));
+}
+
+std::string Search::unit() const {
+  return wanted_.compressive ? "" : " sqrt(m)";
+}
+
+/// What moves the range of ratios towards the one wanted, as measured on packings (docs/explanation/breakage.md).
+std::string Search::remedy(const Tried& least, const Tried& most) const {
+  if (!wanted_.compressive) {
+    // Strength of a contact f, radius r: stresses are f/r, toughnesses f/sqrt(r).
+    return fmt::format("Discs and notches {:.3g} to {:.3g} times as large have it", squared(target_ / most.ratio),
+                       squared(target_ / least.ratio));
+  }
+  const bool above = target_ > most.ratio;
+  const std::string network = above ? "more bonds of each disc (a larger gap_tolerance), a smaller Weibull modulus or "
+                                      "a larger kT"
+                                    : "fewer bonds of each disc, a larger Weibull modulus or a softer kT";
+  if (finds_friction()) return fmt::format("Take another strength_target.shear_over_tension, or {}", network);
+  const bool no_shear = std::ranges::all_of(most.second, [](const SampleStrength& one) { return one.in_shear == 0; });
+  if (above && no_shear)
+    return fmt::format("Take {}; friction does not raise it, because no contact breaks in shear there", network);
+  return fmt::format("Take {} friction, or {}", above ? "a larger" : "a smaller", network);
 }
 
 /// Values between the ends, where both lie on one side of the target: the ratio may turn round.

@@ -14,11 +14,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "equidem/breakage/calibrate/strength_test.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/statistics.hpp"
 
 namespace equidem {
@@ -82,11 +85,24 @@ struct StrengthCalibration {
   [[nodiscard]] double highest_ratio() const;
 };
 
+/// The ratio wanted lies outside the range that the samples have.
+class InfeasibleStrengths : public Error {
+ public:
+  InfeasibleStrengths(const Error& error, StrengthCalibration nearest)
+      : Error(error), nearest_(std::make_shared<const StrengthCalibration>(std::move(nearest))) {}
+
+  /// The values that were tried, and the strengths at the nearest ratio.
+  [[nodiscard]] const StrengthCalibration& nearest() const { return *nearest_; }
+
+ private:
+  std::shared_ptr<const StrengthCalibration> nearest_;
+};
+
 /// The least and largest values that are tried.
 inline constexpr double least_shear_over_tension = 0.05, largest_shear_over_tension = 1e6, most_friction = 10;
 
 /// \param progress called with an estimate of the share that is done; may be empty
-/// \throws Error (bad_input) where targets or options are out of range; (computation_failed) where the ratio lies
+/// \throws Error (bad_input) where targets or options are out of range; InfeasibleStrengths where the ratio lies
 ///         outside the feasible range, which the sentence states; as StrengthSample::strength
 StrengthCalibration calibrate_strength(const std::vector<SeededSample>& samples, const StrengthTargets& wanted,
                                        const StrengthCalibrationOptions& options,

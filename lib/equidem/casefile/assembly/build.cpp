@@ -114,6 +114,8 @@ Assembly build_assembly(const Case& resolved) {
   Assembly assembly = with_place(resolved.where(source), [&] { return generate(resolved); });
   with_place(resolved.where(packed ? "packing.gap_tolerance" : "assembly.gap_tolerance"),
              [&] { check_found_contacts(assembly); });
+  if (wanted.levers)
+    with_place(resolved.where("assembly.levers"), [&] { place_contact_points(assembly, *wanted.levers); });
   if (!wanted.own_springs) {
     assembly.contact_kN.clear();
     assembly.contact_kT.clear();

@@ -2,6 +2,7 @@
 #include "equidem/casefile/assembly/case.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
@@ -166,6 +167,23 @@ void complete_delaunay(const TomlValue& root, DelaunayOptions& options) {
   options.aspect = options.box->x / options.box->y;
 }
 
+/// Samples take the seeds first, first + 1, ..., each of which a case can have.
+void check_seeds(const TomlValue& root, const std::string& key, std::uint64_t first, std::int64_t samples) {
+  constexpr auto most = std::numeric_limits<std::int64_t>::max();
+  if (first <= static_cast<std::uint64_t>(most - samples + 1)) return;
+  fail_at(value_at(root, key), key, fmt::format("{} take the seeds from {} on", counted(samples, "sample"), first),
+          fmt::format("the largest seed is {}", most), fmt::format("Give at most {}", most - samples + 1));
+}
+
+void check_seeds(const TomlValue& root, const CaseTables& tables) {
+  const std::string of_assembly = tables.assembly.packing ? "packing.seed" : "assembly.seed";
+  if (tables.ensemble) check_seeds(root, of_assembly, tables.assembly.seed(), tables.ensemble->plan.samples);
+  if (!tables.strength_target) return;
+  const std::int64_t samples = tables.strength_target->samples;
+  if (tables.assembly.random()) check_seeds(root, of_assembly, tables.assembly.seed(), samples);
+  if (tables.strength) check_seeds(root, "strength.seed", tables.strength->seed, samples);
+}
+
 }  // namespace
 
 Case parse_case(std::string_view content, const std::string& name, const fs::path& folder,
@@ -197,6 +215,7 @@ Case parse_case(std::string_view content, const std::string& name, const fs::pat
   if (tables.assembly.kind == AssemblyKind::delaunay) complete_delaunay(root, tables.assembly.delaunay);
   check_contradictions(root, tables.assembly);
   check_strength_target(root);
+  check_seeds(root, tables);
   if (tables.material)
     tables.material->moduli =
         at_key(*root.find("material"), "material", [&] { return moduli_of(tables.material->given); });

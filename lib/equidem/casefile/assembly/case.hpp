@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
@@ -52,8 +53,9 @@ struct AssemblyCase {
   double gap_tolerance = 0;                ///< of the contacts of a packing
   std::filesystem::path path;              ///< path resolved against the folder of the file
   AssemblyFileOptions file;
-  bool own_springs = true;        ///< use the springs of the file
-  std::optional<double> density;  ///< kg/m³, of the discs themselves
+  bool own_springs = true;                   ///< use the springs of the file
+  std::optional<ContactPoints> levers = {};  ///< none: as made or given
+  std::optional<double> density;             ///< kg/m³, of the discs themselves
   Body body = Body::disc;
 
   /// Whether each seed makes another assembly.
@@ -175,6 +177,9 @@ Case parse_case(std::string_view text, const std::string& name, const std::files
 
 /// Every key of every kind of case file with type, unit, range, default and meaning, as text of at most 100 columns.
 std::string describe_case_file();
+/// The keys of one table, "springs", "[strength]" or that of a key, "springs.kT", in each kind of case that has it.
+/// \throws Error (bad_input) with the nearest name where there is none
+std::string describe_case_table(const std::string& name);
 
 /// The help of the case file as a page in Markdown, docs/case_file.md.
 std::string case_file_page();

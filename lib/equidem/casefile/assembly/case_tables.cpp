@@ -91,6 +91,11 @@ void bind_assembly(File<CaseTables>& file) {
                "of a file without contacts: discs are bonded where the gap between them is at most this share of the "
                "sum "
                "of their radii; 0: where they touch"),
+           key("levers", &A::levers,
+               "where the contact points of discs lie between their centres, also in place of levers of the file; " +
+                   help_of(EnumNames<ContactPoints>::list) +
+                   "; left out: as made or read. It matters to forces across gaps between unequal "
+                   "discs, and to export"),
            key("own_springs", &A::own_springs, when("kind", from_file),
                "true: springs that the file gives are used; false: those of the case, or of calibrate")});
   file.table("assembly.radii", &CaseTables::assembly, &A::delaunay, &D::radii, when("kind", delaunay),

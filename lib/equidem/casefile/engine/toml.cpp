@@ -45,6 +45,9 @@ TomlValue plain(const toml::node& node, const Source& source) {
   } else if (const auto* text = node.as_string()) {
     value.type = Type::text;
     value.text = text->get();
+    if (has_controls(value.text))
+      bad_input_at(value.where(), "a text has control characters",
+                   "terminals obey them, and no page or picture can hold them", "Remove them");
   } else if (const auto* integer = node.as_integer()) {
     value.type = Type::integer;
     value.integer = integer->get();

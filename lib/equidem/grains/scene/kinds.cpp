@@ -26,9 +26,10 @@ void check_name(const std::string& name, const std::string& option, std::vector<
     for (const Wall& wall : walls) groups.push_back(wall.name);
   if (contains(groups, name)) return;
   const auto meant = nearest(name, groups);
+  for (std::string& choice : groups) choice = "'" + choice + "'";
+  const std::string names = first_words(std::move(groups));
   bad_input_at(option, fmt::format("\"{}\" is no group of grains{}", name, walls_too ? " and no wall" : ""),
-               "there are " + joined(groups, [](const std::string& choice) { return "'" + choice + "'"; }),
-               meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
+               "there are " + names, meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Name one of them");
 }
 
 bool is_pair(const CollisionOptions::Pair& pair, const std::string& first, const std::string& second) {

@@ -193,12 +193,15 @@ double EnsembleSetting::work() const {
   return std::pow(static_cast<double>(discs), 1.1) * samples;
 }
 
+std::array<EnsembleSetting, 2> accuracy_pilots(const EnsembleAccuracy& options) {
+  return {{{options.smallest, small_pilots}, {pilot_ratio * options.smallest, large_pilots}}};
+}
+
 AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAccuracy& options,
                                     const std::function<void(const std::vector<EnsembleSample>&)>& save) {
   assert(options.accuracy > 0 && options.smallest >= 3);
   Sampling sampling(sampler, options, save);
-  for (const EnsembleSetting& pilots :
-       {EnsembleSetting{options.smallest, small_pilots}, EnsembleSetting{pilot_ratio * options.smallest, large_pilots}})
+  for (const EnsembleSetting& pilots : accuracy_pilots(options))
     if (!sampling.sample(pilots)) return std::move(sampling.result());
   EnsembleSetting setting = cheapest(misses_of(sampling.result().statistics), options, aim * options.accuracy);
   for (;;) {

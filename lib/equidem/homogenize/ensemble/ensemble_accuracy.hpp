@@ -3,6 +3,7 @@
 /// Number and size of random cells: the cheapest ensemble that determines the moduli to an accuracy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -39,6 +40,9 @@ struct AccurateEnsemble {
   EnsembleSetting ten_times_more;  ///< setting that reaches a tenth of the wanted error
   bool stopped = false;            ///< by the user, before the end
 };
+
+/// The cells that are sampled first.
+std::array<EnsembleSetting, 2> accuracy_pilots(const EnsembleAccuracy& options);
 
 /// Small cells of two sizes give scatter and drift; the cheapest size and number follow from
 ///

@@ -97,9 +97,11 @@ struct EnumNames<EngineFeature> {
   static constexpr const char* what = "part of a model";
   static constexpr EngineFeatureRow list[] = {
       {levers_by_radii, "contact points off the middle between two centres", false, true, true,
-       "a bond of bpm/rotational acts in the middle", "Export to yade or pfc"},
+       "a bond of bpm/rotational acts half-way between the centres",
+       "Export to yade or pfc, unequal discs with assembly.levers = \"middle\"; or set assembly.levers = \"halfway\""},
       {levers_of_no_radii, "levers that no radii of the bodies give", false, false, false,
-       "its contact points follow from one radius a body", "Give levers (d + r_i - r_j)/2, or d/2 for LAMMPS"},
+       "its contact points follow from one radius a body",
+       "Set assembly.levers = \"middle\", that is (d + r_i - r_j)/2, or \"halfway\", d/2, which LAMMPS needs"},
       {levers_with_gaps, "levers that do not add up to the distance of the centres", false, false, false,
        "both bodies touch in one point there", "Give levers that do"},
       {off_line_contacts, "contact points off the line of centres", false, false, false, "its bodies are round",

@@ -16,6 +16,7 @@ struct DrawnFigure {
   std::filesystem::path png = {};
   std::string player = {};   ///< HTML of a moving picture, in place of files
   std::string missing = {};  ///< the reason why nothing was drawn
+  bool timed_out = false;    ///< it is that gnuplot did not end
 };
 
 /// While one exists, it lists the figures that are drawn on its thread; the innermost one where there are several.
@@ -29,6 +30,8 @@ class DrawnFigures {
   [[nodiscard]] const std::vector<DrawnFigure>& list() const { return list_; }
   /// Add a figure to the list of this thread, if there is one.
   static void add(DrawnFigure figure);
+  /// Whether gnuplot did not end at one of them: others need not wait for it as long.
+  static bool gnuplot_hangs();
 
  private:
   std::vector<DrawnFigure> list_;

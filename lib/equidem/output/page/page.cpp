@@ -23,9 +23,9 @@ constexpr std::size_t most_svg_bytes = 300'000;   ///< of a drawing; larger ones
 constexpr std::size_t most_text_bytes = 100'000;  ///< of the case and of the report
 
 /// Marks of lines of the report that a reader must not miss.
-constexpr std::array<std::string_view, 10> marks{"WARNING",      "UNSTABLE",  "NOT CONVERGED", "NOT TOLD APART",
-                                                 "BROKEN",       "ASSUMED",   "that is much",  "units than meant",
-                                                 "Pa are meant", "INCOMPLETE"};
+constexpr std::array<std::string_view, 11> marks{"WARNING",          "UNSTABLE",     "NOT FEASIBLE", "NOT CONVERGED",
+                                                 "NOT TOLD APART",   "BROKEN",       "ASSUMED",      "that is much",
+                                                 "units than meant", "Pa are meant", "INCOMPLETE"};
 
 std::string text_of(const Results& results, const char* path) {
   const Result* found = find_result(results, path);

@@ -24,6 +24,7 @@ std::string gnuplot_string(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
     if (c == '\'') result += '\'';
+    if (c == '>' && result.ends_with("]]")) result += ' ';  // gnuplot leaves it in the SVG, and XML forbids it
     result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
   }
   return result + "'";

@@ -121,7 +121,8 @@ PlotResult draw(const std::filesystem::path& folder, const std::string& name, co
   std::error_code ignored;
   for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
 
-  const GnuplotRun run = run_gnuplot(folder, name + ".gp");
+  const GnuplotRun run = DrawnFigures::gnuplot_hangs() ? GnuplotRun{false, "gnuplot did not end at the plot before"}
+                                                       : run_gnuplot(folder, name + ".gp");
   result.drawn =
       run.succeeded && std::filesystem::exists(path(".svg"), ignored) && std::filesystem::exists(path(".png"), ignored);
   if (result.drawn) {
@@ -136,7 +137,8 @@ PlotResult draw(const std::filesystem::path& folder, const std::string& name, co
   DrawnFigures::add({.name = name,
                      .title = title,
                      .svg = result.drawn ? path(".svg") : std::filesystem::path(),
-                     .missing = result.drawn ? "" : result.message});
+                     .missing = result.drawn ? "" : result.message,
+                     .timed_out = run.timed_out});
   return result;
 }
 
