@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import random
 import re
 import textwrap
 import time
@@ -446,6 +447,42 @@ class Quasistatic(ProgramTest):
             with self.subTest(size=size):
                 path = self.run_notch("--set", "quasistatic.max_events=20", "--set", f"support.1.uy={size!r}")
                 self.assertEqual([event["contact"] for event in path["events"]], contacts)
+
+    def test_a_network_without_stiffness_carries_no_load_and_breaks_nowhere(self):
+        """A diluted cell without tangential springs: its forces are round-off, however far the cell is strained."""
+        rows = 40
+        for seed, keep in ((4, 0.65), (1, 0.6)):
+            draw = random.Random(seed)
+            discs = [[i + 0.5 * (j % 2) + draw.uniform(-0.1, 0.1), math.sqrt(0.75) * j + draw.uniform(-0.1, 0.1), 0.5]
+                     for j in range(rows) for i in range(rows)]
+            contacts = []
+            for j in range(rows):
+                for i in range(rows):
+                    for di, dj in ((1, 0), (j % 2, 1), (j % 2 - 1, 1)):
+                        if draw.random() <= keep:
+                            contacts.append([j * rows + i, (j + dj) % rows * rows + (i + di) % rows,
+                                             (i + di) // rows, (j + dj) // rows])
+            (self.folder / "cell.json").write_text(json.dumps({
+                "schema": "equidem-assembly/1", "discs": discs, "contacts": contacts,
+                "cell": [rows, rows * math.sqrt(0.75)]}))
+            for after in ("gone", "rubs"):
+                with self.subTest(seed=seed, after_breaking=after):
+                    case = self.folder / "cell.toml"
+                    case.write_text(textwrap.dedent(f"""
+                        schema = "equidem/1"
+                        assembly = {{kind = "file", path = "cell.json"}}
+                        springs = {{kN = 1.0e9, kT = 0.0}}
+                        strength = {{tension = 1.0e4, shear = 1.0e4, after_breaking = "{after}"}}
+                        strain = {{xx = 1.0e-3, yy = -1.0e-3}}
+                        """))
+                    done = equidem("quasistatic", case, "--json", "-")
+                    if done.returncode == 1:
+                        self.assertIn("too soft", done.stderr)
+                        continue
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    result = parse_json(done.stdout)
+                    self.assertEqual(result["event_count"], 0, result["ended"])
+                    self.assertLess(result["energies"]["error"], 1e-6)
 
     def test_what_is_missing_or_contradictory_is_refused(self):
         self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")

@@ -142,7 +142,7 @@ void BreakageRun::end(PathEnd why, std::string sentence) {
 }
 
 bool BreakageRun::carries_pattern() {
-  constexpr double soft = 1e-8, closes = 1e-6;
+  constexpr double soft = 1e-6, closes = 1e-6;
   const bool first = events_.empty();
   if (!first && response_.energy[2] > soft * first_energy_) return true;
   if (!first) response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
