@@ -188,7 +188,8 @@ bool BreakageRun::advance() {
 }
 
 void BreakageRun::end_without_load() {
-  end(PathEnd::carries_nothing, "no contact carries a force that grows with lambda: the network carries no load");
+  end(PathEnd::carries_nothing,
+      "no contact carries a force that grows with lambda beyond round-off: the network carries no load");
 }
 
 /// \return whether another leg follows
