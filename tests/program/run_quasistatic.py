@@ -269,7 +269,7 @@ class Quasistatic(ProgramTest):
         self.assertAlmostEqual(result["events"][0]["lambda"], friction * pressed, delta=1e-9)
         self.assertRegex(done.stdout, "forces at rest +contacts begin with them")
         self.assertNotIn("not used", done.stdout)
-        self.assertIn("rub with friction 0.5", " ".join(done.stdout.split()))
+        self.assertIn("have friction 0.5", " ".join(done.stdout.split()))
         self.assertEqual(result["strength"]["residual_friction"], friction)
         self.assertFalse(result["prestress"]["counts"])
         case.write_text(case.read_text().replace('after_breaking = "rubs"\n', "").replace("residual_friction", "friction"))
