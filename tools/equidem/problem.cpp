@@ -408,6 +408,10 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
     const double vectors = sizeof(double) * *inertia * static_cast<double>(estimate.unknowns);
     estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + vectors);
   }
+  // Forces, motions and histories of contacts that break: measured, with friction and without.
+  constexpr double bytes_of_breaking_contact = 450;
+  if (problem.breaks)
+    estimate.peak_bytes += bytes_of_breaking_contact * static_cast<double>(problem.assembly.contacts.size());
   double before = problem.times.total();
   if (complex_solutions > 0) {
     constexpr double work = 4;  // multiplications of two complex numbers over those of real ones

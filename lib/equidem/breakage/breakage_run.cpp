@@ -47,6 +47,7 @@ BreakageRun::BreakageRun(BreakageScene scene, BreakableSystem& system) : scene_(
               "Hold that part by a support, or take the load off it");
   }
   response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  first_energy_ = response_.energy[2];
   no_pattern_ = std::max(round_off * largest_force(system_.forces(0)), round_off_of_motions(scene_));
   no_dead_ = dead ? round_off * largest_force(system_.forces(1)) : 0;
   no_rate_ = round_off * std::abs(scene_.path.control == LoadControl::load ? response_.load[1] : response_.motion[1]);
@@ -140,6 +141,15 @@ void BreakageRun::end(PathEnd why, std::string sentence) {
   why_ = std::move(sentence);
 }
 
+bool BreakageRun::carries_pattern() {
+  constexpr double soft = 1e-6, closes = 1e-6;
+  const bool first = events_.empty();
+  if (!first && response_.energy[2] > soft * first_energy_) return true;
+  if (!first) response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
+  const double by_springs = response_.energy[2], by_work = response_.pattern_energy_by_work();
+  return std::abs(by_springs - by_work) <= closes * by_springs;
+}
+
 bool BreakageRun::advance() {
   const LoadPath& path = scene_.path;
   const bool dead = path.dead.has_value();
@@ -164,6 +174,10 @@ bool BreakageRun::advance() {
                                               .no_live = no_pattern_,
                                               .no_dead = no_dead_});
     if (!system_.carries(0) || (dead && !system_.carries(1))) continue;
+    if (next && !carries_pattern()) {
+      end_without_load();
+      break;
+    }
     if (next && !leg_ends_before(next->lambda)) {
       break_contact(*next);
       return true;
@@ -173,11 +187,16 @@ bool BreakageRun::advance() {
   return false;
 }
 
+void BreakageRun::end_without_load() {
+  end(PathEnd::carries_nothing,
+      "no contact carries a force that grows with lambda beyond round-off: the network carries no load");
+}
+
 /// \return whether another leg follows
 bool BreakageRun::finish_leg(double from) {
   const std::vector<double>& legs = scene_.path.legs;
   if (largest_force(system_.forces(0)) <= no_pattern_) {
-    end(PathEnd::carries_nothing, "no contact carries a force that grows with lambda");
+    end_without_load();
     return false;
   }
   if (legs.empty()) {

@@ -68,11 +68,16 @@ class BreakageRun : public EventPath {
   [[nodiscard]] double controlled_from(const std::array<double, 2>& held) const;
   [[nodiscard]] double end_of_leg(double from) const;
   bool finish_leg(double from);
+  void end_without_load();
   [[nodiscard]] LegPoint point_at(double lambda, std::int64_t leg) const;
   void move_to(double lambda);
   void break_contact(const NextBreak& next);
   /// The elastic energy by the forces of all contacts, N: response_ has it by works and by the contacts that opened.
   [[nodiscard]] double energy_of_springs() const;
+  /// Whether forces that grow with lambda are more than round-off. Those of a network that nothing stiffens, or that is
+  /// soft beyond the digits of its solution, are as large as its stiffness and motions make round-off; but half of the
+  /// work of what drives them is not their energy.
+  [[nodiscard]] bool carries_pattern();
   void end(PathEnd why, std::string sentence);
   /// The coefficients of 1 and lambda of the quantity that the control holds, of the network as it is.
   [[nodiscard]] const std::array<double, 2>& held_response() const;
@@ -92,6 +97,7 @@ class BreakageRun : public EventPath {
   double held_ = 0;              ///< the load or the motion that the control keeps from falling
   double work_ = 0;              ///< N
   double clapeyron_ = 0;         ///< of the energies by springs and by works so far, relative
+  double first_energy_ = 0;      ///< N, by the pattern, before anything broke
   double no_pattern_, no_dead_;  ///< N/m: forces below are round-off
   double no_rate_;               ///< likewise of the load or the motion that is held
 };

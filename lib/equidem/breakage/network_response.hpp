@@ -29,6 +29,8 @@ struct NetworkResponse {
   static double at(const std::array<double, 3>& c, double lambda) { return c[0] + lambda * (c[1] + lambda * c[2]); }
   [[nodiscard]] Tensor2 stress_at(double lambda) const { return stress[0] + lambda * stress[1]; }
   [[nodiscard]] double energy_at(double lambda) const { return at(energy, lambda); }
+  /// The energy that grows with lambda², N, as half of the work of the pattern (Clapeyron).
+  [[nodiscard]] double pattern_energy_by_work() const { return 0.5 * (pattern_by_pattern + imposed[1]); }
   /// Work of everything from outside while lambda goes from one value to another, N.
   [[nodiscard]] double work(double from, double to) const {
     return (to - from) * (dead_by_pattern + imposed[0]) +

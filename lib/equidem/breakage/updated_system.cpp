@@ -365,6 +365,23 @@ class UpdatedSystem final : public SolvedStates {
   std::vector<Energies> energies_;  // N, per right-hand side
 };
 
+/// Whether bounds, which are made of squares of forces and products of these, stay in the range of numbers.
+bool squares_fit(const BreakableNetwork& network, double stiffest) {
+  constexpr double smallest = 1e-30, largest = 1e30;
+  return std::ranges::all_of(network.cases, [&](const RightHandSide& given) {
+    double force = 0, motion = 0;
+    for (const double f : given.force) force = std::max(force, std::abs(f));
+    for (const double u : given.prescribed) motion = std::max(motion, std::abs(u));
+    if (given.gradient) {
+      const Tensor2& g = *given.gradient;
+      motion = std::max(motion, 2 * network.assembly.mean_radius() *
+                                    std::max({std::abs(g.xx), std::abs(g.xy), std::abs(g.yx), std::abs(g.yy)}));
+    }
+    const double size = std::max(force, stiffest * motion);
+    return size == 0 || (size >= smallest && size <= largest);
+  });
+}
+
 }  // namespace
 
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network) {
@@ -386,7 +403,8 @@ std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network)
       stiffest = std::max(stiffest, k);
     }
   }
-  if (stiffest > most_apart * softest) return make_refactorized_system(std::move(network));
+  if (stiffest > most_apart * softest || !squares_fit(network, stiffest))
+    return make_refactorized_system(std::move(network));
   try {
     return std::make_unique<UpdatedSystem>(network, std::move(held));
   } catch (const Error& error) {  // a mechanism that discs take part in which carry load, or that a load moves

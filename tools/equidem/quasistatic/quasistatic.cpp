@@ -364,8 +364,10 @@ int quasistatic(const QuasistaticOptions& given) {
   Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
                                       : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
   results.set("complete", !stop.interrupted && !stop.failure);
-  if (options.out && !stop.state)
-    results.line("state", "none is written: no equilibrium of what is left is known behind the last event");
+  if (options.out && !stop.state) {
+    results.line("state", stop.interrupted || stop.failure ? "none is written: that behind the last event is not known"
+                                                           : "none is written: what is left does not carry its loads");
+  }
   const OutputCase& wanted = sequence.problem.resolved.output;
   std::vector<OutputPart> parts;
   if (options.out) {

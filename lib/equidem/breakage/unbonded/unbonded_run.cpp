@@ -122,7 +122,7 @@ void UnbondedRun::end_without_rates(const RateSearch& search, std::size_t on_lim
       motions[d].u = {rate[d * b], rate[d * b + 1]};
       if (b > 2) motions[d].theta = rate[d * b + 2] / unknowns_.rotation_scale;
     }
-    end(PathEnd::load_moves_part, fmt::format("{}nothing resists the motion that the load drives any more: {}", at,
+    end(PathEnd::load_moves_part, fmt::format("{}nothing resists a motion any more that the path drives: {}", at,
                                               describe_motion(scene_.assembly, motions)));
     return;
   }
@@ -308,6 +308,10 @@ void UnbondedRun::step() {
   if (!move(t)) return;
   const double lambda_rate = rates_->lambda;
   rates_.reset();
+  if (next.t <= stage && next.breaks && !state_->carries()) {
+    end(PathEnd::carries_nothing, "no contact carries more than round-off: the network carries no load");
+    return;
+  }
   if (next.t <= stage && next.breaks) {
     break_bond(next, lambda_rate);
   } else if (stage <= next.t) {

@@ -94,6 +94,8 @@ class UnbondedState {
   [[nodiscard]] double relative_residual() const { return residual_; }
   /// N/m, of contacts and loads so far.
   [[nodiscard]] double largest_force() const { return force_scale_; }
+  /// Whether some force has been more than round-off of the stiffness times the motions.
+  [[nodiscard]] bool carries() const;
   /// N/m: forces, and gaps times kN, below are round-off.
   [[nodiscard]] double negligible_force() const;
 
@@ -101,8 +103,6 @@ class UnbondedState {
   void evaluate();
   void measure_residual(std::vector<double>& residual);
   void correct(bool by_motion, TangentSolver& solver);
-  /// Whether some force has been more than round-off.
-  [[nodiscard]] bool carries() const;
   [[nodiscard]] double outside(std::size_t component) const;
   [[nodiscard]] double elastic_energy() const;
   /// The largest motion, or deformation by the mean strain, m.
