@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// A run that was saved goes on as if it had never stopped.
+#include "grains/bonded_scenes.hpp"
 #include "grains/resuming.hpp"
-#include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -12,6 +12,32 @@ TEST_CASE("a_run_saved_at_any_step_goes_on_with_the_same_bits") {
   const Stepping stepping = GENERATE(from_range(all_steppings));
   CAPTURE(stepping.name());
   check_resuming(busy_box(stepping.law, 3, 3, 21), options_of(stepping, 0.01), 120);
+}
+
+TEST_CASE("bonds_saved_at_any_step_go_on_with_the_same_forces_whatever_they_are_of") {
+  const Stepping stepping = GENERATE(from_range(bonding_steppings));
+  const GrainOptions::BondStep bond_step = GENERATE(from_range(both_bond_steps));
+  const bool springs = GENERATE(true, false), dashpots = GENERATE(true, false), in_cell = GENERATE(true, false);
+  if (!springs && !dashpots) return;
+  GrainBond like;
+  if (springs) like = {.normal_spring = 300, .tangential_spring = 100, .bending_spring = 5};
+  if (dashpots) like.normal_dashpot = 3, like.tangential_dashpot = 2, like.rolling_dashpot = 0.1;
+  GrainScene scene = busy_box(stepping.law, 4, 3, 5);
+  for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 1}, {1, 4}, {5, 8}, {6, 7}, {9, 10}, {10, 11}}) {
+    scene.bonds.push_back(like);
+    scene.bonds.back().i = i, scene.bonds.back().j = j;
+  }
+  if (springs && gives_force(stepping.law)) scene.strengths = ContactStrengths{{14, 9, 99, 9, 14, 14}, {9, 5, 99, 5, 9, 9}, 0.2};
+  if (in_cell) {
+    if (!gives_force(stepping.law)) return;
+    scene.walls.clear();
+    scene.gravity = {};
+    scene.cell = PeriodicCell{.corner = {0, 0}, .width = 4, .height = 3};
+  }
+  GrainOptions options = options_of(stepping, 4e-3);
+  options.bond_step = bond_step;
+  CAPTURE(stepping.name(), bond_step, springs, dashpots, in_cell);
+  check_resuming(scene, options, 100);
 }
 
 TEST_CASE("a_simulation_that_has_run_can_be_taken_back") {

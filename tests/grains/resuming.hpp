@@ -14,14 +14,14 @@ inline void check_resuming(const GrainScene& scene, const GrainOptions& options,
   GrainSimulation whole(scene, options);
   std::vector<SavedState> states;
   std::vector<Bits> seen;
-  for (int k = 0; k < last; ++k) {
+  for (int k = 0; k <= last; ++k) {
+    if (k > 0) whole.advance(1);
     states.push_back(whole.save());
     seen.push_back(bits_of(whole));
-    whole.advance(1);
   }
   REQUIRE(whole.counters().contacts > 10);
-  const Bits end = bits_of(whole);
-  for (int k = 0; k < last; ++k) {
+  const Bits& end = seen.back();
+  for (int k = 0; k <= last; ++k) {
     CAPTURE(k, states[static_cast<std::size_t>(k)]["contacts"].size());
     GrainSimulation resumed(scene, options);
     resumed.restore(states[static_cast<std::size_t>(k)]);

@@ -62,6 +62,80 @@ removed = true
 name = "lid"
 """ + (pull or "velocity = [0.0, -0.01]\n"))
 
+    def test_a_body_that_a_stage_adds_falls_freely_beside_a_bonded_pair_in_every_kind_of_scene(self):
+        pair = '''schema = "equidem/1"
+[grains]
+density = 1500.0
+[[grain]]
+position = [0.0, 0.03]
+radius = 0.03
+[[grain]]
+position = [0.06, 0.03]
+radius = 0.03
+[bonds]
+normal_spring = 4.0e5
+tangential_spring = 2.0e5
+[[bond]]
+grains = [0, 1]
+[collisions]
+law = "linear_dashpot"
+stiffness = 4.0e5
+restitution = 0.4
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+[run]
+gravity = [0.0, -9.81]
+[[stage]]
+name = "rest"
+duration = 0.05
+[[stage]]
+name = "drop"
+duration = 0.05
+'''
+        added = "[[stage.grain]]\nposition = [{}, 0.2]\n{}\n"
+        small = added.format(0.03, "radius = 0.02")
+        strength = "[strength]\ntension = 1.0e3\nshear = 1.0e3\n"
+        variants = {
+            "one": (pair, small),
+            "two": (pair, small + added.format(3.0, "radius = 0.005")),
+            "with strengths": (pair + strength, small),
+            "by groups": (pair, small + 'group = "ball"\n[[stage.pair]]\ngroup = "ball"\nwith = "grains"\nfriction = 0.5\n'),
+            "an ellipse": (pair, added.format(0.03, "half_axes = [0.02, 0.01]")),
+            "a clump": (pair, added.format(0.03, "discs = [[-0.008, 0.0, 0.01], [0.008, 0.0, 0.01]]")),
+            "walls renamed": (pair, small + '[[stage.rename]]\nwall = "floor"\nto = "ground"\n'),
+            "bonds made": (pair, small + "[stage.bonds]\ngap_tolerance = 0.01\nnormal_spring = 4.0e5\n"),
+            "in a cell": (pair + '[cell]\nperiodic = "x"\nwidth = 0.5\n', small),
+            "of dashpots": (pair.replace("normal_spring = 4.0e5\ntangential_spring = 2.0e5", "normal_dashpot = 50.0"), small),
+        }
+        for name, (scene, stage) in variants.items():
+            with self.subTest(variant=name):
+                out = self.folder / name
+                at = scene.index("[run]\n")
+                head, tail = scene[:at], scene[at:]
+                stages, more = tail.split('name = "drop"\nduration = 0.05\n')
+                result = self.run_case(self.write(head + more + stages + 'name = "drop"\nduration = 0.05\n' + stage),
+                                       "--out", out, *NO_PICTURE)
+                grains, bonds = rows_of(out / "grains.csv"), rows_of(out / "bonds.csv")
+                self.assertEqual(len(grains), 4 if name == "two" else 3)
+                self.assertEqual([(row["i"], row["j"]) for row in bonds], [("0", "1")])
+                stage = result["stages"][1]
+                fallen = 0.5 * 9.81 * (stage["end"] - stage["start"])**2
+                self.assertAlmostEqual(0.2 - float(grains[2]["y_m"]), fallen, delta=3 * 9.81 * 0.05 * result["time_step"])
+                self.assertLess(result["time_step"], result["bonds"]["critical_time_step"])
+                self.assertLess(abs(float(grains[1]["x_m"]) - float(grains[0]["x_m"]) - 0.06), 1e-3)
+
+    def test_a_bonded_body_that_a_stage_removes_goes_with_its_bonds(self):
+        case = self.rock(bonds="[stage.bonds]\ngap_tolerance = 0.01\n[[stage]]\nname = \"hole\"\nduration = 0.01\n"
+                         "[[stage.remove]]\nbox = [0.0, 0.0, 0.02, 0.02]\n[[stage.grain]]\nposition = [0.03, 0.2]\nradius = 0.005\n")
+        out = self.folder / "out"
+        result = self.run_case(case, "--out", out, *NO_PICTURE)
+        stages = {stage["name"]: stage for stage in result["stages"]}
+        self.assertEqual((stages["cement"]["bonds_made"], stages["hole"]["removed"], stages["hole"]["added"]), (13, 1, 1))
+        self.assertEqual({int(row["number"]) for row in rows_of(out / "grains.csv")}, set(range(1, 9)))
+        self.assertLess(max(int(row[k]) for row in rows_of(out / "bonds.csv") for k in "ij"), 7)  # the last is the new one
+
     def test_discs_that_are_cemented_keep_their_stress_and_break_under_more(self):
         out = self.folder / "out"
         result = self.run_case(self.rock(), "--out", out, *NO_PICTURE)

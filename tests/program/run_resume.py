@@ -12,6 +12,91 @@ from motion import CORNER, RADIUS, REST, SHAKE, RunTest, files_of, frame_files
 from program import PROGRAM, equidem, parse_json
 
 
+PAIR = '''schema = "equidem/1"
+[grains]
+density = 2600.0
+[[grain]]
+position = [0.0, 0.02]
+radius = 0.01
+[[grain]]
+position = [0.02, 0.02]
+radius = 0.01
+velocity = [0.1, 0.0]
+[bonds]
+{}
+[[bond]]
+grains = [0, 1]
+[collisions]
+law = "linear_dashpot"
+stiffness = 1.0e7
+restitution = 0.3
+[run]
+duration = 1.0e-3
+[[probe]]
+name = "p"
+group = "grains"
+quantities = ["stress", "velocity"]
+box = [-0.02, 0.0, 0.05, 0.05]
+[output]
+probe_interval = 1e-4
+frame_interval = 3e-4
+picture = false
+[measures]
+cell = 0.02
+'''
+
+
+class ResumeOfBonds(RunTest):
+    def test_bonds_of_every_kind_go_on_after_any_step_with_the_same_rows(self):
+        springs, dashpots = "normal_spring = 2.0e6\ntangential_spring = 1.0e6\n", "normal_dashpot = 100.0\nrolling_dashpot = 1e-3\n"
+        for bonds in (springs, dashpots, springs + dashpots, springs + dashpots + 'step = "explicit"\n',
+                      springs + dashpots + "[strength]\ntension = 60.0\nshear = 60.0\n"):
+            for integrator in ("semi_implicit_euler", "velocity_verlet"):
+                case, whole = self.folder / "case.toml", self.folder / "whole"
+                case.write_text(PAIR.format(bonds))
+                common = ("--set", f"run.integrator={integrator}", "--set", "run.time_step=1.5e-5")
+                first = self.run_case(case, "--out", whole, "--overwrite", *common)
+                for end in (None, "1.5e-5", "3.3e-4", "9.9e-4"):
+                    with self.subTest(bonds=bonds, integrator=integrator, end=end):
+                        out = self.folder / "out"
+                        self.run_case(case, "--out", out, "--overwrite", *common,
+                                      *(("--set", f"run.duration={end}") if end else ()))
+                        again = self.run_case(case, "--out", out, "--resume", *common)
+                        for name in ("history.csv", "fields.csv", "fields.vti", "grains.csv", "bonds.csv", "contacts.csv",
+                                     "energy.csv", "measures.csv"):
+                            self.assertEqual((whole / name).read_bytes(), (out / name).read_bytes(), name)
+                        self.assertEqual(frame_files(whole), frame_files(out))
+                        for key in ("energy", "bonds", "measures", "forces_on_walls"):
+                            self.assertEqual(first.get(key), again.get(key), key)
+
+    def test_a_measure_with_nothing_left_to_measure_is_null_and_the_run_is_delivered(self):
+        case = self.folder / "case.toml"
+        for what, text, reason in (
+                ("flown away", PAIR, "no heap of bodies is left"),
+                ("far apart", PAIR.replace("cell = 0.02", "cell = 1e-5").replace("[[bond]]\ngrains = [0, 1]\n", "")
+                 .replace("[bonds]\n{}\n", "").replace("velocity = [0.1, 0.0]", "velocity = [1000.0, 0.0]"), "more than a million"),
+                ("a region left empty", PAIR.replace("cell = 0.02", "cell = 0.02\nregion = [0.0, 0.0, 0.02, 0.04]"), "no heap of bodies")):
+            with self.subTest(what=what):
+                out = self.folder / what
+                case.write_text(text.replace("{}", "normal_spring = 2.0e6\nnormal_dashpot = 100.0"))
+                for options in ((), ("--resume",)):
+                    result = self.run_case(case, "--out", out, "--set", "run.duration=0.4", "--set", "output.probe_interval=0.02",
+                                           "--set", "run.time_step=1.5e-5", *options)
+                    measures, report = result["measures"], " ".join(result["report"].split())
+                    self.assertIsNone(measures["void_ratio"]["after"])
+                    self.assertIn("WARNING", report)
+                    self.assertIn("there are no fields at the end", report)
+                    self.assertIn(reason, report)
+                    self.assertNotIn("nan", report)
+                    self.assertIn("there are no fields at the end", (out / "index.html").read_text())
+                    self.assertEqual((out / "fields.csv").read_text().count("\n"), 1)
+                    self.assertFalse((out / "fields.vti").exists())
+                if what != "far apart":
+                    self.assertIsNone(measures["surface_height"]["after"])
+                    self.assertIsNone(measures["surface_slope"]["after"])
+                    self.assertIn(",,", (out / "measures.csv").read_text().splitlines()[-1])
+
+
 class Resume(RunTest):
     # Long enough to be caught in the middle; checkpoints as often as a run can be stopped.
     SETTINGS = {CORNER: ("--set", "run.duration=0.15", "--set", "output.frame_interval=2e-3"),
@@ -59,15 +144,17 @@ class Resume(RunTest):
                 self.check_same(whole, out)
 
     def test_interrupted_it_leaves_a_checkpoint_and_goes_on_with_the_same_bits(self):
-        for case in (CORNER, SHAKE):
-            with self.subTest(case=case.name):
+        for case, how in ((CORNER, signal.SIGINT), (SHAKE, signal.SIGTERM), (CORNER, signal.SIGHUP)):
+            with self.subTest(case=case.name, how=how):
                 whole, seconds = self.uninterrupted(case)
-                out = self.folder / f"interrupted_{case.stem}"
+                out = self.folder / f"interrupted_{case.stem}_{how.name}"
                 running = self.start(case, out)
                 while not (out / "history.csv").exists() and running.poll() is None:
                     time.sleep(0.002)
                 time.sleep(0.3 * seconds)
-                running.send_signal(signal.SIGINT)
+                running.send_signal(how)
+                if how == signal.SIGHUP:
+                    running.send_signal(how)  # the system and the shell each send one
                 errors = running.communicate()[1]
                 if running.returncode == 0:
                     self.skipTest("the run was over before it could be interrupted")
@@ -121,6 +208,16 @@ class Resume(RunTest):
                                     "--set", "assembly.rows=61", "--set", "output.picture=false"))
         for out in outs[1:]:
             self.check_same(outs[0], out)
+
+    def test_under_nohup_a_run_outlives_its_terminal(self):
+        out = self.folder / "out"
+        running = subprocess.Popen(["nohup", PROGRAM, "run", str(CORNER), "--out", str(out), *self.SETTINGS[CORNER], *self.COMMON],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)
+        while not (out / "history.csv").exists() and running.poll() is None:
+            time.sleep(0.002)
+        running.send_signal(signal.SIGHUP)
+        self.assertEqual(running.wait(), 0)
+        self.assertTrue((out / "result.json").exists())
 
     def test_a_checkpoint_of_another_case_is_refused_with_what_differs(self):
         out = self.folder / "out"

@@ -149,8 +149,20 @@ class Servos(StageTest):
                             (PRESS + SERVO.replace("servo", "# servo") + STAGES.replace("removed = true", ""), ("in stages",))):
             self.check_error(equidem("export", self.write(text), "--to", "lammps", "--out", self.folder / "model"), 2, *words)
 
-    def test_a_servo_with_nothing_to_push_is_an_error_with_its_line(self):
-        self.refused(PRESS + 'servo = { force = 1.0, max_speed = 1e-4 }\n' + RUN, "'lid'", "no body until the end", code=1)
+    def test_a_servo_that_meets_no_body_is_warned_of_and_the_run_goes_on_from_its_end(self):
+        out, whole = self.folder / "out", self.folder / "whole"
+        text = PRESS + 'servo = { force = 1.0, max_speed = 1e-4 }\n' + RUN + "[output]\nprobe_interval = 1e-3\n"
+        for options in ((), ("--resume",)):
+            result = self.run_case(self.write(text), "--out", out, *NO_PICTURE, *options)
+            servo, = result["servos"]
+            self.assertEqual((servo["touched"], servo["reached"], servo["force"]), (False, False, 0))
+            self.assertIn("WARNING servo walls met no body, and nothing was pressed: 'lid'", " ".join(result["report"].split()))
+            self.assertIn("met no body", (out / "index.html").read_text())
+        longer = ("--set", "run.duration=0.11")
+        self.assertGreater(self.run_case(self.write(text), "--out", out, *NO_PICTURE, *longer, "--resume")["time"], 0.1)
+        self.run_case(self.write(text), "--out", whole, *NO_PICTURE, *longer)
+        for name in ("history.csv", "grains.csv"):
+            self.assertEqual((out / name).read_bytes(), (whole / name).read_bytes(), name)
         self.refused(PRESS + 'servo = { force = 1.0, max_speed = 10.0, direction = [0.0, 1.0] }\n' + RUN, "'lid'",
                      "met no body", code=1)
 

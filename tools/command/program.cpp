@@ -184,7 +184,7 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 
-constexpr int interrupts[] = {SIGINT, SIGTERM};
+constexpr int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
 
 void hold_back_interrupts(bool held) {
   sigset_t set;
@@ -250,7 +250,8 @@ __attribute__((section(".preinit_array"), used)) const AtStart before_libraries 
 void start_without_blas_threads(char** argv) {
   if (std::getenv(blas_threads) != nullptr) return;
   hold_back_interrupts(true);
-  for (const int signal : interrupts) std::signal(signal, end_interrupted);  // in the threads of OpenBLAS
+  for (const int signal : interrupts)  // in the threads of OpenBLAS
+    if (std::signal(signal, end_interrupted) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);  // by nohup
   if (setenv(blas_threads, "1", 0) != 0) return;
   execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
 }

@@ -20,7 +20,8 @@ volatile std::sig_atomic_t stop_asked = 0;
 
 void ask_to_stop(int signal_number) {
   stop_asked = 1;
-  std::signal(signal_number, SIG_DFL);
+  // of a terminal that closes, SIGHUP comes from the system and from its shell
+  if (signal_number != SIGHUP) std::signal(signal_number, SIG_DFL);
 }
 
 /// s
@@ -70,6 +71,8 @@ void Progress::update(double fraction) {
 void catch_interrupts() {
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
+  if (std::signal(SIGHUP, ask_to_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
+  std::signal(SIGXFSZ, SIG_IGN);                                                  // writes fail instead
 }
 
 InterruptCatcher::InterruptCatcher() {

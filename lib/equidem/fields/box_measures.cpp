@@ -84,7 +84,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   }
   if (region) {
     const SolidMeasures solids = measure_solids(grains, scene_.clumps, *region);
-    moment.void_ratio = solids.void_ratio;
+    if (solids.solid_fraction > 0) moment.void_ratio = solids.void_ratio;
     moment.porosity = solids.porosity;
   }
   last_ = surface_of(grains, scene_.clumps, start_.inside.low.x + moved.x, start_.inside.high.x + moved.x,
@@ -139,14 +139,26 @@ Sloshing BoxMeasures::sloshing() const {
   return result;
 }
 
-CoarseFields BoxMeasures::fields(const GrainSimulation& simulation) const {
-  const std::vector<Grain> grains = simulation.grains();
-  const GrainBox box = box_of(simulation.placed_walls(), grains, simulation.time());
+CoarseGrid BoxMeasures::grid_of_fields(const GrainSimulation& simulation) const {
+  const GrainBox box = box_of(simulation.placed_walls(), simulation.grains(), simulation.time());
   Region region = box.inside;
-  if (!box.lid)
-    region.high.y = *std::max_element(last_.heights.begin(), last_.heights.end(),
-                                      [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; });
-  return coarse_fields(grains, scene_.clumps, simulation.body_contacts(), grid_over(region, *options_.cell));
+  if (!box.lid) {
+    region.high.y = -INFINITY;
+    for (const double height : last_.heights)
+      if (height > region.high.y) region.high.y = height;
+  }
+  if (!(region.low.x < region.high.x && region.low.y < region.high.y))
+    computation_failed("no heap of bodies is left in the box", "the fields are those below its surface",
+                       "End the run earlier, or close the box by walls");
+  try {
+    return grid_over(region, *options_.cell);
+  } catch (const Error& error) {
+    computation_failed(error.problem(), error.why(), error.remedy());
+  }
+}
+
+CoarseFields BoxMeasures::fields(const GrainSimulation& simulation, const CoarseGrid& grid) const {
+  return coarse_fields(simulation.grains(), scene_.clumps, simulation.body_contacts(), grid);
 }
 
 }  // namespace equidem

@@ -105,8 +105,11 @@ class BoxMeasures {
   [[nodiscard]] const std::vector<std::optional<FirstThrow>>& throws() const { return throws_; }  ///< of each body
   /// Over the free motion after the last shaking where it lasts two periods of theory, else from before() on.
   [[nodiscard]] Sloshing sloshing() const;
-  /// Fields over the inside of the box, below the surface where there is no lid; options().cell must be given.
-  [[nodiscard]] CoarseFields fields(const GrainSimulation& simulation) const;
+  /// The grid of the fields over the inside of the box, below the surface where there is no lid; options().cell must be
+  /// given.
+  /// \throws Error (computation_failed) where no heap is left in the box, or bodies are too far apart for the cells
+  [[nodiscard]] CoarseGrid grid_of_fields(const GrainSimulation& simulation) const;
+  [[nodiscard]] CoarseFields fields(const GrainSimulation& simulation, const CoarseGrid& grid) const;
 
  private:
   const GrainScene& scene_;

@@ -65,6 +65,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
                       .solid_fraction = std::vector<double>(grid.size(), 0.0),
                       .coordination = std::vector<double>(grid.size(), unknown),
                       .velocity = std::vector<Vec2>(grid.size(), {unknown, unknown})};
+  if (grid.size() == 0) return fields;
   const Vec2 size = grid.cell_size();
   const double area = size.x * size.y;
 

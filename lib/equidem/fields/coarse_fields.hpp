@@ -13,7 +13,7 @@
 
 namespace equidem {
 
-/// A rectangle in equal cells, row by row from below.
+/// A rectangle in equal cells, row by row from below; none where there is nothing to measure.
 struct CoarseGrid {
   Region region;  ///< m
   std::size_t columns = 1, rows = 1;

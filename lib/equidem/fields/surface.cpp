@@ -86,7 +86,7 @@ SurfaceShape shape_of(const SurfaceProfile& profile) {
     xx += (x - x_mean) * (x - x_mean);
     xy += (x - x_mean) * (y - y_mean);
   });
-  SurfaceShape shape{.height = y_mean, .slope = xx > 0 ? xy / xx : 0};
+  SurfaceShape shape{.height = y_mean, .slope = xx > 0 || n == 0 ? xy / xx : 0};
   double squares = 0;
   for_columns([&](double x, double y) {
     const double off = y - y_mean - shape.slope * (x - x_mean);

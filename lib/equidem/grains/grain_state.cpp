@@ -128,11 +128,9 @@ SavedState GrainSimulation::save() const {
     for (const BodyImpulse& push : system.bodies.impulses)
       impulses.insert(impulses.end(), {push.impulse.x, push.impulse.y, push.torque});
   }
-  if (implementation_->verlet()) {
-    for (const TiedPair& bond : system.bonds.tied) {
-      const BondModes impulse = last_impulse(system, bond);
-      bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
-    }
+  for (const TiedPair& bond : system.bonds.tied) {
+    const BondModes impulse = last_impulse(system, bond);
+    bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
   }
   for (const WallLoad& load : system.walls.loads)
     walls.insert(walls.end(), {load.impulse.x, load.impulse.y, load.step_impulse.x, load.step_impulse.y,
@@ -189,17 +187,16 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const std::size_t impulses =
       implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
   std::vector<BondBreak> breaks;
-  std::size_t tied = system.bonds.tied.size();
+  std::size_t bonds = system.bonds.tied.size();
   if (const auto& breakable = system.bonds.breakable) {
     breaks = breaks_of(state["breaks"]);
     check_breaks(system, breaks);
-    tied = breakable->all.size() - breaks.size();
+    bonds = breakable->all.size() - breaks.size();
   }
-  const std::size_t bonds = implementation_->verlet() ? numbers_per_bond * tied : 0;
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses || state["bonds"].size() != bonds ||
+      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses || state["bonds"].size() != numbers_per_bond * bonds ||
       losses.size() != energy_terms(BodyFamily::colliding).size() || counts.size() != std::size(counters_saved) ||
       state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
       state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {
@@ -230,7 +227,7 @@ void GrainSimulation::go_back_to(const SavedState& state) {
     system.bodies.impulses[k] = {{push[0], push[1]}, push[2]};
   }
   system.bodies.cleared = false;
-  for (std::size_t b = 0; b < bonds / numbers_per_bond; ++b) {
+  for (std::size_t b = 0; b < bonds; ++b) {
     const double* impulse = state["bonds"].data() + numbers_per_bond * b;
     take_last_impulse(system, system.bonds.tied[b], {impulse[0], impulse[1], impulse[2]});
   }

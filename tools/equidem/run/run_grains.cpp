@@ -76,6 +76,8 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
       added.grains = stage.bodies.added;
       added.pairs = pairs_at(stage.contacts, options.law, step);
       added.walls.clear();
+      added.bonds.clear();  // they tie bodies of the case
+      added.strengths.reset();
       casefile::with_place(resolved.where(place), [&] { check(added, options); });
     }
     if (stage.bonds)
@@ -150,37 +152,6 @@ void refuse_made_energy(const GrainCase& resolved, double step, const StagedSimu
                   ledger.kinetic / given),
       "contacts make energy where steps are too long for them, and maps where several act on a body at once",
       "Use a shorter time_step, or the law exact_flow");
-}
-
-/// \throws Error (computation_failed) where a servo wall, or a cell with a servo, has met no body until the end of a
-///         stage
-void refuse_idle_servos(const GrainCase& resolved, const StagedSimulation& simulation) {
-  const auto refuse = [&](const std::string& what, const std::string& why, const std::string& remedy,
-                          const std::string& key) {
-    throw Error(
-        ErrorKind::computation_failed, what, why, remedy,
-        resolved.where(resolved.stages.empty() ? key : fmt::format("stage.{}", simulation.reports().size() - 1)));
-  };
-  const GrainSimulation& present = simulation.present();
-  for (const ServoReport& servo : present.servos()) {
-    if (servo.touched || servo.wanted == 0) continue;
-    const auto at = std::ranges::find(resolved.scene.walls, servo.wall, &Wall::name) - resolved.scene.walls.begin();
-    refuse(fmt::format("the servo wall '{}' met no body until the end", servo.wall),
-           "nothing pushes back that its force could be held", "Let it move faster or the run last longer",
-           fmt::format("wall.{}.servo", at));
-  }
-  const auto cell = present.cell();
-  if (!cell || present.counters().contacts > 0 || !simulation.bonds().empty()) return;
-  for (const CellServoReport& servo : cell->servos)
-    if (servo.wanted != 0)
-      refuse(
-          fmt::format("no bodies of the periodic cell have met until the end, and the stress {} of its servo was not "
-                      "held",
-                      servo.component),
-          "nothing resists that carries a stress",
-          servo.wanted < 0 ? "Let it deform faster (max_rate), or the run last longer"
-                           : "Bond the bodies, or press them: contacts carry no tension",
-          "cell.servo");
 }
 
 /// \param kept of the checkpoint with which the run begins: an automatic step gives way to it
@@ -290,11 +261,7 @@ RunPlan GrainRun::plan() {
           .samples = draws_paths ? samples_of_few : energy_samples,
           .paths = draws_paths,
           .recorder = measures_ ? &*measures_ : nullptr,
-          .watch =
-              [this](const EnergyLedger& energy) {
-                refuse_made_energy(case_, step_.step, simulation_, energy);
-                if (simulation_.milestone() >= 0) refuse_idle_servos(case_, simulation_);
-              },
+          .watch = [this](const EnergyLedger& energy) { refuse_made_energy(case_, step_.step, simulation_, energy); },
           .step_place = case_.where("run.time_step")};
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
@@ -41,6 +42,7 @@ class GrainMeasures final : public RunRecorder {
  private:
   void go_on(const Checkpoint& from);
   void write_thrown() const;
+  [[nodiscard]] std::pair<CoarseGrid, std::string> grid_of_fields() const;
 
   const GrainCase& resolved_;
   const StagedSimulation& simulation_;

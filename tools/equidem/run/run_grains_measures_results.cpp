@@ -83,7 +83,19 @@ Results GrainMeasures::results() const {
       .note("; ")
       .add("outside", "", after.outside, "outside the box");
   add_sloshing(out, measures_.sloshing());
+  if (const auto [grid, why] = grid_of_fields(); !why.empty()) out.line("WARNING", why);
   return out.under("measures");
+}
+
+/// The grid at the end; empty, with the reason, where there is nothing to measure.
+std::pair<CoarseGrid, std::string> GrainMeasures::grid_of_fields() const {
+  if (!resolved_.measures->cell) return {};
+  try {
+    return {measures_.grid_of_fields(simulation_.present()), ""};
+  } catch (const Error& error) {
+    return {CoarseGrid{.region = {}, .columns = 0, .rows = 0},
+            fmt::format("{}: there are no fields at the end: {}", resolved_.where("measures.cell"), error.what())};
+  }
 }
 
 void GrainMeasures::write_files(const std::filesystem::path& folder, bool overwrite) const {
@@ -117,7 +129,7 @@ void GrainMeasures::write_files(const std::filesystem::path& folder, bool overwr
     }
   }
   if (!resolved_.measures->cell) return;
-  write_fields(folder, "fields", measures_.fields(simulation_.present()), overwrite);
+  write_fields(folder, "fields", measures_.fields(simulation_.present(), grid_of_fields().first), overwrite);
 }
 
 void write_probe_paths(const std::filesystem::path& folder, const GrainCase& resolved, bool overwrite) {

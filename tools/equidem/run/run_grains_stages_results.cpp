@@ -136,15 +136,16 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
                       const std::vector<ServoReport>& present) {
   const char* force = resolved.body == Body::disc ? "N/m" : "N";
   std::vector<Results> rows;
-  std::vector<std::string> missed;
+  std::vector<std::string> missed, alone;
   const auto add = [&](const std::string& stage, const ServoReport& servo) {
     if (!servo.reached && (servo.wanted > 0 || servo.force > 0))
-      missed.push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
+      (servo.touched ? missed : alone).push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
     Results& row = rows.emplace_back();
     if (!resolved.stages.empty()) row.add("stage", "stage", stage);
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
         .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
         .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
+        .set("touched", servo.touched)
         .set("reached", servo.reached);
     row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
     const auto share = [&](double value) {
@@ -169,6 +170,10 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
              fmt::format("the force of servo walls never came within 1 % of the wanted one: {}; let them move "
                          "faster (max_speed), or for longer",
                          joined(missed)));
+  if (!alone.empty())
+    out.line("WARNING", fmt::format("servo walls met no body, and nothing was pressed: {}; let them move faster "
+                                    "(max_speed), or for longer",
+                                    joined(alone)));
   return out;
 }
 
@@ -176,8 +181,12 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
                            const std::vector<CellServoReport>& present) {
   std::vector<Results> rows;
   std::vector<std::string> missed;
+  bool pulls = false;
   const auto add = [&](const std::string& stage, const CellServoReport& servo) {
-    if (!servo.reached && servo.wanted != 0) missed.push_back(in_stage(resolved, servo.component, stage));
+    if (!servo.reached && servo.wanted != 0) {
+      missed.push_back(in_stage(resolved, servo.component, stage));
+      pulls = pulls || servo.wanted > 0;
+    }
     const auto share = [&](double value) {
       return servo.reached && std::isfinite(value) ? ResultValue(value) : ResultValue(nullptr);
     };
@@ -198,8 +207,9 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
   out.table("servos", std::move(rows));
   if (!missed.empty())
     out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
-                                    "faster (max_rate), or for longer",
-                                    joined(missed)));
+                                    "faster (max_rate), or for longer{}",
+                                    joined(missed),
+                                    pulls ? "; contacts carry no tension, bonds do" : ""));
   return out.under("cell");
 }
 

@@ -87,10 +87,15 @@ StageReport report_of(const std::string& name, const double* row, const Effects&
   bad_input(what, why, "Go on with the case that the state was saved from");
 }
 
+/// Whether a number counts something of which there are `end`.
+bool is_below(double number, std::size_t end) {
+  return number >= 0 && number < static_cast<double>(end) && number == std::floor(number);
+}
+
 void take_cell_servos(const std::vector<double>& numbers, std::vector<StageReport>& reports) {
   for (std::size_t at = 0; at + numbers_of_cell_servo_report <= numbers.size(); at += numbers_of_cell_servo_report) {
     const double* n = numbers.data() + at;
-    if (!(n[0] >= 0) || n[0] >= static_cast<double>(reports.size()))
+    if (!is_below(n[0], reports.size()))
       refuse_state("the saved state reports stresses of a cell in a stage to come", "its file may be damaged");
     reports[static_cast<std::size_t>(n[0])].cell_servos.push_back({.component = n[1] == 0 ? "xx" : "yy",
                                                                    .reached = n[2] != 0,
@@ -106,12 +111,11 @@ void take_idle(const std::vector<double>& numbers, const std::vector<GrainStage>
                std::vector<StageReport>& reports) {
   for (std::size_t at = 0; at + numbers_of_idle_choice <= numbers.size(); at += numbers_of_idle_choice) {
     const double* n = numbers.data() + at;
-    const auto below = [](double number, std::size_t end) { return number >= 0 && number < static_cast<double>(end); };
-    if (!below(n[0], reports.size()) || !below(n[1], 2))
+    if (!is_below(n[0], reports.size()) || !is_below(n[1], 2))
       refuse_state("the saved state tells of choices of bodies in a stage to come", "its file may be damaged");
     const auto stage = static_cast<std::size_t>(n[0]);
     const StageBodies& how = stages[stage].bodies;
-    if (!below(n[2], n[1] == 0 ? how.removed.size() : how.renamed.size()))
+    if (!is_below(n[2], n[1] == 0 ? how.removed.size() : how.renamed.size()))
       refuse_state(
           fmt::format("the saved state tells of choices of bodies that stage '{}' does not make", reports[stage].name),
           "its file may be damaged");
@@ -125,12 +129,9 @@ void take_servos(const std::vector<double>& numbers, const std::vector<GrainStag
                  std::vector<StageReport>& reports) {
   for (std::size_t at = 0; at + numbers_of_servo_report <= numbers.size(); at += numbers_of_servo_report) {
     const double* n = numbers.data() + at;
-    const auto is_count = [](double number) { return number >= 0 && number <= 1e15 && number == std::floor(number); };
-    if (!is_count(n[0]) || !is_count(n[1]) || !is_count(n[2]))
-      refuse_state("the saved state has a bond without a stage or a disc", "its file may be damaged");
+    if (!is_below(n[0], reports.size()))
+      refuse_state("the saved state reports servo walls of a stage to come", "its file may be damaged");
     const auto stage = static_cast<std::size_t>(n[0]);
-    if (stage >= reports.size())
-      refuse_state("the saved state reports servo walls of a stage to come", "it is damaged");
     std::vector<ServoReport>& servos = reports[stage].servos;
     std::size_t skip = servos.size();
     for (const Wall& wall : stages[stage].scene.walls) {
@@ -205,9 +206,13 @@ StagedSimulation::Bonds StagedSimulation::bonds_in(const SavedState& state, std:
   if (bonds.strengths) bonds.strengths->tension.resize(own), bonds.strengths->shear.resize(own);
   for (std::size_t at = 0; at + numbers_of_made_bond <= made.size(); at += numbers_of_made_bond) {
     const double* n = made.data() + at;
+    if (!is_below(n[0], begun) || !stages_[static_cast<std::size_t>(n[0])].bonds)
+      refuse_state(fmt::format("the saved state has bonds made in stage {}", n[0]), "this run makes none there");
     const auto stage = static_cast<std::size_t>(n[0]);
-    if (stage >= begun || !stages_[stage].bonds)
-      refuse_state(fmt::format("the saved state has bonds made in stage {}", stage), "this run makes none there");
+    if (!is_below(n[1], first_added(stage + 1)) || !is_below(n[2], first_added(stage + 1)))
+      refuse_state(fmt::format("the saved state has a bond of the bodies {} and {} in stage '{}'", n[1], n[2],
+                               stages_[stage].name),
+                   fmt::format("this run has {} until then", first_added(stage + 1)));
     const StageBonds& how = *stages_[stage].bonds;
     GrainBond& bond = bonds.all.emplace_back(how.like);
     bond.i = static_cast<std::size_t>(n[1]);
@@ -232,11 +237,13 @@ StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std:
   Start start{.walls = {}, .bodies = {}, .cell = stages_[begun - 1].scene.cell};
   std::vector<std::pair<std::size_t, int>> present;  // number and kind
   for (std::size_t k = 0; k < count; ++k) {
-    const auto number = static_cast<std::size_t>(bodies[2 * k]);
-    if (!(bodies[2 * k] >= 0) || number >= first_added(begun))
+    if (!is_below(bodies[2 * k], first_added(begun)))
       refuse_state(fmt::format("the saved state has a body {}", bodies[2 * k]),
                    fmt::format("this run has {} until then", first_added(begun)));
-    present.emplace_back(number, static_cast<int>(bodies[2 * k + 1]));
+    if (!is_below(bodies[2 * k + 1], static_cast<std::size_t>(stages_[begun - 1].scene.kinds)))
+      refuse_state(fmt::format("the saved state has a body of kind {}", bodies[2 * k + 1]),
+                   fmt::format("stage '{}' has {}", stages_[begun - 1].name, stages_[begun - 1].scene.kinds));
+    present.emplace_back(static_cast<std::size_t>(bodies[2 * k]), static_cast<int>(bodies[2 * k + 1]));
   }
   std::ranges::sort(present);
   const auto same_number = [](const auto& a, const auto& b) { return a.first == b.first; };

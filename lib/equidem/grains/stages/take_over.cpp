@@ -132,7 +132,7 @@ bool rubs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 
 /// Breaks, and the last impulses of bonds that both have; bonds whose discs are gone push no more.
 void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& places, const SceneOrigins& origins,
-                     SavedState& state, bool verlet) {
+                     SavedState& state) {
   if (own.bonds.breakable) {
     std::vector<BondBreak> breaks;
     for (std::size_t b = 0; old.bonds.breakable && b < old.bonds.breakable->breaks.size(); ++b) {
@@ -149,7 +149,6 @@ void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& pla
   }
   std::vector<double>& impulses = state["bonds"];
   impulses.clear();
-  if (!verlet) return;
   for (const TiedPair& bond : own.bonds.tied) {
     const std::int32_t i = places.bodies_then[static_cast<std::size_t>(bond.i)],
                        j = places.bodies_then[static_cast<std::size_t>(bond.j)];
@@ -265,7 +264,7 @@ void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigin
   const bool had_impulses = !state["impulses"].empty();
   state["impulses"] =
       had_impulses ? rows_now(state["impulses"], std::move(resting), 3, places.bodies_then) : fresh["impulses"];
-  take_over_bonds(old, own, places, origins, state, implementation_->verlet());
+  take_over_bonds(old, own, places, origins, state);
   take_over_contacts(old, own, places, fresh, state);
   state["start"] = fresh["start"];
   // walls and servos that both have go on

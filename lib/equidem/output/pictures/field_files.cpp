@@ -158,6 +158,10 @@ std::vector<std::filesystem::path> write_fields(const std::filesystem::path& fol
                                                  folder / (name + ".png")};
   for (const auto& path : paths) check_writable(path, overwrite);
   write_csv(paths[0], table_of(fields), overwrite);
+  if (fields.grid.size() == 0) {  // of an earlier run
+    for (const auto& path : {paths[1], paths[2]}) std::filesystem::remove(path);
+    return {paths[0]};
+  }
   write_file(paths[1], image_text(fields), overwrite);
   write_file(paths[2], draw(fields), overwrite);
   return paths;
