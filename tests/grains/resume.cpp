@@ -27,10 +27,12 @@ TEST_CASE("bonds_saved_at_any_step_go_on_with_the_same_forces_whatever_they_are_
     scene.bonds.push_back(like);
     scene.bonds.back().i = i, scene.bonds.back().j = j;
   }
-  if (springs && gives_force(stepping.law)) scene.strengths = ContactStrengths{{14, 9, 99, 9, 14, 14}, {9, 5, 99, 5, 9, 9}, 0.2};
+  if (springs && gives_force(stepping.law))
+    scene.strengths = ContactStrengths{{14, 9, 99, 9, 14, 14}, {9, 5, 99, 5, 9, 9}, 0.2};
   if (in_cell) {
     if (!gives_force(stepping.law)) return;
     scene.walls.clear();
+    for (Grain& grain : scene.grains) grain.velocity = 8 * grain.velocity;
     scene.gravity = {};
     scene.cell = PeriodicCell{.corner = {0, 0}, .width = 4, .height = 3};
   }

@@ -195,6 +195,57 @@ TEST_CASE("stages_that_change_bodies_go_on_from_any_saved_state_with_the_same_bi
   }
 }
 
+TEST_CASE("discs_move_on_as_they_did_where_the_first_shape_comes_in_a_stage_and_the_last_one_goes") {
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  const bool in_cell = GENERATE(false, true), bonded = GENERATE(false, true);
+  if (in_cell && stepping.integrator == GrainIntegrator::semi_implicit_euler) return;
+  GrainScene scene = busy_box(stepping.law, 4, 3, 5);
+  scene.walls.pop_back();
+  if (bonded)
+    for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 1}, {1, 4}, {5, 8}})
+      scene.bonds.push_back({.i = i, .j = j, .normal_dashpot = 1, .normal_spring = 300, .tangential_spring = 100});
+  if (in_cell) {
+    scene.walls.resize(1);
+    scene.walls[0].move_x = {};
+    scene.cell = PeriodicCell{.along = PeriodicCell::Along::x, .corner = {0, 0}, .width = 4};
+  }
+  for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
+  GrainStage discs{.name = "discs", .scene = scene, .steps = 60}, shapes = discs, again = discs;
+  shapes.name = "shapes";
+  shapes.bodies.added = {oval({2, 40}, 0.4, 0.2, 1, {0.1, 0}), lump(shapes.scene, pair_of_discs(), {2, 50})};
+  again.name = "again";
+  again.scene.clumps = shapes.scene.clumps;
+  again.bodies.removed = {in_box({-10, 30}, {10, 60})};
+  const GrainOptions options = options_of(stepping, 4e-3);
+  GrainSimulation whole(scene, options);
+  StagedSimulation staged({discs, shapes, again}, options);
+  std::vector<SavedState> states;
+  double off = 0;
+  std::size_t most = 0;
+  for (int step = 0; step <= 180; ++step) {
+    if (step > 0) whole.advance(1), staged.advance(1);
+    if (step % 7 == 0 || staged.milestone() >= 0) states.push_back(staged.save());
+    for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+      off = std::max(off, norm(staged.present().grains()[g].position - whole.grains()[g].position));
+      off = std::max(off, std::abs(staged.present().grains()[g].spin - whole.grains()[g].spin));
+    }
+    most = std::max(most, whole.contacts().size());
+  }
+  CAPTURE(stepping.name(), in_cell, bonded, off, most);
+  CHECK(staged.reports()[1].added == 2);
+  CHECK(staged.reports()[2].removed == 2);
+  CHECK(most > 5);
+  CHECK(off < 1e-9);
+  const Bits end = bits_of(staged.present());
+  for (const SavedState& state : states) {
+    CAPTURE(state.step);
+    StagedSimulation resumed({discs, shapes, again}, options);
+    resumed.restore(state);
+    step_all(resumed, 180);
+    CHECK(bits_of(resumed.present()) == end);
+  }
+}
+
 TEST_CASE("breaks_keep_the_numbers_of_their_bonds_when_bodies_go") {
   GrainBond like = all_of_a_bond;
   like.bending_spring = 0.4;

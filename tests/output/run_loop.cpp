@@ -27,7 +27,8 @@ namespace {
 /// Dies where its state is to be saved for the n-th time.
 class Dying final : public AnySimulation {
  public:
-  Dying(StagedSimulation& of, int saves) : AnySimulation(BodyFamily::colliding, of.time_step()), of_(of), left_(saves) {}
+  Dying(StagedSimulation& of, int saves)
+      : AnySimulation(BodyFamily::colliding, of.time_step()), of_(of), left_(saves) {}
 
   [[nodiscard]] const Effects& effects() const override { return of_.effects(); }
   void advance(std::int64_t steps) override { of_.advance(steps); }
@@ -61,10 +62,12 @@ struct StagedRun {
   StagedRun() {
     for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
     for (const char* name : {"a", "b", "c"}) stages.push_back({.name = name, .scene = scene, .steps = 30});
-    stages[1].scene.walls[0].move_x = {.value = 0.1};
+    stages[1].scene.walls[0].move_x = {Schedule::Kind::sine, 0.1, 0, 0, 0.5};
     stages[1].bonds = StageBonds{.gap_tolerance = 0.2, .like = {.normal_dashpot = 1, .normal_spring = 300}};
+    stages[2].scene.walls.pop_back();
     stages[2].bodies.added = {ball({2, 9}, 0.3)};
-    for (const Grain& grain : scene.grains) discs.centres.push_back(grain.position), discs.radii.push_back(grain.radius);
+    for (const Grain& grain : scene.grains)
+      discs.centres.push_back(grain.position), discs.radii.push_back(grain.radius);
     discs.centres.push_back({2, 9}), discs.radii.push_back(0.3);
   }
   /// \param dies at that save; 0: never
@@ -81,7 +84,7 @@ struct StagedRun {
                  .probe_interval = 5 * options.time_step,
                  .checkpoint_interval = 0,
                  .frame_discs = &discs,
-                 .frames = {.contacts = true, .travelling = true},
+                 .frames = {.travelling = true, .contacts = true},
                  .probes = {{.name = "all",
                              .bodies = all,
                              .quantities = {ProbeQuantity::position, ProbeQuantity::stress},
@@ -110,7 +113,8 @@ std::map<std::string, std::string> contents_of(const std::filesystem::path& fold
                        checkpoint.record.film.size());
     for (const SavedArray& array : checkpoint.state.arrays)
       if (array.name != "counters") text += fmt::format("{} {}\n", array.name, fmt::join(array.values, " "));
-    for (const FileMark& mark : checkpoint.files) text += fmt::format("{} {} {}\n", mark.name, mark.length, mark.checksum);
+    for (const FileMark& mark : checkpoint.files)
+      text += fmt::format("{} {} {}\n", mark.name, mark.length, mark.checksum);
   }
   return contents;
 }

@@ -128,7 +128,7 @@ duration = 0.05
 
     def test_a_bonded_body_that_a_stage_removes_goes_with_its_bonds(self):
         case = self.rock(bonds="[stage.bonds]\ngap_tolerance = 0.01\n[[stage]]\nname = \"hole\"\nduration = 0.01\n"
-                         "[[stage.remove]]\nbox = [0.0, 0.0, 0.02, 0.02]\n[[stage.grain]]\nposition = [0.03, 0.2]\nradius = 0.005\n")
+                         "[[stage.remove]]\nbox = [0.0, 0.0, 0.02, 0.02]\n[[stage.grain]]\nposition = [0.0101, 0.0101]\nradius = 0.005\n")
         out = self.folder / "out"
         result = self.run_case(case, "--out", out, *NO_PICTURE)
         stages = {stage["name"]: stage for stage in result["stages"]}

@@ -233,15 +233,17 @@ class Branches(StageTest):
         self.assertEqual([stage["steps"] for stage in branch["stages"]], [stage["steps"] for stage in every["stages"]])
         self.assertNotEqual((whole / "grains.csv").read_bytes(), (self.folder / "branch" / "grains.csv").read_bytes())
 
-    def test_a_branch_that_is_interrupted_goes_on(self):
+    def test_a_branch_that_is_interrupted_goes_on_with_the_step_that_it_has(self):
         case, whole, parts = self.write(STAGES + OUTPUT), self.folder / "whole", self.folder / "parts"
-        self.run_case(case, "--out", whole, *NO_PICTURE)
+        stiffer = self.run_case(case, "--out", whole, *NO_PICTURE, "--set", "stage.3.collisions.stiffness=2e6")
         begin = ("--begin-from", whole / "run.settle.checkpoint.h5")
         one = self.run_case(case, "--out", self.folder / "one", *begin, *NO_PICTURE)
         self.run_case(case, "--out", parts, *begin, *NO_PICTURE)
         (parts / "run.checkpoint.h5").write_bytes((parts / "run.pour.checkpoint.h5").read_bytes())
         two = self.run_case(case, "--out", parts, "--resume", *NO_PICTURE)
         self.assertEqual(one["steps"], two["steps"])
+        self.assertEqual((one["time_step"], two["time_step"]), (stiffer["time_step"], stiffer["time_step"]))
+        self.assertLess(two["time_step"], self.run_case(case, "--dry-run")["time_step"])
         for name in ("history.csv", "grains.csv", "energy.csv"):
             self.assertEqual((self.folder / "one" / name).read_bytes(), (parts / name).read_bytes(), name)
 

@@ -13,6 +13,8 @@
 namespace equidem {
 namespace {
 
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
 /// Raises the columns that a convex body spans.
 class Raised {
  public:
@@ -49,7 +51,7 @@ SurfaceProfile surface_of(std::span<const Grain> grains, std::span<const Clump> 
                           std::size_t columns, std::span<const char> heap) {
   assert(columns >= 1 && left < right && (heap.empty() || heap.size() == grains.size()));
   SurfaceProfile profile{.left = left, .width = (right - left) / static_cast<double>(columns), .heights = {}};
-  profile.heights.assign(columns, std::numeric_limits<double>::quiet_NaN());
+  profile.heights.assign(columns, not_a_number);
   Raised raised(profile, right);
   for (std::size_t g = 0; g < grains.size(); ++g) {
     if (!heap.empty() && !heap[g]) continue;
@@ -79,6 +81,7 @@ SurfaceShape shape_of(const SurfaceProfile& profile) {
     x_mean += x;
     y_mean += y;
   });
+  if (n == 0) return {not_a_number, not_a_number, not_a_number};
   x_mean /= n;
   y_mean /= n;
   double xx = 0, xy = 0;
@@ -86,7 +89,7 @@ SurfaceShape shape_of(const SurfaceProfile& profile) {
     xx += (x - x_mean) * (x - x_mean);
     xy += (x - x_mean) * (y - y_mean);
   });
-  SurfaceShape shape{.height = y_mean, .slope = xx > 0 || n == 0 ? xy / xx : 0};
+  SurfaceShape shape{.height = y_mean, .slope = xx > 0 ? xy / xx : 0};
   double squares = 0;
   for_columns([&](double x, double y) {
     const double off = y - y_mean - shape.slope * (x - x_mean);

@@ -196,7 +196,8 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
   const std::vector<double>&losses = state["losses"], &counts = state["counters"];
   if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses || state["bonds"].size() != numbers_per_bond * bonds ||
+      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses ||
+      state["bonds"].size() != numbers_per_bond * bonds ||
       losses.size() != energy_terms(BodyFamily::colliding).size() || counts.size() != std::size(counters_saved) ||
       state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
       state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {

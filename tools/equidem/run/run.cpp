@@ -149,7 +149,11 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
   prepare(options);
   if (describes_grains(casefile::read_document(options.case_file, options.set))) {
     GrainCase resolved = read_grain_case(options.case_file, options.set);
-    if (!begin_from) return std::make_unique<GrainRun>(std::move(resolved));
+    if (!begin_from) {
+      const std::optional<double> step =
+          resume ? kept_grain_step(*options.out / "run.checkpoint.h5", resolved) : std::nullopt;
+      return std::make_unique<GrainRun>(std::move(resolved), step);
+    }
     auto job = std::make_unique<GrainRun>(std::move(resolved), step_of_stages(*begin_from));
     job->begin_from(*begin_from);
     return job;

@@ -194,6 +194,12 @@ double step_of_stages(const std::filesystem::path& checkpoint) {
                    "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
 }
 
+std::optional<double> kept_grain_step(const std::filesystem::path& checkpoint, const GrainCase& resolved) {
+  const auto found = step_in(case_of_checkpoint(checkpoint));
+  if (!found || found->step >= choose_grain_step(resolved).step) return {};
+  return found->step;
+}
+
 GrainRun::GrainRun(GrainCase resolved, const std::optional<double>& kept_step)
     : case_(std::move(resolved)),
       step_(step_of(case_, kept_step)),

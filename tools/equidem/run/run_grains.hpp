@@ -17,6 +17,11 @@ namespace equidem {
 /// \throws Error (bad_input) as case_of_checkpoint; a checkpoint of another run
 double step_of_stages(const std::filesystem::path& checkpoint);
 
+/// The step of the checkpoint of a run that goes on, s: a run that has begun from another one has the step of that one,
+/// which may be shorter than its own. None where this case needs a shorter one.
+/// \throws Error (bad_input) as case_of_checkpoint
+std::optional<double> kept_grain_step(const std::filesystem::path& checkpoint, const GrainCase& resolved);
+
 class GrainRun final : public RunJob {
  public:
   /// \param kept_step s, of a checkpoint: an automatic step is that one

@@ -208,8 +208,7 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
   if (!missed.empty())
     out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
                                     "faster (max_rate), or for longer{}",
-                                    joined(missed),
-                                    pulls ? "; contacts carry no tension, bonds do" : ""));
+                                    joined(missed), pulls ? "; contacts carry no tension, bonds do" : ""));
   return out.under("cell");
 }
 

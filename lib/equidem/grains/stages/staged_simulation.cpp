@@ -211,7 +211,8 @@ void StagedSimulation::refuse_endless() const {
                                   report.unbalanced, stage.end.unbalanced));
   throw Error(ErrorKind::computation_failed,
               fmt::format("it has not met its end in {:.6g} s", static_cast<double>(stage.steps) * options_.time_step),
-              joined(missing), "Give it a longer duration and go on with --resume, or change what ends it and run it anew",
+              joined(missing),
+              "Give it a longer duration and go on with --resume, or change what ends it and run it anew",
               stage.where());
 }
 

@@ -9,6 +9,7 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/pack_bonds.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/saved_contact.hpp"
 
 namespace equidem {
@@ -64,25 +65,32 @@ struct SavedContact {
   }
   /// From the centres of i and j to the contact point.
   [[nodiscard]] std::array<Vec2, 2> arms() const {
-    if (!system.shapes.parts.empty()) return {vector(at.arm), vector(at.arm + 2)};
+    // those of two discs are not in the state
+    if (!system.shapes.parts.empty() && (j() < 0 || !are_discs(system, i(), j())))
+      return {vector(at.arm), vector(at.arm + 2)};
     const double radius = system.bodies.constants[static_cast<std::size_t>(i())].radius;
     if (j() < 0) return {radius * normal(), {}};
     const double sum = radius + system.bodies.constants[static_cast<std::size_t>(j())].radius;
     const double distance = sum - numbers[at.overlap], lever = radius / sum * distance;
     return {lever * normal(), (lever - distance) * normal()};
   }
-  /// Makes it the same contact in another system.
-  void move_to(const GrainSystem& own, std::int32_t new_i, std::int32_t new_j) {
-    if (!system.shapes.parts.empty()) {
-      const auto move = [&](double& part, std::int32_t from, std::int32_t to) {
-        part += own.shapes.first_part[static_cast<std::size_t>(to)] -
-                system.shapes.first_part[static_cast<std::size_t>(from)];
-      };
-      move(numbers[at.part], i(), new_i);
-      if (new_j >= 0) move(numbers[at.part + 1], j(), new_j);
-    }
-    numbers[at.i] = new_i;
-    numbers[at.j] = new_j;
+  /// The row of the same contact in another system, which may be the first or the last with shapes.
+  [[nodiscard]] std::vector<double> row_in(const GrainSystem& own, std::int32_t new_i, std::int32_t new_j) const {
+    const ContactColumns to(own);
+    std::vector<double> row(numbers, numbers + at.part);
+    row[to.i] = new_i;
+    row[to.j] = new_j;
+    if (own.shapes.parts.empty()) return row;
+    const auto part = [&](std::size_t column, std::int32_t from, std::int32_t body) {
+      const double first = own.shapes.first_part[static_cast<std::size_t>(body)];
+      return system.shapes.parts.empty()
+                 ? first
+                 : first + numbers[column] - system.shapes.first_part[static_cast<std::size_t>(from)];
+    };
+    const auto [arm_i, arm_j] = arms();
+    row.insert(row.end(), {part(at.part, i(), new_i), new_j < 0 ? 0 : part(at.part + 1, j(), new_j), arm_i.x, arm_i.y,
+                           arm_j.x, arm_j.y});
+    return row;
   }
   /// The image of j seen from where the state has the bodies, not from their places inside the cell.
   /// \param crossed as GrainSimulation::save writes it, of the bodies inside
@@ -185,21 +193,19 @@ std::size_t columns_of(const SavedState& state, const char* name) {
 /// Contacts that go on, those that begin because a body or a wall is new, and the impulses without those that are gone.
 void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Places& places, SavedState fresh,
                         SavedState& state) {
-  const std::size_t columns = columns_of(state, "contacts");
+  const auto saved = std::ranges::find(state.arrays, "contacts", &SavedArray::name);
   SavedImpulses impulses{state["impulses"]};
   std::vector<std::vector<double>> kept;
-  const auto keep = [&](const SavedContact& contact) { kept.emplace_back(contact.numbers, contact.numbers + columns); };
-  std::vector<double>& contacts = state["contacts"];
-  for (std::size_t at = 0; at < contacts.size(); at += columns) {
+  std::vector<double>& contacts = saved->values;
+  for (std::size_t at = 0; at < contacts.size(); at += saved->columns) {
     SavedContact contact(old, contacts.data() + at);
     const auto i = places.partner(contact.i()), j = places.partner(contact.j());
     if (!i || !j) {
       impulses.add(contact, -1, i, j);
     } else if (*j < 0 || !is_tied(own, *i, *j)) {
-      contact.move_to(own, *i, *j);
+      kept.push_back(contact.row_in(own, *i, *j));
       // without friction there is no spring; later friction begins anew
-      if (!rubs(own, *i, *j)) contact.numbers[contact.at.stretch] = 0;
-      keep(contact);
+      if (!rubs(own, *i, *j)) kept.back()[contact.at.stretch] = 0;
     }
   }
   // new bodies stay where they are inside
@@ -208,12 +214,13 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
     if (places.bodies_then[k] < 0)
       std::fill_n(moved.begin() + 2 * static_cast<std::ptrdiff_t>(own.bodies.grain_of[k]), 2, 0.0);
   std::vector<double>& begun = fresh["contacts"];
-  for (std::size_t at = 0; at < begun.size(); at += columns) {
+  saved->columns = columns_of(fresh, "contacts");
+  for (std::size_t at = 0; at < begun.size(); at += saved->columns) {
     SavedContact contact(own, begun.data() + at);
     if (!places.is_new(contact.i()) && !places.is_new(contact.j())) continue;
     impulses.add(contact, 1, contact.i(), contact.j());
     contact.leave_cell(moved);
-    keep(contact);
+    kept.emplace_back(contact.numbers, contact.numbers + saved->columns);
     state["counters"][1] += 1;
   }
   // walls may stand in another order, in which restore() looks for their contacts

@@ -158,8 +158,8 @@ std::vector<std::filesystem::path> write_fields(const std::filesystem::path& fol
                                                  folder / (name + ".png")};
   for (const auto& path : paths) check_writable(path, overwrite);
   write_csv(paths[0], table_of(fields), overwrite);
-  if (fields.grid.size() == 0) {  // of an earlier run
-    for (const auto& path : {paths[1], paths[2]}) std::filesystem::remove(path);
+  if (fields.grid.size() == 0) {
+    for (const auto& path : {paths[1], paths[2]}) std::filesystem::remove(path);  // of an earlier run
     return {paths[0]};
   }
   write_file(paths[1], image_text(fields), overwrite);

@@ -36,7 +36,7 @@ class RunLoop {
 
   RunResult go() {
     look();
-    save();                       // a run that is killed before the next one goes on, too
+    if (!files_.resume) save();   // a run that is killed before the next one goes on, too
     step_to(simulation_.step());  // what can never go on says so
     Progress progress("stepping");
     Stopwatch since_checkpoint;
@@ -199,7 +199,8 @@ class RunLoop {
     if (checkpoint_) checkpoint_->write(checkpoint());
   }
 
-  /// At the end of a stage. Its own checkpoint comes first: a run that is killed in between goes on from before the end.
+  /// At the end of a stage. Its own checkpoint comes first: a run that is killed in between goes on from before the
+  /// end.
   void keep() {
     if (!checkpoint_) return;
     const std::filesystem::path path = *files_.folder / fmt::format("run.{}.checkpoint.h5", plan_.milestone_name());
