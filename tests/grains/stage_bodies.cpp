@@ -212,7 +212,8 @@ TEST_CASE("discs_move_on_as_they_did_where_the_first_shape_comes_in_a_stage_and_
   for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
   GrainStage discs{.name = "discs", .scene = scene, .steps = 60}, shapes = discs, again = discs;
   shapes.name = "shapes";
-  shapes.bodies.added = {oval({2, 40}, 0.4, 0.2, 1, {0.1, 0}), lump(shapes.scene, pair_of_discs(), {2, 50})};
+  shapes.bodies.added = {oval({2, 40}, 0.4, 0.2, 1, {0.1, 0}),
+                         lump(shapes.scene, {{{0, 0}, 0.3}, {{0.3, 0}, 0.2}}, {2, 50})};
   again.name = "again";
   again.scene.clumps = shapes.scene.clumps;
   again.bodies.removed = {in_box({-10, 30}, {10, 60})};
