@@ -133,6 +133,18 @@ inline Bits bits_of(const GrainSimulation& simulation) {
     bits.push_back(static_cast<std::uint64_t>(c.steps) << 8 | static_cast<std::uint64_t>(c.mode));
     add({c.overlap, c.closing, c.normal.x, c.normal.y, c.normal_force, c.tangential_force});
   }
+  const EnergyLedger l = simulation.energy();
+  add({l.kinetic, l.elastic_normal, l.elastic_tangential, l.potential, l.lost_restitution, l.lost_dashpot, l.lost_slip,
+       l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial, l.elastic_bond, l.lost_bond});
+  return {std::move(bits)};
+}
+
+/// Those, and the forces on bodies and walls, which the next step does not need.
+inline Bits bits_and_loads_of(const GrainSimulation& simulation) {
+  std::vector<std::uint64_t> bits = bits_of(simulation).words;
+  const auto add = [&](std::initializer_list<double> numbers) {
+    for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
+  };
   for (const BodyContact& c : simulation.body_contacts()) {
     bits.push_back(static_cast<std::uint64_t>(c.i) << 32 | static_cast<std::uint32_t>(c.j));
     add({c.arm.x, c.arm.y, c.shift.x, c.shift.y, c.force.x, c.force.y, c.normal_force, c.tangential_force,
