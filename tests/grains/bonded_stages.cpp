@@ -172,11 +172,11 @@ TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
   while (!whole.over()) {
     if (whole.step() % 7 == 0 || whole.milestone() >= 0) {
       states.push_back(whole.save());
-      seen.push_back(bits_of(whole.present()));
+      seen.push_back(bits_and_loads_of(whole.present()));
     }
     whole.advance(1);
   }
-  const Bits end = bits_of(whole.present());
+  const Bits end = bits_and_loads_of(whole.present());
   CAPTURE(whole.bonds().size(), whole.present().breaks().size());
   CHECK(whole.bonds().size() > 5);
   CHECK(whole.present().breaks().size() > 0);
@@ -187,9 +187,9 @@ TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
     CAPTURE(states[k].step);
     StagedSimulation resumed(stages, options);
     resumed.restore(states[k]);
-    CHECK(bits_of(resumed.present()) == seen[k]);
+    CHECK(bits_and_loads_of(resumed.present()) == seen[k]);
     go_to(resumed, 180);
-    CHECK(bits_of(resumed.present()) == end);
+    CHECK(bits_and_loads_of(resumed.present()) == end);
     CHECK(resumed.energy().error() == whole.energy().error());
     CHECK(resumed.reports()[1].bonds_made == whole.reports()[1].bonds_made);
     CHECK(resumed.strengths()->tension == whole.strengths()->tension);

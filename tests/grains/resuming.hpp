@@ -17,7 +17,7 @@ inline void check_resuming(const GrainScene& scene, const GrainOptions& options,
   for (int k = 0; k <= last; ++k) {
     if (k > 0) whole.advance(1);
     states.push_back(whole.save());
-    seen.push_back(bits_of(whole));
+    seen.push_back(bits_and_loads_of(whole));
   }
   REQUIRE(whole.counters().contacts > 10);
   const Bits& end = seen.back();
@@ -25,9 +25,9 @@ inline void check_resuming(const GrainScene& scene, const GrainOptions& options,
     CAPTURE(k, states[static_cast<std::size_t>(k)]["contacts"].size());
     GrainSimulation resumed(scene, options);
     resumed.restore(states[static_cast<std::size_t>(k)]);
-    REQUIRE(bits_of(resumed) == seen[static_cast<std::size_t>(k)]);
+    REQUIRE(bits_and_loads_of(resumed) == seen[static_cast<std::size_t>(k)]);
     resumed.advance(last - k);
-    REQUIRE(bits_of(resumed) == end);
+    REQUIRE(bits_and_loads_of(resumed) == end);
     CHECK(resumed.counters().contacts == whole.counters().contacts);
   }
 }

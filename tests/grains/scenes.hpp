@@ -151,6 +151,30 @@ inline Bits bits_of(const GrainSimulation& simulation) {
   return {std::move(bits)};
 }
 
+/// Those, and the forces on bodies and walls, which the next step does not need.
+inline Bits bits_and_loads_of(const GrainSimulation& simulation) {
+  std::vector<std::uint64_t> bits = bits_of(simulation).words;
+  const auto add = [&](std::initializer_list<double> numbers) {
+    for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
+  };
+  for (const BodyContact& c : simulation.body_contacts()) {
+    bits.push_back(static_cast<std::uint64_t>(c.i) << 32 | static_cast<std::uint32_t>(c.j));
+    add({c.arm.x, c.arm.y, c.shift.x, c.shift.y, c.force.x, c.force.y, c.normal_force, c.tangential_force,
+         c.bending_moment});
+  }
+  for (const WallState& w : simulation.walls())
+    add({w.place.x, w.place.y, w.velocity.x, w.velocity.y, w.force.x, w.force.y, w.moment, w.impulse.x, w.impulse.y,
+         w.work});
+  for (const ServoReport& s : simulation.servos())
+    add({s.wanted, s.force, s.max_speed, s.overshoot, s.peak, s.mean_error});
+  if (const auto c = simulation.cell())
+    add({c->width, c->height, c->shift, c->strain.xx, c->strain.yy, c->strain.xy, c->stress.xx, c->stress.xy,
+         c->stress.yx, c->stress.yy, c->coordination_number});
+  const EnergyLedger ledger = simulation.energy();
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) add({ledger.*term.value});
+  return {std::move(bits)};
+}
+
 /// Discs of several sizes thrown about in a box with friction, gravity and a floor that shakes: everything that a
 /// contact remembers is in use.
 inline GrainScene busy_box(NormalLaw law, int columns, int rows, std::uint64_t seed) {

@@ -237,13 +237,13 @@ TEST_CASE("discs_move_on_as_they_did_where_the_first_shape_comes_in_a_stage_and_
   CHECK(staged.reports()[2].removed == 2);
   CHECK(most > 5);
   CHECK(off < 1e-9);
-  const Bits end = bits_of(staged.present());
+  const Bits end = bits_and_loads_of(staged.present());
   for (const SavedState& state : states) {
     CAPTURE(state.step);
     StagedSimulation resumed({discs, shapes, again}, options);
     resumed.restore(state);
     step_all(resumed, 180);
-    CHECK(bits_of(resumed.present()) == end);
+    CHECK(bits_and_loads_of(resumed.present()) == end);
   }
 }
 

@@ -92,7 +92,10 @@ class ResumeOfBonds(RunTest):
                     self.assertIn("there are no fields at the end", (out / "index.html").read_text())
                     self.assertEqual((out / "fields.csv").read_text().count("\n"), 1)
                     self.assertFalse((out / "fields.vti").exists())
+                if "region" in what:
+                    self.assertIn("no body is left in the region", report)
                 if what != "far apart":
+                    self.assertIn("there is no surface", report)
                     self.assertIsNone(measures["surface_height"]["after"])
                     self.assertIsNone(measures["surface_slope"]["after"])
                     self.assertIn(",nan,nan,nan,", (out / "measures.csv").read_text().splitlines()[-1])

@@ -83,6 +83,14 @@ Results GrainMeasures::results() const {
       .note("; ")
       .add("outside", "", after.outside, "outside the box");
   add_sloshing(out, measures_.sloshing());
+  if (resolved_.measures->region && std::isnan(after.void_ratio))
+    out.line("WARNING", resolved_.where("measures.region") +
+                            ": no body is left in the region at the end, and there is no void ratio; end the run "
+                            "earlier, or give another region");
+  if (std::isnan(after.surface.height))
+    out.line("WARNING", resolved_.where("measures") +
+                            ": no heap of bodies is left in the box at the end, and there is no surface; end the run "
+                            "earlier, or close the box by walls");
   if (const auto [grid, why] = grid_of_fields(); !why.empty()) out.line("WARNING", why);
   return out.under("measures");
 }
