@@ -2,7 +2,6 @@
 #include "equidem/assembly/dual_cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -58,19 +57,19 @@ class DualGeometry {
   /// u = (u² + w_p - w_q)/2 and x v likewise. Corners in a row up to round-off have it beyond all rectangles, on the
   /// side that the triangulation has found by exact arithmetic.
   [[nodiscard]] Vec2 radical_centre(std::int32_t a, std::int32_t b, std::int32_t c) const {
-    std::array<std::int32_t, 3> corners = {a, b, c};
-    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    const auto side = [&](std::size_t k) { return squared(sites_.branch(corners[(k + 1) % 3], corners[(k + 2) % 3])); };
-    const std::array<double, 3> sides = {side(0), side(1), side(2)};
-    std::rotate(corners.begin(), corners.begin() + (std::max_element(sides.begin(), sides.end()) - sides.begin()),
-                corners.end());
-    const auto [p, q, r] = corners;
-    const Vec2 u = sites_.branch(p, q), v = sites_.branch(p, r);
+    const Vec2 ab = sites_.branch(a, b), bc = sites_.branch(b, c), ca = sites_.branch(c, a);
+    const double at_a = squared(bc), at_b = squared(ca), at_c = squared(ab);  // of the sides opposite to the corners
+    const auto before = [](double x, std::int32_t i, double y, std::int32_t j) { return x > y || (x == y && i < j); };
+    if (before(at_a, a, at_b, b) && before(at_a, a, at_c, c)) return radical_centre(a, b, c, ab, -ca);
+    if (before(at_b, b, at_c, c)) return ab + radical_centre(b, c, a, bc, -ab);
+    return radical_centre(c, a, b, ca, -bc) - ca;
+  }
+  /// The same from p, with the branches u and v from there to q and r.
+  [[nodiscard]] Vec2 radical_centre(std::int32_t p, std::int32_t q, std::int32_t r, Vec2 u, Vec2 v) const {
     const double wp = sites_.weight(p), uu = squared(u), vv = squared(v);
     const double to_q = 0.5 * (uu + (wp - sites_.weight(q))), to_r = 0.5 * (vv + (wp - sites_.weight(r)));
     constexpr double straight = 1e-20;
-    const double twice_area = std::max(cross(u, v), straight * std::sqrt(uu * vv));
-    return sites_.branch(a, p) + perpendicular(to_r * u - to_q * v) / twice_area;
+    return perpendicular(to_r * u - to_q * v) / std::max(cross(u, v), straight * (uu + vv));
   }
 
   /// Cut the facet at the sides of the rectangle.

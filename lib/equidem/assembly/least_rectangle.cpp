@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace equidem {
@@ -52,14 +53,15 @@ std::vector<std::int32_t> outer_discs(const Discs& discs) {
   }
   const double margin =
       1e-9 * (*std::max_element(furthest.begin(), furthest.end()) + norm(corner[0]) + norm(corner[directions / 2]));
+  std::vector<std::pair<Vec2, double>> edges;  // outward normals, and how far the polygon reaches along them
+  for (std::size_t k = 0; k < directions; ++k) {
+    const Vec2 edge = corner[(k + 1) % directions] - corner[k];
+    if (!(norm(edge) > margin)) continue;
+    const Vec2 normal = -perpendicular(edge) / norm(edge);
+    edges.emplace_back(normal, dot(normal, corner[k]) - margin);
+  }
   const auto inside = [&](std::int32_t disc) {
-    for (std::size_t k = 0; k < directions; ++k) {
-      const Vec2 edge = corner[(k + 1) % directions] - corner[k];
-      const double length = norm(edge);
-      if (length > margin && cross(edge, discs.centre(disc) - corner[k]) < length * (discs.radii[disc] + margin))
-        return false;
-    }
-    return true;
+    return std::ranges::all_of(edges, [&](const auto& edge) { return discs.reach(disc, edge.first) < edge.second; });
   };
   std::vector<std::int32_t> outer;
   for (std::int32_t disc = 0; disc < count; ++disc)
