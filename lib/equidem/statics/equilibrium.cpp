@@ -115,6 +115,10 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   result.contact_forces.resize(assembly.contacts.size());
   contact_forces_of(assembly, springs, unknowns, solution.motion, result.contact_forces);
   describe_state(loads, solution.motion, result);
+  if (!std::isfinite(result.energy)) {
+    bad_input("the numbers of this case overflow a double", "the elastic energy comes out as no finite number",
+              "Check the units of sizes, springs and loads");
+  }
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
   result.single_precision = report.single_precision;

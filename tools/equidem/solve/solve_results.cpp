@@ -67,7 +67,7 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
   if (e.mechanisms > 0) {
     out.line("mechanisms")
         .add("mechanisms", "", e.mechanisms, "motion", {Shown::count})
-        .note(fmt::format(" at no cost, on which no load does work: {}{}", e.first_mechanism,
+        .note(fmt::format(" without energy, on which no load does work: {}{}", e.first_mechanism,
                           e.mechanisms > 1 ? "; ..." : ""));
   } else {
     out.set("mechanisms", e.mechanisms);

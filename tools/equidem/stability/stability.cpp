@@ -13,6 +13,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/waves/lowest_eigenvalues.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 
 #include "command.hpp"
