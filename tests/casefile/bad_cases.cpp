@@ -349,5 +349,8 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
     }
   }
   CHECK(refusal(head + "kT = 1 2\n", {}).find("unit") == std::string::npos);
-  CHECK(refusal(head + "ks = 1e8\n", {}).find("kT") != std::string::npos);
+  CHECK(refusal("schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\nradius = 1.0\ncolumns = 2\nrows = "
+                "2\n[springs]\nkN = 1e8\nks = 1e8\n",
+                {})
+            .find("kT") != std::string::npos);
 }

@@ -99,9 +99,10 @@ TEST_CASE("columns_in_other_units_and_groups_that_mean_walls_are_refused") {
   const fs::path folder = fs::temp_directory_path() / "equidem_grains_attacked";
   const std::string text = changed(ball_with("restitution = 0.5\nstiffness = 1.0e6"), "density = 2500.0",
                                    "density = 2500.0\npath = \"wrong.csv\"");
-  const std::vector<std::pair<std::string, std::string>> files{{"x_mm,y_mm,radius_mm\n0,1,1\n", "unit"},
+  const std::vector<std::pair<std::string, std::string>> files{{"x_ft,y_ft,radius_ft\n0,1,1\n", "unit"},
+                                                               {"x_mm,y_mm,radius\n0,1,1\n", "unit"},
                                                                {"x,y,radius,group\n0,1,0.1,walls\n", "walls"},
-                                                               {"x,y,radius,group\n0,1,0.1,\"a\"\n", "letters"}};
+                                                               {"x,y,radius,group\n0,1,0.1,\"a, b\"\n", "letters"}};
   for (const auto& [content, word] : files) {
     write_file(folder / "wrong.csv", content, true);
     CAPTURE(content);

@@ -152,7 +152,7 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
   for (const Bad& bad : {
            Bad{"", "a.toml:", "has no points"},
            Bad{"time,value\n", "a.toml:", "has no points"},
-           Bad{"t,v\n0,0\n", "shaking.csv:1: ", "the first row may be time,value"},
+           Bad{"t,v\n0,0\n", "shaking.csv:1: ", "the column 'value' is missing"},
            Bad{"0,0\ntime,value\n", "shaking.csv:2: ", "'time' is no time"},
            Bad{"0,0\n0.2\n", "shaking.csv:2: ", "the row has 1 cell"},
            Bad{"0,0\n0.2,1,2\n", "shaking.csv:2: ", "the row has 3 cells"},

@@ -254,7 +254,7 @@ std::vector<Reader> make_readers(const fs::path& source, const fs::path& scratch
       reader_of_file("bonds (CSV)", scratch / "bonds.csv", {bonds},
                      [](const fs::path& file) { return read_bonds(file, {}); }),
       {"bonds with strengths (CSV)",
-       {"i,j\n0,1\n2147483647,1\n", "i,j,tension,shear\n0,1,5,6\n1,2,,\n"},
+       {"i,j\n0,1\n2,1\n", "i,j,tension,shear\n0,1,5,6\n1,2,,\n"},
        [=](const std::string& input) {
          put(scratch / "bonds.csv", input);
          put(scratch / "three.csv", three_grains);

@@ -240,6 +240,7 @@ std::vector<std::string> CaseDocument::headings(std::span<const char* const> tab
 }
 
 TomlValue parse_toml(std::string_view text, const std::string& source) {
+  refuse_utf16(text, source);
   check_depth(text, source);
   const auto name = std::make_shared<const std::string>(source);
   try {
