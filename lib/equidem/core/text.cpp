@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-
 namespace equidem {
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator) {
