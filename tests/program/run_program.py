@@ -14,10 +14,6 @@ import xml.etree.ElementTree
 from program import CASES, PROGRAM, SOURCE, TENSION, ProgramTest, equidem, parse_json
 
 
-def grouped(count):
-    return f"{count:,}".replace(",", " ")
-
-
 class Usage(ProgramTest):
     def test_help_shows_examples_verbs_and_exit_codes(self):
         for arguments in (["--help"], ["help"]):
@@ -277,7 +273,7 @@ class Hostile(ProgramTest):
         (self.folder / "truss.json").write_text(json.dumps(text))
         (self.folder / "truss.toml").write_text(re.sub(r'group *= *"[^"]*"', 'group = "nowhere"', (CASES / "truss.toml").read_text()))
         done = equidem("solve", self.folder / "truss.toml")
-        self.check_error(done, 2, "no group 'nowhere'", f"{grouped(len(text['groups']))} in all")
+        self.check_error(done, 2, "no group 'nowhere'", "..., 3 0", " in all")
         self.assertLess(len(done.stderr), 500)
 
     def test_a_key_given_twice_is_refused(self):
