@@ -484,6 +484,34 @@ class Quasistatic(ProgramTest):
                     self.assertEqual(result["event_count"], 0, result["ended"])
                     self.assertLess(result["energies"]["error"], 1e-6)
 
+    def test_a_path_whose_next_event_cannot_be_computed_delivers_all_before_it(self):
+        """Three pairs, of which the energy of the third break leaves the range of numbers, and with one pair alone that of the first."""
+        for strengths in ([1e-100, 1e-99, 1e100], [1e100]):
+            pairs = range(len(strengths))
+            (self.folder / "pairs.json").write_text(json.dumps({
+                "schema": "equidem-assembly/1", "discs": [[2.0 * k, y, 0.5] for k in pairs for y in (0.0, 1.0)],
+                "contacts": [[2 * k, 2 * k + 1, 0, 0] for k in pairs], "strengths": [[s, s] for s in strengths],
+                "groups": {"low": [2 * k for k in pairs], "high": [2 * k + 1 for k in pairs]}}))
+            case = self.folder / "pairs.toml"
+            case.write_text(textwrap.dedent("""
+                schema = "equidem/1"
+                assembly = {kind = "file", path = "pairs.json"}
+                springs = {kN = 1.0e-150, kT = 1.0e-150}
+                support = [{group = "low", ux = true, uy = true}, {group = "high", ux = true, uy = 1.0e-3}]
+                """))
+            out = self.folder / f"out{len(strengths)}"
+            done = equidem("quasistatic", case, "--out", out, *NO_PICTURE)
+            result = parse_json((out / "result.json").read_text())
+            events = len(strengths) - 1
+            self.assertEqual(done.returncode, 0 if events else 1, done.stderr)
+            self.assertEqual((result["event_count"], result["end"], result["complete"]), (events, "failed", False))
+            self.assertIn("leave the range of numbers", result["ended"])
+            self.assertIn("leave the range of numbers", " ".join((result["report"] if "report" in result else done.stdout).split()))
+            self.assertEqual(len(self.events_of(out)), events)
+            self.assertEqual(len(result["curve"]["load"]), events + 1)
+            for name in ("curve.csv", "discs.csv", "contacts.csv"):
+                self.assertTrue((out / name).exists(), name)
+
     def test_what_is_missing_or_contradictory_is_refused(self):
         self.check_error(equidem("quasistatic", CASES / "random_cell.toml"), 2, "strengths are missing")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=true"), 2, "nothing grows with lambda")

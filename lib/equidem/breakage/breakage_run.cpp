@@ -147,6 +147,7 @@ bool BreakageRun::carries_pattern() {
   if (!first && response_.energy[2] > soft * first_energy_) return true;
   if (!first) response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);
   const double by_springs = response_.energy[2], by_work = response_.pattern_energy_by_work();
+  if (by_springs < std::numeric_limits<double>::min()) return true;  // squares of forces vanish: neither is known
   return std::abs(by_springs - by_work) <= closes * by_springs;
 }
 
