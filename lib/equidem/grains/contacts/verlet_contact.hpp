@@ -102,14 +102,14 @@ template <class Law, bool friction, class Others>
   if constexpr (friction) {
     if (sliding.coefficient > 0) {
       if (begins && system.options.integrator == GrainOptions::Integrator::corrected_verlet) {
-        candidate.stretch -= (1 - part) * drift.slip * dt;
+        candidate.stretch -= (1 - part) * slip * dt;
       }
       const double normal_force = std::max(impulse, 0.0) / dt;
       if (is_rigid(sliding)) {
         const SlipByOthers by_others = others();
         slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.inverse_mass, normal_force, dt);
       } else {
-        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt, drift.slip * dt);
+        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt);
       }
       tangential = slide.force * dt;
       candidate.stretch = slide.stretch;

@@ -193,7 +193,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
       if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
-        stretch -= before_touch * mean_slip * dt;
+        stretch -= before_touch * velocity * dt;
       }
     }
     const Lanes yield = law.friction * larger(impulse, zero);

@@ -155,7 +155,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
       if (changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(deep - way), 1 - deep / way);
-        stretch -= before_touch * mean_slip * dt;
+        stretch -= before_touch * velocity * dt;
       }
     } else {
       mobility = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
