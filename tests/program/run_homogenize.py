@@ -303,7 +303,7 @@ class FreeSamples(HomogenizeTest):
     def test_a_written_assembly_has_the_area_and_the_stress_of_the_one_that_was_made(self):
         test = '[test]\nkind = "uniaxial_tension"\nstress = 2.0e5\n'
         kinds = {"hexagonal": 'kind = "hexagonal"\ncolumns = 5\nrows = 6\nradius = 0.02\n',
-                 "square": 'kind = "square"\ncolumns = 5\nrows = 5\nradius = 0.02\n',
+                 "odd": 'kind = "hexagonal"\ncolumns = 7\nrows = 7\nradius = 0.02\n',
                  "delaunay": 'kind = "delaunay"\ndiscs = 60\nradii = {smallest = 0.004, largest = 0.006}\n'}
         for name, assembly in kinds.items():
             for form, suffix in (("json", "json"), ("hdf5", "h5")):
