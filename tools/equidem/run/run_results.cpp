@@ -80,10 +80,8 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
 Results memory_results(RunJob& job) {
   const std::string body = job.body_name();
   const double each = job.simulation().bytes_per_body();
-  // A dry run makes the scene and its lists as a run does.
   return Results()
       .line("memory")
-      .add("peak_bytes", "", peak_resident_memory(), "so far;", {Shown::bytes})
       .add("bytes_per_" + body, "", each, "bytes a " + body + " in the loop", {Shown::decimals, 0})
       .add("loop_bytes", "", each * static_cast<double>(job.simulation().motions().size()), "in all", {Shown::bytes});
 }
@@ -106,6 +104,8 @@ Results step_results(RunJob& job, const RunPlan& plan) {
 Results dry_run_results(RunJob& job) {
   const RunPlan plan = job.plan();
   Results out = job.scene();
+  static_cast<void>(job.simulation());  // the scene and its lists take their memory as in a run
+  out.line("process").add("peak_bytes", "", peak_resident_memory(), "of memory at the peak", {Shown::bytes});
   if (job.goes_to_rest()) return out.append(memory_results(job)).append(job.estimate_of_relaxation());
   out.append(step_results(job, plan));
   if (plan.frame_interval) {
