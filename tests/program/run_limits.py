@@ -111,7 +111,7 @@ class Magnitudes(ProgramTest):
             return result["fitted_poisson_ratio"]
 
         usual = solved()
-        for stress in ("1e-160", "1e-250", "1e160"):
+        for stress in ("1e-160", "1e-250", "1e140"):
             self.assertAlmostEqual(solved("--set", f"test.stress={stress}") / usual, 1, delta=1e-12)
         for unit in ("1e-160", "1e-100", "1e60", "1e160"):
             for method in ("multifrontal", "multigrid"):
