@@ -18,7 +18,7 @@ using namespace samples;
 namespace {
 
 constexpr double a = 0.005;
-constexpr GaugePlacement placements[] = {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends};
+constexpr GaugePlacement gauge_placements[] = {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends};
 
 Assembly lattice(const std::string& kind, int columns, int rows) {
   const LatticeOptions options{.columns = columns, .rows = rows, .radius = a, .periodic = false};
@@ -36,7 +36,7 @@ std::string refusal(const std::string& kind, int columns, int rows, GaugePlaceme
 TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
   const std::string kind = GENERATE("hexagonal", "square");
   int placed = 0;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (int columns = 2; columns <= 13; ++columns) {
       for (int rows = 1; rows <= 13; ++rows) {
         if (!refusal(kind, columns, rows, placement).empty()) continue;
@@ -91,7 +91,7 @@ TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
 TEST_CASE("a_block_too_small_for_its_gauges_is_told_the_least_size") {
   const std::string kind = GENERATE("hexagonal", "square");
   int refused = 0;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (int columns = 2; columns <= 7; ++columns) {
       for (int rows = 1; rows <= 7; ++rows) {
         const std::string message = refusal(kind, columns, rows, placement);
@@ -137,7 +137,7 @@ TEST_CASE("the_pulls_balance_and_the_height_is_that_of_the_rows") {
 
 TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_gauges") {
   const double e11 = 2e-4, e22 = -0.7e-4;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (const auto& [name, assembly] : assemblies(false)) {
       const TensionTest test{.stress = 5e4, .gauge = placement};
       const TensionSetup setup = tension_setup(assembly, test);
@@ -175,7 +175,7 @@ TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_g
 
 TEST_CASE("gauges_of_a_random_block_are_four_discs_near_their_points") {
   const Assembly assembly = delaunay_assembly({.discs = 400, .seed = 5});
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     const TensionSetup setup = tension_setup(assembly, {.stress = 1, .gauge = placement});
     const Vec2 A = assembly.centres[setup.horizontal.first], B = assembly.centres[setup.horizontal.second];
     const Vec2 C = assembly.centres[setup.vertical.first], D = assembly.centres[setup.vertical.second];
@@ -223,5 +223,6 @@ TEST_CASE("a_tension_test_that_cannot_be_made_is_refused_with_its_reason") {
   CHECK(contains(too_few, "4 mean spacings each way"));
 
   CHECK_THROWS_AS(enum_from<GaugePlacement>("center"), Error);
-  for (const GaugePlacement placement : placements) CHECK(enum_from<GaugePlacement>(to_string(placement)) == placement);
+  for (const GaugePlacement placement : gauge_placements)
+    CHECK(enum_from<GaugePlacement>(to_string(placement)) == placement);
 }

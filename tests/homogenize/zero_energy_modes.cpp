@@ -32,15 +32,15 @@ struct Pair {
 /// Copies of a small cell of equal discs, scaled.
 Cell copies(const std::string& name, Vec2 period, const std::vector<Vec2>& centres, const std::vector<Pair>& contacts,
             double radius, int columns, int rows, double unit) {
-  Assembly a;
-  a.kind = name;
-  a.period = unit * Vec2{columns * period.x, rows * period.y};
+  Assembly out;
+  out.kind = name;
+  out.period = unit * Vec2{columns * period.x, rows * period.y};
   const int each = static_cast<int>(centres.size());
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
       for (const Vec2 c : centres) {
-        a.centres.push_back(unit * Vec2{c.x + x * period.x, c.y + y * period.y});
-        a.radii.push_back(unit * radius);
+        out.centres.push_back(unit * Vec2{c.x + x * period.x, c.y + y * period.y});
+        out.radii.push_back(unit * radius);
       }
       for (const Pair& p : contacts) {
         const int to_x = x + p.x, to_y = y + p.y, in_x = (to_x + columns) % columns, in_y = (to_y + rows) % rows;
@@ -50,11 +50,11 @@ Cell copies(const std::string& name, Vec2 period, const std::vector<Vec2>& centr
                   .lever_j = unit * radius};
         c.shift_x = static_cast<decltype(c.shift_x)>((to_x - in_x) / columns);
         c.shift_y = static_cast<decltype(c.shift_y)>((to_y - in_y) / rows);
-        a.contacts.push_back(c);
+        out.contacts.push_back(c);
       }
     }
   }
-  return {name + ", " + std::to_string(columns) + " x " + std::to_string(rows), std::move(a)};
+  return {name + ", " + std::to_string(columns) + " x " + std::to_string(rows), std::move(out)};
 }
 
 std::vector<Cell> cells(double unit) {
@@ -89,25 +89,25 @@ std::vector<Cell> cells(double unit) {
 }
 
 /// C by the least energy over all motions, in extended precision; none where some mean strain has no energy.
-std::optional<Matrix3> least_energy(const Assembly& a, SpringConstants k) {
+std::optional<Matrix3> least_energy(const Assembly& cell, SpringConstants k) {
   using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const int b = k.kT > 0 ? 3 : 2;
-  const auto each = static_cast<Eigen::Index>(k.kT > 0 ? 2 : 1), contacts = std::ssize(a.contacts);
-  Matrix by_motion(each * contacts, std::ssize(a.centres) * b), by_strain(each * contacts, 3);
+  const auto each = static_cast<Eigen::Index>(k.kT > 0 ? 2 : 1), contacts = std::ssize(cell.contacts);
+  Matrix by_motion(each * contacts, std::ssize(cell.centres) * b), by_strain(each * contacts, 3);
   for (Eigen::Index column = 0; column < by_motion.cols() + 3; ++column) {
-    std::vector<DiscMotion> motions(a.size());
+    std::vector<DiscMotion> motions(cell.size());
     const bool strain = column >= by_motion.cols();
     if (!strain) {
       DiscMotion& one = motions[column / b];
       if (column % b == 0) one.u.x = 1;
       if (column % b == 1) one.u.y = 1;
-      if (column % b == 2) one.theta = 1 / a.mean_radius();
+      if (column % b == 2) one.theta = 1 / cell.mean_radius();
     }
     for (Eigen::Index c = 0; c < contacts; ++c) {
-      const Contact& contact = a.contacts[c];
-      const ContactFrame frame = frame_of(a, c);
+      const Contact& contact = cell.contacts[c];
+      const ContactFrame frame = frame_of(cell, c);
       const ContactDeformation d =
-          strain ? affine_deformation(frame, a.branch(contact), unit_gradients[column - by_motion.cols()])
+          strain ? affine_deformation(frame, cell.branch(contact), unit_gradients[column - by_motion.cols()])
                  : deformation(frame, motions[contact.i], motions[contact.j]);
       Matrix& to = strain ? by_strain : by_motion;
       const Eigen::Index at = strain ? column - by_motion.cols() : column;
@@ -119,7 +119,7 @@ std::optional<Matrix3> least_energy(const Assembly& a, SpringConstants k) {
   least.setThreshold(1e-13L);
   least.compute(by_motion);
   const Matrix left = by_strain - by_motion * least.solve(by_strain);
-  const Matrix energy = left.transpose() * left / static_cast<long double>(a.period->x * a.period->y);
+  const Matrix energy = left.transpose() * left / static_cast<long double>(cell.period->x * cell.period->y);
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(energy);
   if (eigen.eigenvalues()[0] < 1e-13L * eigen.eigenvalues()[2]) return {};
   Matrix3 c{};
