@@ -117,7 +117,7 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
       {{"springs.kT=none"}, "how stiff"},
       {{"packing.radii.largest=0.001"}, "below the smallest"},
       {{"packing.radii.median=0.001"}, "median"},
-      {{"packing.box=[0.2, -0.1]"}, "no area"},
+      {{"packing.box=[0.2, -0.1]"}, "width and height are positive"},
       {{"packing.grains=none", "packing.solid_fraction=0.5", "packing.box=[1e3, 1e3]"}, "fill the box"},
       {{"packing.radii=none"}, "packing.radii"},
       {{"settling.frictoin=0.1"}, "friction"},

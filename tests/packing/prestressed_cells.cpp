@@ -197,8 +197,9 @@ TEST_CASE("moduli_of_a_prestressed_cell_are_those_of_strained_cells_that_relax")
   // Cells that jam between fixed sides are stable in them; few bodies may still give way to a shear of the cell
   // (Dagois-Bohy and others 2012, Phys. Rev. Lett. 109, 095703).
   CHECK(found.unstable_modes == found.unstable_strains);
-  // The stress at rest is that of the cell, and the moduli differ from those of the springs alone.
-  CHECK(found.stress_at_rest.xx == Approx(cell.stress().xx).epsilon(1e-9));
+  // The stress at rest is that of the cell, but for what bodies that rattle carry, which the cell does not hold; the
+  // moduli differ from those of the springs alone.
+  CHECK(found.stress_at_rest.xx == Approx(cell.stress().xx).epsilon(1e-9 + chosen->balance.relative));
   CHECK(found.stress_at_rest.xx < 0);
   CHECK(largest_entry(found.prestress_part) > 0.1 * chosen->largest * size);
 }

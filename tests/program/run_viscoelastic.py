@@ -121,7 +121,7 @@ class Refusals(ViscoelasticTest):
         refuse(["1,1e9,-1,0,0"], "loss", "give away energy")
         refuse(["1,-1e9,1,0,0"], "unstable")
         refuse(["1,1e9,1,0"], "columns")
-        refuse(["1,1e9,one,0,0"], "columns")
+        refuse(["1,1e9,one,0,0"], "springs.csv:2", "'one' is no kN_loss")
         refuse(["1,1e9,1,0,0", "10,1e9,1,0,0"], "outside the table", keys=TABLE + "frequencies = [11.0]\n")
         (self.folder / "springs.csv").unlink()
         self.refuse(TABLE, "springs.csv")

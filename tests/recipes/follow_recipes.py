@@ -42,7 +42,7 @@ RECIPES = {
         "list": "lib/equidem/linear/linear_solver.hpp",
         "lines": [(r"(std::unique_ptr<Factorization> factorize_by_)(cholmod)(\([^;]*;\n)", r"\1dense\3\1\2\3"),
                   (r"(enum class SolverMethod \{[^}]*umfpack)", r"\1, dense"),
-                  (r"(\.memory_factor = 4, \.factorize = factorize_by_umfpack\}\},\n)",
+                  (r"(\.factorize = factorize_by_umfpack\}\},\n)",
                    r'\1      {SolverMethod::dense, "dense", "Cholesky of the full matrix",\n'
                    r"       {.definite_only = true, .factorize = factorize_by_dense}},\n")],
         "users": r"\bSolverMethod\b|entry_of\(options\.method\)",

@@ -97,6 +97,8 @@ class Packing:
             out = self.folder / f"plates{axis}"
             call([program, "solve", self._write("plates", assembly, case), "--out", out, "--overwrite", "--quiet"])
             pulled = _forces_of(out, {side: [assembly["discs"][disc][:2] for disc in groups[side]] for side in SIDES})
+            for _, side, _, normal in self.on_plates:
+                pulled[side] -= normal  # contacts.csv holds the forces in total
             stiffness[axis] = [(pulled[low] + pulled[high]) / 2 / sides[1 - k] / strain for k, (low, high) in enumerate((("left", "right"), ("bottom", "top")))]
         (xx, yx), (xy, yy) = stiffness[0], stiffness[1]
         return yy - yx * xy / xx, xy / xx
