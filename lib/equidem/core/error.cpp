@@ -11,7 +11,10 @@ namespace equidem {
 namespace {
 
 /// Control characters of the user's files, which a terminal does not obey, and bytes that are no UTF-8, as \xHH.
-std::string printable(std::string_view text) {
+std::string printable(std::string whole) {
+  std::string_view text = whole;
+  const bool controls = std::ranges::any_of(whole, [](unsigned char code) { return code < 0x20 || code == 0x7f; });
+  if (!controls && !place_of_wrong_byte(text)) return whole;
   std::string plain;
   while (!text.empty()) {
     const std::size_t wrong = std::min(place_of_wrong_byte(text).value_or(text.size()), text.size());
@@ -42,10 +45,10 @@ std::string sentence(const std::string& problem, const std::string& why, const s
 Error::Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where)
     : std::runtime_error(sentence(problem, why, remedy, where)),
       kind_(kind),
-      problem_(printable(problem)),
-      why_(printable(why)),
-      remedy_(printable(remedy)),
-      where_(printable(where)) {}
+      problem_(printable(std::move(problem))),
+      why_(printable(std::move(why))),
+      remedy_(printable(std::move(remedy))),
+      where_(printable(std::move(where))) {}
 
 Error Error::at(const std::string& where) const {
   return where_.empty() && kind_ != ErrorKind::interrupted ? Error(kind_, problem_, why_, remedy_, where) : *this;

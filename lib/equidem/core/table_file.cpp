@@ -23,25 +23,25 @@ struct NamedUnit {
   double factor;
 };
 // Of two micro signs, that of Latin-1 and the Greek letter, each is in use.
-constexpr NamedUnit units[] = {{"m", Dimension::length, 1},          {"dm", Dimension::length, 0.1},
-                               {"cm", Dimension::length, 0.01},      {"mm", Dimension::length, 1e-3},
-                               {"um", Dimension::length, 1e-6},      {"\u00b5m", Dimension::length, 1e-6},
-                               {"\u03bcm", Dimension::length, 1e-6}, {"nm", Dimension::length, 1e-9},
-                               {"km", Dimension::length, 1e3},       {"s", Dimension::time, 1},
-                               {"ms", Dimension::time, 1e-3},        {"us", Dimension::time, 1e-6},
-                               {"\u00b5s", Dimension::time, 1e-6},   {"\u03bcs", Dimension::time, 1e-6},
-                               {"min", Dimension::time, 60},         {"Hz", Dimension::frequency, 1},
-                               {"kHz", Dimension::frequency, 1e3},   {"MHz", Dimension::frequency, 1e6},
-                               {"%", Dimension::share, 0.01},        {"percent", Dimension::share, 0.01},
-                               {"-", Dimension::share, 1},           {"1", Dimension::share, 1},
-                               {"rad", Dimension::angle, 1},         {"m_per_s", Dimension::speed, 1},
-                               {"m/s", Dimension::speed, 1},         {"mm_per_s", Dimension::speed, 1e-3},
-                               {"mm/s", Dimension::speed, 1e-3},     {"rad_per_s", Dimension::spin, 1},
-                               {"rad/s", Dimension::spin, 1},        {"kg_per_m3", Dimension::density, 1},
-                               {"kg/m3", Dimension::density, 1},     {"kg/m\u00b3", Dimension::density, 1},
-                               {"kg", Dimension::mass, 1},           {"kg_per_m", Dimension::mass, 1},
-                               {"Pa", Dimension::stress, 1},         {"kPa", Dimension::stress, 1e3},
-                               {"MPa", Dimension::stress, 1e6},      {"GPa", Dimension::stress, 1e9}};
+constexpr NamedUnit known_units[] = {{"m", Dimension::length, 1},          {"dm", Dimension::length, 0.1},
+                                     {"cm", Dimension::length, 0.01},      {"mm", Dimension::length, 1e-3},
+                                     {"um", Dimension::length, 1e-6},      {"\u00b5m", Dimension::length, 1e-6},
+                                     {"\u03bcm", Dimension::length, 1e-6}, {"nm", Dimension::length, 1e-9},
+                                     {"km", Dimension::length, 1e3},       {"s", Dimension::time, 1},
+                                     {"ms", Dimension::time, 1e-3},        {"us", Dimension::time, 1e-6},
+                                     {"\u00b5s", Dimension::time, 1e-6},   {"\u03bcs", Dimension::time, 1e-6},
+                                     {"min", Dimension::time, 60},         {"Hz", Dimension::frequency, 1},
+                                     {"kHz", Dimension::frequency, 1e3},   {"MHz", Dimension::frequency, 1e6},
+                                     {"%", Dimension::share, 0.01},        {"percent", Dimension::share, 0.01},
+                                     {"-", Dimension::share, 1},           {"1", Dimension::share, 1},
+                                     {"rad", Dimension::angle, 1},         {"m_per_s", Dimension::speed, 1},
+                                     {"m/s", Dimension::speed, 1},         {"mm_per_s", Dimension::speed, 1e-3},
+                                     {"mm/s", Dimension::speed, 1e-3},     {"rad_per_s", Dimension::spin, 1},
+                                     {"rad/s", Dimension::spin, 1},        {"kg_per_m3", Dimension::density, 1},
+                                     {"kg/m3", Dimension::density, 1},     {"kg/m\u00b3", Dimension::density, 1},
+                                     {"kg", Dimension::mass, 1},           {"kg_per_m", Dimension::mass, 1},
+                                     {"Pa", Dimension::stress, 1},         {"kPa", Dimension::stress, 1e3},
+                                     {"MPa", Dimension::stress, 1e6},      {"GPa", Dimension::stress, 1e9}};
 
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text.front() == '+' && text[1] != '-' ? text.substr(1) : text;
@@ -156,6 +156,7 @@ std::vector<std::string> with_units(const std::vector<std::string_view>& words) 
 
 std::vector<ColumnName> column_names(const std::vector<std::string>& words) {
   std::vector<ColumnName> names;
+  names.reserve(words.size());
   for (const std::string& word : words) names.push_back(column_name(word));
   return names;
 }
@@ -181,14 +182,14 @@ bool holds(const TableFile::Names& needed, const std::vector<ColumnName>& names)
 }  // namespace
 
 std::optional<double> unit_factor(std::string_view unit, std::optional<Dimension> quantity) {
-  for (const NamedUnit& known : units)
+  for (const NamedUnit& known : known_units)
     if (unit == known.name && (!quantity || *quantity == known.quantity)) return known.factor;
   return {};
 }
 
 std::string units_of(Dimension quantity) {
   std::vector<std::string> names;
-  for (const NamedUnit& known : units)
+  for (const NamedUnit& known : known_units)
     if (known.quantity == quantity && static_cast<unsigned char>(known.name.front()) < 0x80)
       names.emplace_back(known.name);
   return joined(names);

@@ -371,9 +371,8 @@ int quasistatic(const QuasistaticOptions& given) {
   const OutputCase& wanted = sequence.problem.resolved.output;
   std::vector<OutputPart> parts;
   if (options.out) {
-    parts.push_back({"the state", [&] {
-                       write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
-                     }});
+    parts.push_back({"the state",
+                     [&] { write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state); }});
     parts.push_back({"the figures", [&] {
                        write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut,
                                      sequence.problem.resolved.title);
