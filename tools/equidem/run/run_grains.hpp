@@ -43,9 +43,20 @@ class GrainRun final : public RunJob {
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
-  void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
+  [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
+                                              bool overwrite) const override;
 
  private:
+  struct Snapshot {
+    std::vector<Grain> grains;
+    std::vector<Wall> walls;
+    std::vector<std::string> groups = {};  ///< of each grain
+    std::vector<int> colours = {};         ///< likewise
+  };
+  /// The bodies that are there now.
+  [[nodiscard]] Snapshot snapshot() const;
+  void write_tables(const std::filesystem::path& folder, bool overwrite) const;
+  void draw(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const;
   /// Contacts as the present stage has them.
   [[nodiscard]] const ContactTable& present_contacts() const;
   [[nodiscard]] int colour_of(const std::string& group) const;

@@ -303,7 +303,7 @@ Results GrainRun::step() const {
 
 Results GrainRun::events() const {
   const GrainCounters& counters = simulation_.present().counters();
-  Results out = measures_ ? measures_->results() : Results();
+  Results out = measures_ && measures_->last_step() >= 0 ? measures_->results() : Results();
   if (!case_.stages.empty()) out.append(stage_results(case_, simulation_.reports(), step_.step));
   out.append(servo_results(case_, simulation_.reports(), simulation_.present().servos()));
   if (const auto cell = simulation_.cell())
