@@ -62,6 +62,21 @@ class ProgramTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, done.stderr)
 
+    def check_partial(self, done, *words, out=None, status="failed"):
+        """Exit code 1, a report of what there is, and the reason as the last sentence on stderr; result.json of out."""
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stdout, "NOT (DONE|FEASIBLE) ")
+        sentence = done.stderr.splitlines()[-1]
+        self.assertTrue(sentence.startswith(pathlib.Path(PROGRAM).name + ": "), sentence)
+        for word in words:
+            self.assertIn(word, sentence)
+        if out is None:
+            return None
+        result = parse_json((out / "result.json").read_text())
+        self.assertEqual(result["status"], status)
+        self.assertEqual(result["refusal" if status == "not_feasible" else "failure"], sentence.split(": ", 1)[1])
+        return result
+
     def interrupt(self, *arguments, when=lambda: True, after=0):
         """Started, sent SIGINT `after` seconds from when it catches it and when() holds, ended with 130; (stdout, stderr)."""
         running = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
