@@ -270,8 +270,8 @@ class Calibrate(program.ProgramTest):
         self.assertIsNone(re.search(r"e-1\d %", report))
 
     def test_kT_below_0_names_the_key_that_allows_it(self):
-        self.check_error(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.33333333334"), 2,
-                         "static_only = true")
+        self.check_partial(equidem("calibrate", LATTICE, "--set", "material.poisson_ratio=0.33333333334"),
+                           "static_only = true")
 
     def test_moduli_softer_than_any_solid_are_questioned(self):
         soft = ("--set", "assembly.discs=100", "--set", "material.shear_modulus=55")

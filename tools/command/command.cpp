@@ -390,13 +390,13 @@ void deliver(const CommonOptions& options, const std::string& given_status, Resu
   const bool interrupted = failure && failure->kind() == ErrorKind::interrupted;
   const std::string status = interrupted ? "interrupted" : failure ? "failed" : given_status;
   if (failure) {
+    const std::string where = failure->where().empty() ? "" : failure->where() + ": ";
     const std::string why = failure->why().empty() ? "" : fmt::format(" ({})", failure->why());
-    results =
-        Results()
-            .line("NOT DONE", fmt::format("{}{}: what follows is what there was by then", failure->problem(), why))
-            .append(results)
-            .set("complete", false)
-            .set("failure", failure->what());
+    results = Results()
+                  .line("NOT DONE", where + failure->problem() + why + "; what follows is what there was by then")
+                  .append(results)
+                  .set("complete", false)
+                  .set("failure", failure->what());
   }
   const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
   const bool filed = options.out && !options.dry_run, file_of_json = printed && options.json && !to_stdout;
