@@ -169,11 +169,14 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
   prepare(options);
   if (describes_grains(casefile::read_document(options.case_file, options.set))) {
     GrainCase resolved = read_grain_case(options.case_file, options.set);
-    if (!begin_from) {
-      const std::optional<double> step =
-          resume ? kept_grain_step(*options.out / "run.checkpoint.h5", resolved) : std::nullopt;
-      return std::make_unique<GrainRun>(std::move(resolved), step);
+    if (resume) {
+      const std::string text = case_of_checkpoint(*options.out / "run.checkpoint.h5");
+      const std::optional<double> step = kept_grain_step(text, resolved);
+      auto job = std::make_unique<GrainRun>(std::move(resolved), step);
+      job->go_on_from(text);
+      return job;
     }
+    if (!begin_from) return std::make_unique<GrainRun>(std::move(resolved));
     auto job = std::make_unique<GrainRun>(std::move(resolved), step_of_stages(*begin_from));
     job->begin_from(*begin_from);
     return job;

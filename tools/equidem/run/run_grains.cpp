@@ -194,8 +194,8 @@ double step_of_stages(const std::filesystem::path& checkpoint) {
                    "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
 }
 
-std::optional<double> kept_grain_step(const std::filesystem::path& checkpoint, const GrainCase& resolved) {
-  const auto found = step_in(case_of_checkpoint(checkpoint));
+std::optional<double> kept_grain_step(const std::string& text, const GrainCase& resolved) {
+  const auto found = step_in(text);
   if (!found || found->step >= choose_grain_step(resolved).step) return {};
   return found->step;
 }
@@ -246,14 +246,14 @@ void GrainRun::begin_from(const std::filesystem::path& path) {
   simulation_.restore(state);
   if (simulation_.over())
     refuse(fmt::format("the stage '{}' is over, and this case has no other", last), "Add the stages that follow");
-  begun_from_ = path.string();
+  beginning_ = {.path = path.string(), .stage = last};
 }
 
 RunPlan GrainRun::plan() {
   const bool draws_paths = case_.bodies().size() <= most_drawn_paths;
   return {.steps = steps_,
           .time_step = step_.step,
-          .case_text = case_text_of(case_, step_.step),
+          .case_text = case_text_of(case_, step_.step) + (beginning_ ? text_of(*beginning_) : ""),
           .frame_interval = case_.output.frame_interval,
           .probe_interval = case_.output.probe_interval,
           .checkpoint_interval = case_.output.checkpoint_interval,
