@@ -17,11 +17,11 @@ using namespace samples;
 
 namespace {
 
-constexpr double a = 0.005;
-constexpr GaugePlacement placements[] = {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends};
+constexpr double disc_radius = 0.005;
+constexpr GaugePlacement gauge_placements[] = {GaugePlacement::centre, GaugePlacement::quarter, GaugePlacement::ends};
 
 Assembly lattice(const std::string& kind, int columns, int rows) {
-  const LatticeOptions options{.columns = columns, .rows = rows, .radius = a, .periodic = false};
+  const LatticeOptions options{.columns = columns, .rows = rows, .radius = disc_radius, .periodic = false};
   return kind == "square" ? square_lattice(options) : hexagonal_lattice(options);
 }
 
@@ -36,7 +36,7 @@ std::string refusal(const std::string& kind, int columns, int rows, GaugePlaceme
 TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
   const std::string kind = GENERATE("hexagonal", "square");
   int placed = 0;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (int columns = 2; columns <= 13; ++columns) {
       for (int rows = 1; rows <= 13; ++rows) {
         if (!refusal(kind, columns, rows, placement).empty()) continue;
@@ -45,41 +45,41 @@ TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
         const TensionSetup setup = tension_setup(assembly, {.stress = 1, .gauge = placement});
         const Vec2 A = assembly.centres[setup.horizontal.first], B = assembly.centres[setup.horizontal.second];
         const Vec2 C = assembly.centres[setup.vertical.first], D = assembly.centres[setup.vertical.second];
-        const double row_distance = kind == "square" ? 2 * a : std::numbers::sqrt3 * a;
-        const Vec2 middle{columns * a, rows * row_distance / 2};
+        const double row_distance = kind == "square" ? 2 * disc_radius : std::numbers::sqrt3 * disc_radius;
+        const Vec2 middle{columns * disc_radius, rows * row_distance / 2};
         CAPTURE(kind, to_string(placement), columns, rows, A.x, A.y, B.x, B.y, C.x, C.y, D.x, D.y);
         REQUIRE(A.y == B.y);
-        REQUIRE(std::abs(C.x - D.x) < 1e-12 * a);
+        REQUIRE(std::abs(C.x - D.x) < 1e-12 * disc_radius);
         REQUIRE(A.x < B.x);
         REQUIRE(C.y < D.y);
-        REQUIRE(std::abs(0.5 * (A.x + B.x) - middle.x) < 1e-9 * a);
+        REQUIRE(std::abs(0.5 * (A.x + B.x) - middle.x) < 1e-9 * disc_radius);
         REQUIRE(std::abs(A.y - middle.y) < 0.501 * row_distance);
-        REQUIRE(std::abs(C.x - middle.x) < 1.001 * a);
+        REQUIRE(std::abs(C.x - middle.x) < 1.001 * disc_radius);
         REQUIRE(std::abs(0.5 * (C.y + D.y) - middle.y) < 0.501 * row_distance);
         // Odd rows of a hexagonal block, and any square block, allow symmetry about the middle row as well.
         if (rows % 2 != 0 || kind == "square") {
-          REQUIRE(std::abs(0.5 * (C.y + D.y) - middle.y) < 1e-9 * a);
+          REQUIRE(std::abs(0.5 * (C.y + D.y) - middle.y) < 1e-9 * disc_radius);
         }
         // With an even number of rows, the middle one with a disc in its middle is taken.
-        if (rows % 2 == 0 && kind == "hexagonal") REQUIRE(std::lround((B.x - A.x) / (2 * a)) % 2 == 0);
-        const double row_length = 2 * a * (columns - 1);
+        if (rows % 2 == 0 && kind == "hexagonal") REQUIRE(std::lround((B.x - A.x) / (2 * disc_radius)) % 2 == 0);
+        const double row_length = 2 * disc_radius * (columns - 1);
         const double width = B.x - A.x, height = D.y - C.y;
         switch (placement) {
           case GaugePlacement::centre:
-            REQUIRE(width > 8 * a - 1e-9 * a);
-            REQUIRE(width < 10 * a + 1e-9 * a);
-            REQUIRE(height > 4 * row_distance - 1e-9 * a);
-            REQUIRE(height < 5 * row_distance + 1e-9 * a);
+            REQUIRE(width > 8 * disc_radius - 1e-9 * disc_radius);
+            REQUIRE(width < 10 * disc_radius + 1e-9 * disc_radius);
+            REQUIRE(height > 4 * row_distance - 1e-9 * disc_radius);
+            REQUIRE(height < 5 * row_distance + 1e-9 * disc_radius);
             break;
           case GaugePlacement::quarter:
-            REQUIRE(width > row_length / 2 - 1.001 * a);
-            REQUIRE(width < row_length / 2 + 4.001 * a);
-            REQUIRE(height > (rows - 1) * row_distance / 2 - 0.001 * a);
+            REQUIRE(width > row_length / 2 - 1.001 * disc_radius);
+            REQUIRE(width < row_length / 2 + 4.001 * disc_radius);
+            REQUIRE(height > (rows - 1) * row_distance / 2 - 0.001 * disc_radius);
             REQUIRE(height < (rows - 1) * row_distance / 2 + 2.001 * row_distance);
             break;
           case GaugePlacement::ends:
-            REQUIRE(width > row_length - 2.001 * a);
-            REQUIRE(height > (rows - 2) * row_distance - 0.001 * a);
+            REQUIRE(width > row_length - 2.001 * disc_radius);
+            REQUIRE(height > (rows - 2) * row_distance - 0.001 * disc_radius);
             break;
         }
       }
@@ -91,7 +91,7 @@ TEST_CASE("gauges_of_a_lattice_lie_along_the_axes_about_its_middle") {
 TEST_CASE("a_block_too_small_for_its_gauges_is_told_the_least_size") {
   const std::string kind = GENERATE("hexagonal", "square");
   int refused = 0;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (int columns = 2; columns <= 7; ++columns) {
       for (int rows = 1; rows <= 7; ++rows) {
         const std::string message = refusal(kind, columns, rows, placement);
@@ -117,7 +117,7 @@ TEST_CASE("the_pulls_balance_and_the_height_is_that_of_the_rows") {
   const int rows = GENERATE(5, 8);
   const Assembly assembly = lattice("hexagonal", 7, rows);
   const TensionSetup setup = tension_setup(assembly, {.stress = 3e5});
-  CHECK(setup.height == Approx(rows * std::numbers::sqrt3 * a).epsilon(1e-14));
+  CHECK(setup.height == Approx(rows * std::numbers::sqrt3 * disc_radius).epsilon(1e-14));
   REQUIRE(setup.loads.size() == 2);
   double total = 0;
   for (const Load& load : setup.loads) {
@@ -137,7 +137,7 @@ TEST_CASE("the_pulls_balance_and_the_height_is_that_of_the_rows") {
 
 TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_gauges") {
   const double e11 = 2e-4, e22 = -0.7e-4;
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     for (const auto& [name, assembly] : assemblies(false)) {
       const TensionTest test{.stress = 5e4, .gauge = placement};
       const TensionSetup setup = tension_setup(assembly, test);
@@ -175,7 +175,7 @@ TEST_CASE("a_known_uniform_field_is_read_exactly_whatever_the_assembly_and_the_g
 
 TEST_CASE("gauges_of_a_random_block_are_four_discs_near_their_points") {
   const Assembly assembly = delaunay_assembly({.discs = 400, .seed = 5});
-  for (const GaugePlacement placement : placements) {
+  for (const GaugePlacement placement : gauge_placements) {
     const TensionSetup setup = tension_setup(assembly, {.stress = 1, .gauge = placement});
     const Vec2 A = assembly.centres[setup.horizontal.first], B = assembly.centres[setup.horizontal.second];
     const Vec2 C = assembly.centres[setup.vertical.first], D = assembly.centres[setup.vertical.second];
@@ -198,7 +198,7 @@ TEST_CASE("a_tension_test_that_cannot_be_made_is_refused_with_its_reason") {
   CHECK(contains(message(block, 0), "the tension test pulls with a stress of 0 Pa"));
   CHECK(contains(message(block, std::nan("")), "the tension test pulls with a stress of nan Pa"));
 
-  const Assembly periodic = hexagonal_lattice({.columns = 8, .rows = 8, .radius = a, .periodic = true});
+  const Assembly periodic = hexagonal_lattice({.columns = 8, .rows = 8, .radius = disc_radius, .periodic = true});
   CHECK(contains(message(periodic, 1), "a periodic cell has no sides to pull at"));
 
   Assembly bare = block;
@@ -223,5 +223,6 @@ TEST_CASE("a_tension_test_that_cannot_be_made_is_refused_with_its_reason") {
   CHECK(contains(too_few, "4 mean spacings each way"));
 
   CHECK_THROWS_AS(enum_from<GaugePlacement>("center"), Error);
-  for (const GaugePlacement placement : placements) CHECK(enum_from<GaugePlacement>(to_string(placement)) == placement);
+  for (const GaugePlacement placement : gauge_placements)
+    CHECK(enum_from<GaugePlacement>(to_string(placement)) == placement);
 }

@@ -111,8 +111,8 @@ std::optional<Error> failure_of(const std::function<void()>& work);
 /// way is a warning in all that follows and on stderr; result.json is then written again with the warnings. A dry run
 /// does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
-/// \param failure what ended the work before its end: then the status is "failed" or "interrupted", `complete` is false,
-///        `failure` and a line of the report are its reason, and it is thrown afterwards
+/// \param failure what ended the work before its end: then the status is "failed" or "interrupted", `complete` is
+///        false, `failure` and a line of the report are its reason, and it is thrown afterwards
 /// \throws Error (computation_failed) afterwards, where a file was lost or the answer reached neither the folder nor
 ///         stdout; where --require-stable is given and the status is "unstable", "unjudged" or "mechanism".
 ///         (interrupted) where the user stopped the parts

@@ -82,8 +82,8 @@ class InfeasibleModuli : public Error {
 /// read from the symmetric part of stress by strain, which is independent of the mean rotation; (53), the relation by
 /// wave speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can show nu
 /// = 0 only.
-/// \throws InfeasibleModuli where nu is out of the range of this assembly, with the range and the nearest feasible value;
-///         Error (bad_input) for other nu than 0 on the square lattice; springs in the assembly file; as
+/// \throws InfeasibleModuli where nu is out of the range of this assembly, with the range and the nearest feasible
+///         value; Error (bad_input) for other nu than 0 on the square lattice; springs in the assembly file; as
 ///         effective_stiffness and springs_for; (computation_failed) as effective_stiffness; where the tolerance is not
 ///         reached
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options = {});
