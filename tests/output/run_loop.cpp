@@ -76,6 +76,7 @@ struct StagedRun {
     Dying dying(simulation, dies);
     std::vector<std::int32_t> all;
     for (std::size_t k = 0; k < discs.size(); ++k) all.push_back(static_cast<std::int32_t>(k));
+    RunResult result;
     run_through(dying,
                 {.steps = 90,
                  .time_step = options.time_step,
@@ -93,7 +94,7 @@ struct StagedRun {
                  .milestone_name = [&] { return simulation.reports().back().name; },
                  .samples = 8,
                  .film_frames = 4},
-                {.folder = folder, .overwrite = true, .resume = resume});
+                {.folder = folder, .overwrite = true, .resume = resume}, result);
   }
 };
 

@@ -54,13 +54,27 @@ class ProgramTest(unittest.TestCase):
         self.temporary.cleanup()
 
     def check_error(self, done, exit_code, *words):
-        """One sentence on stderr, nothing on stdout."""
+        """One sentence on stderr, nothing on stdout; of work that was begun, the last one, and a report with the reason."""
         self.assertEqual(done.returncode, exit_code, done.stderr)
-        self.assertEqual(done.stdout, "")
-        self.assertTrue(done.stderr.startswith(pathlib.Path(PROGRAM).name + ": "), done.stderr)
-        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        sentence = done.stderr.splitlines()[-1] if done.stdout else done.stderr
+        if done.stdout:
+            self.assertRegex(done.stdout, "NOT (DONE|FEASIBLE) ")
+        self.assertTrue(sentence.startswith(pathlib.Path(PROGRAM).name + ": "), done.stderr)
+        self.assertLessEqual(sentence.count("\n"), 1, done.stderr)
         for word in words:
-            self.assertIn(word, done.stderr)
+            self.assertIn(word, sentence)
+
+    def check_partial(self, done, *words, out=None, status="failed"):
+        """Exit code 1, and a report of what there is; result.json of out, with the reason."""
+        self.assertNotEqual(done.stdout, "")
+        self.check_error(done, 1, *words)
+        if out is None:
+            return None
+        result = parse_json((out / "result.json").read_text())
+        self.assertEqual(result["status"], status)
+        self.assertEqual(result["refusal" if status == "not_feasible" else "failure"],
+                         done.stderr.splitlines()[-1].split(": ", 1)[1])
+        return result
 
     def interrupt(self, *arguments, when=lambda: True, after=0):
         """Started, sent SIGINT `after` seconds from when it catches it and when() holds, ended with 130; (stdout, stderr)."""

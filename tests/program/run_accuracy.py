@@ -141,8 +141,14 @@ class Accuracy(ProgramTest):
             self.assertLess(time.monotonic() - start, 20)
             self.assertFalse((self.folder / "out").exists())
 
-    def test_what_cannot_be_reached_is_refused(self):
-        self.check_error(equidem("homogenize", CELL, "--accuracy", "1e-6"), 1, "cannot be reached", "reach about")
+    def test_what_cannot_be_reached_gives_the_best_there_is_and_the_reason(self):
+        out = self.folder / "out"
+        best = self.check_partial(equidem("homogenize", CELL, "--accuracy", "1e-6", "--out", out), "cannot be reached",
+                                  "reach about", out=out)
+        self.assertIs(best["complete"], False)
+        self.assertGreater(best["accuracy"]["estimated"], 1e-6)
+        self.assertEqual(best["accuracy"]["requested"], 1e-6)
+        self.assertTrue((out / "ensemble.csv").exists())
         self.check_error(equidem("homogenize", CASES / "ensemble.toml", "--set", "assembly.periodic=false", "--accuracy",
                                  "0.1"), 2, "free boundaries")
         self.check_error(equidem("solve", TENSION, "--accuracy", "2"), 2, "--accuracy")

@@ -142,6 +142,18 @@ class Parts(ProgramTest):
         self.assertIn("plane strain", done.stdout)
         self.assertTrue((self.folder / "out" / "case.toml").exists())
 
+    def test_a_table_of_a_run_that_cannot_be_written_costs_no_other_part(self):
+        out = self.folder / "out"
+        (out / "contacts.csv" / "in the way").mkdir(parents=True)
+        done = equidem("run", CASES / "grains_cradle.toml", "--out", out)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        result = parse_json((out / "result.json").read_text())
+        self.assertEqual(result["status"], "done")
+        self.assertEqual(len(result["warnings"]), 1, result["warnings"])
+        self.assertIn("contacts.csv", result["warnings"][0])
+        for name in ("grains.csv", "energy.csv", "energy_plot.png", "picture.png", "case.toml", "index.html"):
+            self.assertTrue((out / name).exists(), name)
+
     def test_a_sweep_and_an_ensemble_go_on_where_their_tables_cannot_be_saved(self):
         limit = 3000  # of a file: the case fits, the tables do not
         for command, words in ((("sweep", TENSION, "--key", "ratio", "--from", 0, "--to", 1, "--steps", 41), "nu theory"),

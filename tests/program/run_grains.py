@@ -56,6 +56,17 @@ class GrainTest(RunTest):
         return result, rows_of(out / "grains.csv")
 
 
+    def check_delivered(self, out, status, reason):
+        """The folder has the result of a run that did not come to its end, with the state there."""
+        result = parse_json((out / "result.json").read_text())
+        self.assertEqual((result["status"], result["complete"]), (status, False))
+        self.assertIn(reason, result["failure"])
+        for key in ("steps", "time", "energy", "time_step"):
+            self.assertIn(key, result)
+        for name in ("case.toml", "energy.csv", "grains.csv", "index.html"):
+            self.assertTrue((out / name).exists(), name)
+
+
 class Motion(GrainTest):
     def test_the_cradle_passes_its_motion_on(self):
         result, grains = self.end_of(CRADLE)
@@ -194,7 +205,8 @@ class Resume(GrainTest):
                     errors = running.communicate()[1]
                     if running.returncode != 0:
                         self.assertEqual(running.returncode, 130 if killing == signal.SIGINT else -killing, errors)
-                        self.assertFalse((out / "result.json").exists())
+                        if killing == signal.SIGINT:
+                            self.check_delivered(out, "interrupted", "steps are done")
                     self.check_done(equidem("run", case, "--out", out, *self.SETTINGS, *long, "--resume"))
                     self.check_same(whole, out)
 
@@ -241,20 +253,20 @@ class Refusals(GrainTest):
                 self.check_error(equidem("run", self.write(BALL.replace(*change))), 2, *words)
         self.check_error(equidem("run", case, "--seed", 3), 2, "--seed")
 
-    def test_a_step_in_which_a_ball_would_cross_the_floor_is_refused(self):
+    def test_a_step_in_which_a_ball_would_cross_the_floor_ends_the_run_with_what_it_has(self):
         case = self.write(BALL.replace("[0.0, -1.0]", "[0.0, -1000.0]").replace("[run]", "[run]\ntime_step = 1.0e-4"))
         out = self.folder / "out"
         done = equidem("run", case, "--out", out)
-        self.check_error(done, 1, "case.toml", "step")
+        self.check_partial(done, "case.toml", "step", out=out)
         self.assertTrue((out / "run.checkpoint.h5").exists())
-        self.assertFalse((out / "result.json").exists())
+        self.check_delivered(out, "failed", "case.toml")
 
     def test_motion_that_comes_from_nothing_is_no_answer(self):
         text = BALL.replace("closing_speed = 1.0\n", "law = \"hertz_dashpot\"\n").replace("1.0e6", "1.0e14")
         out = self.folder / "out"
         done = equidem("run", self.write(text.replace("[run]", "[run]\ntime_step = 1.0e-4")), "--out", out)
-        self.check_error(done, 1, "case.toml", "times the energy", "shorter time_step")
-        self.assertFalse((out / "result.json").exists())
+        self.check_partial(done, "case.toml", "times the energy", "shorter time_step", out=out)
+        self.check_delivered(out, "failed", "times the energy")
 
     def test_maps_say_that_beds_are_not_for_them(self):
         column = BALL

@@ -164,7 +164,8 @@ class Resume(RunTest):
                     self.skipTest("the run was over before it could be interrupted")
                 self.assertEqual(running.returncode, 130, errors)
                 self.assertTrue((out / "run.checkpoint.h5").exists())
-                self.assertFalse((out / "result.json").exists())
+                partial = parse_json((out / "result.json").read_text())
+                self.assertEqual((partial["status"], partial["complete"]), ("interrupted", False))
                 running = self.start(case, out)
                 errors = running.communicate()[1]
                 self.assertEqual(running.returncode, 0, errors)

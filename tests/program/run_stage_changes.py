@@ -242,6 +242,9 @@ class Branches(StageTest):
         (parts / "run.checkpoint.h5").write_bytes((parts / "run.pour.checkpoint.h5").read_bytes())
         two = self.run_case(case, "--out", parts, "--resume", *NO_PICTURE)
         self.assertEqual(one["steps"], two["steps"])
+        self.assertEqual((one["begun_from"], two["begun_from"]), (str(begin[1]), str(begin[1])))
+        for result in (one, two):
+            self.assertRegex(" ".join(result["report"].split()), "begun with the state in .*, stage 'settle'")
         self.assertEqual((one["time_step"], two["time_step"]), (stiffer["time_step"], stiffer["time_step"]))
         self.assertLess(two["time_step"], self.run_case(case, "--dry-run")["time_step"])
         for name in ("history.csv", "grains.csv", "energy.csv"):

@@ -163,8 +163,22 @@ class Servos(StageTest):
         self.run_case(self.write(text), "--out", whole, *NO_PICTURE, *longer)
         for name in ("history.csv", "grains.csv"):
             self.assertEqual((out / name).read_bytes(), (whole / name).read_bytes(), name)
-        self.refused(PRESS + 'servo = { force = 1.0, max_speed = 10.0, direction = [0.0, 1.0] }\n' + RUN, "'lid'",
-                     "met no body", code=1)
+        text = PRESS + 'servo = { force = 1.0, max_speed = 10.0, direction = [0.0, 1.0] }\n' + RUN
+        gone = self.folder / "gone"
+        result = self.check_partial(equidem("run", self.write(text), "--out", gone), "'lid'", "met no body", out=gone)
+        servo, = result["servos"]
+        self.assertEqual((servo["wall"], servo["touched"], result["complete"]), ("lid", False, False))
+        self.assertLess(result["time"], 0.1)
+        for name in ("grains.csv", "contacts.csv", "energy.csv", "picture.png", "case.toml", "index.html"):
+            self.assertTrue((gone / name).exists(), name)
+
+    def test_a_stage_that_fails_leaves_the_result_of_those_before_it(self):
+        out = self.folder / "out"
+        text = PRESS + SERVO + ('[run]\n[[stage]]\nname = "press"\nduration = 0.01\n[[stage]]\nname = "fling"\n'
+                                'duration = 10.0\n[[stage.wall]]\nname = "lid"\n'
+                                'servo = { force = 1.0, max_speed = 10.0, direction = [0.0, 1.0] }\n')
+        result = self.check_partial(equidem("run", self.write(text), "--out", out, *NO_PICTURE), "'lid'", out=out)
+        self.assertEqual([stage["ended_by"] for stage in result["stages"]], ["duration", "not over"])
 
 
 class Stages(StageTest):

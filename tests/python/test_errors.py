@@ -90,9 +90,6 @@ WRONG = {
     "no_threads": (lambda: eq.set_threads(0), "1 to 1024"),
     "a_free_assembly_homogenized_as_a_cell":
         (lambda: eq.homogenize(BLOCK, (1e9, 0.5e9), homogenize={"boundary": "periodic"}), "periodic"),
-    "a_poisson_ratio_out_of_reach":
-        (lambda: eq.calibrate(eq.square(columns=4, rows=4, radius=1e-3, periodic=True), young_modulus=1e9,
-                              poisson_ratio=0.4), "0"),
     "too_many_discs": (lambda: eq.hexagonal(columns=10**9, rows=10**9, radius=1e-3), "out of range"),
 }
 
@@ -107,6 +104,20 @@ def test_wrong_input_is_refused_with_a_sentence(what):
     assert part in sentence
     assert caught.value.problem in sentence and sentence.endswith((".", "?")) and "\n" not in sentence
     assert "#" not in sentence and isinstance(caught.value, ValueError)
+
+
+def test_a_poisson_ratio_out_of_reach_is_a_failed_computation_with_one_that_can_be_had():
+    with pytest.raises(eq.ComputationFailed, match="at most 0.249999"):
+        eq.calibrate(eq.square(columns=4, rows=4, radius=1e-3, periodic=True), young_modulus=1e9, poisson_ratio=0.4)
+
+
+def test_a_run_that_fails_leaves_its_result_in_the_folder(tmp_path):
+    case = eq.Case(CASES / "run_pulse.toml").set("run.time_step", 9e-6).set("run.allow_unstable_step", True)
+    with pytest.raises(eq.ComputationFailed, match="ran away") as caught:
+        case.set("run.duration", 0.05).set("output.frame_interval", 1e-3).run(out=tmp_path / "out")
+    result = json.loads((tmp_path / "out/result.json").read_text(encoding="utf-8"))
+    assert (result["status"], result["complete"], result["failure"]) == ("failed", False, str(caught.value))
+    assert (tmp_path / "out/discs.csv").exists()
 
 
 def test_a_matrix_that_is_singular_is_a_failed_computation_or_bad_input():

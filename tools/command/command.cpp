@@ -318,7 +318,8 @@ namespace {
 /// Carries out the parts of a delivery. What fails is a warning of the results.
 class Deliverer {
  public:
-  explicit Deliverer(Results& results) : results_(results) {}
+  /// \param failure of the work before, which ends the verb
+  Deliverer(Results& results, const std::optional<Error>& failure) : results_(results), before_(failure) {}
 
   /// \param lost where it fails the delivery has failed
   /// \return whether it succeeded
@@ -354,24 +355,52 @@ class Deliverer {
   /// \param printed warnings go to stderr, and the failure ends the verb; else a caller in memory has both
   void finish(bool printed) const {
     for (const std::string& warning : warnings_)
-      if (printed && !(failure_ && warning == failure_->what())) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+      if (printed && !(!before_ && failure_ && warning == failure_->what()))
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    if (before_) throw *before_;
     if (interruption_) throw *interruption_;
     if (printed && failure_) throw *failure_;
   }
 
  private:
   Results& results_;
+  const std::optional<Error>& before_;
   std::vector<std::string> warnings_;
   std::optional<Error> failure_, interruption_;
 };
 
 }  // namespace
 
-void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
-             const std::vector<OutputPart>& parts) {
+std::optional<Error> failure_of(const std::function<void()>& work) {
+  try {
+    work();
+    return {};
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    return Error(ErrorKind::computation_failed, "there is too little memory to go on", "",
+                 "Use fewer discs, or a machine with more memory");
+  } catch (const std::exception& error) {
+    return Error(ErrorKind::computation_failed, error.what(), "", "Please report it with the case");
+  }
+}
+
+void deliver(const CommonOptions& options, const std::string& given_status, Results results, StageTimes times,
+             const std::vector<OutputPart>& parts, const std::optional<Error>& failure) {
+  const bool interrupted = failure && failure->kind() == ErrorKind::interrupted;
+  const std::string status = interrupted ? "interrupted" : failure ? "failed" : given_status;
+  if (failure) {
+    const std::string where = failure->where().empty() ? "" : failure->where() + ": ";
+    const std::string why = failure->why().empty() ? "" : fmt::format(" ({})", failure->why());
+    results = Results()
+                  .line("NOT DONE", where + failure->problem() + why + "; what follows is what there was by then")
+                  .append(results)
+                  .set("complete", false)
+                  .set("failure", failure->what());
+  }
   const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
   const bool filed = options.out && !options.dry_run, file_of_json = printed && options.json && !to_stdout;
-  Deliverer all(results);
+  Deliverer all(results, failure);
   const auto delivery = [&] {
     Delivery made{status, results, times};
     if (!all.warnings().empty()) made.results.set("warnings", all.warnings());

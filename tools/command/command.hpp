@@ -16,6 +16,7 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -102,16 +103,21 @@ struct OutputPart {
   std::function<void()> write;
 };
 
+/// Does work of a verb. What ends it before its end is returned, so that the verb delivers what it has by then.
+std::optional<Error> failure_of(const std::function<void()>& work);
+
 /// Delivers the results of a verb in the order of their worth: OUT/result.json and --json FILE; the parts, one after
 /// the other; OUT/index.html; the report to stdout, unless quiet, or the JSON where --json is "-". What fails on the
 /// way is a warning in all that follows and on stderr; result.json is then written again with the warnings. A dry run
 /// does not write to the folder.
 /// \param status the first key of the JSON: "solved", "dry_run", ...
+/// \param failure what ended the work before its end: then the status is "failed" or "interrupted", `complete` is
+///        false, `failure` and a line of the report are its reason, and it is thrown afterwards
 /// \throws Error (computation_failed) afterwards, where a file was lost or the answer reached neither the folder nor
 ///         stdout; where --require-stable is given and the status is "unstable", "unjudged" or "mechanism".
 ///         (interrupted) where the user stopped the parts
 void deliver(const CommonOptions& options, const std::string& status, Results results, StageTimes times,
-             const std::vector<OutputPart>& parts = {});
+             const std::vector<OutputPart>& parts = {}, const std::optional<Error>& failure = {});
 
 /// Numbers of a result in memory, too many for the JSON.
 struct ResultArray {

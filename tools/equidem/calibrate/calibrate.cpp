@@ -157,7 +157,24 @@ int calibrate(const CalibrateVerb& options) {
 
   const ElasticModuli& wanted = resolved.material->moduli;
   const CalibrateOptions how = calibrate_options(resolved);
-  const Calibration found = calibrate(problem.assembly, wanted, how);
+  std::optional<Error> refusal;
+  const Calibration found = [&] {
+    try {
+      return calibrate(problem.assembly, wanted, how);
+    } catch (const InfeasibleModuli& infeasible) {
+      refusal = infeasible.at(resolved.where("material"));
+      return infeasible.range();
+    }
+  }();
+  std::vector<OutputPart> parts{{"case.toml", [&] { write_case(common, resolved); }}};
+  if (common.out)
+    parts.push_back(
+        {assembly_name, [&] { write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite); }});
+  if (refusal) {
+    deliver(common, "not_feasible", feasible_results(problem, found).append(refusal_results(*refusal)), problem.times,
+            parts);
+    throw *refusal;
+  }
   StageTimes times = problem.times;
   times.add(found.times);
   problem.springs = {
@@ -178,11 +195,7 @@ int calibrate(const CalibrateVerb& options) {
   } else {
     results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
   }
-  std::vector<OutputPart> parts{{"case.toml", [&] { write_case(common, resolved); }}};
   if (path) parts.push_back({"the springs file", [&] { write_file(*path, file, common.overwrite); }});
-  if (common.out)
-    parts.push_back(
-        {assembly_name, [&] { write_assembly(*common.out / assembly_name, problem.assembly, common.overwrite); }});
   deliver(common, "calibrated", std::move(results), std::move(times), parts);
   hand_over([kept = resolved](const CommonOptions& into) { write_case(into, kept); });
   if (path) say(common, fmt::format("springs written to {}", path->string()));

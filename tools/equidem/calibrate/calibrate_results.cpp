@@ -199,4 +199,17 @@ Results calibrated_results(const Problem& problem, const Calibration& found,
   return out;
 }
 
+Results feasible_results(const Problem& problem, const Calibration& range) {
+  const Case& resolved = problem.resolved;
+  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation),
+                                AssemblyKeys::size);
+  add_wanted(out, resolved.material->moduli);
+  add_range(out, range, resolved.material->moduli.plane);
+  return out;
+}
+
+Results refusal_results(const Error& refusal) {
+  return Results().line("NOT FEASIBLE", refusal.what()).set("refusal", refusal.what());
+}
+
 }  // namespace equidem

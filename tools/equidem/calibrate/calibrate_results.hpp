@@ -15,4 +15,10 @@ namespace equidem {
 Results calibrated_results(const Problem& problem, const Calibration& found,
                            const std::optional<MeanFieldGuess>& guess);
 
+/// The range of Poisson's ratio of an assembly that has not the one wanted.
+Results feasible_results(const Problem& problem, const Calibration& range);
+
+/// What was asked for is out of reach: `refusal`, and its line.
+Results refusal_results(const Error& refusal);
+
 }  // namespace equidem

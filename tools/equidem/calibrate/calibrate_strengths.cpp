@@ -15,6 +15,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
+#include "calibrate/calibrate_results.hpp"
 #include "calibrate/calibrate_strengths_results.hpp"
 #include "problem.hpp"
 
@@ -130,7 +131,7 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   const std::string text = text_of_strengths(resolved, found, strengths);
   Results results = strength_results(problem, samples.front().sample, found);
   if (refusal) {
-    results.line("NOT FEASIBLE", refusal->what()).set("refusal", refusal->what());
+    results.append(refusal_results(*refusal));
     results.line("strength file", "none: what is above has the nearest ratio that was found")
         .set("strength_file", nullptr);
     path.reset();

@@ -217,9 +217,9 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
   return results;
 }
 
-void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
-                      const std::string& status, StageTimes times, const std::function<void()>& save_samples) {
-  const bool complete = status != "interrupted";
+void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results, StageTimes times,
+                      const std::function<void()>& save_samples, const std::optional<Error>& failure) {
+  const bool complete = !failure || failure->kind() != ErrorKind::interrupted;
   results.set("complete", complete);
   const auto plots = ensemble_plots(result);
   std::vector<OutputPart> parts;
@@ -230,7 +230,7 @@ void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result
     for (const auto& plot : plots)
       parts.push_back({plot.first, [&] { write_plot(*options.out, plot.first, plot.second, true); }});
   }
-  deliver(options, status, std::move(results), std::move(times), parts);
+  deliver(options, "done", std::move(results), std::move(times), parts, failure);
   hand_over([plots](const CommonOptions& into) {
     for (const auto& [name, plot] : plots) write_plot(*into.out, name, plot, into.overwrite);
   });
@@ -271,19 +271,16 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);
   if (sampled.stopped)
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} cells\n", result.samples.size(), wanted));
-  const bool all_refused = std::ranges::all_of(result.samples, &EnsembleSample::refused);
-  deliver_ensemble(options, result, std::move(results),
-                   sampled.stopped ? "interrupted"
-                   : all_refused   ? "failed"
-                                   : "done",
-                   std::move(times), [&] { save(result.samples); });
-  if (sampled.stopped) {
-    throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
-                  "Run the same command with --resume to do the rest");
-  }
-  if (all_refused)
-    computation_failed("none of the cells has moduli",
-                       "the first: " + without_full_stop(result.samples.front().refusal), "");
+  const std::optional<Error> failure = failure_of([&] {
+    if (sampled.stopped)
+      throw_stopped(options, fmt::format("{} of {} cells are done", result.samples.size(), wanted),
+                    "Run the same command with --resume to do the rest");
+    if (std::ranges::all_of(result.samples, &EnsembleSample::refused))
+      computation_failed("none of the cells has moduli",
+                         "the first: " + without_full_stop(result.samples.front().refusal), "");
+  });
+  deliver_ensemble(
+      options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
   return 0;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "equidem/casefile/assembly/case.hpp"
@@ -42,8 +43,9 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 
 /// Writes samples, statistics and plots into --out, and delivers the results.
 /// \param save_samples writes the table of the samples
-void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results,
-                      const std::string& status, StageTimes times, const std::function<void()>& save_samples);
+/// \param failure as that of deliver
+void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results, StageTimes times,
+                      const std::function<void()>& save_samples, const std::optional<Error>& failure);
 
 /// s for the cells of a plan, from some of its cells.
 double estimated_seconds(const Case& resolved, const EnsemblePlan& plan);

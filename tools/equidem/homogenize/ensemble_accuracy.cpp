@@ -102,11 +102,11 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
       sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
                          wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
-  if (sampled.stopped) {
-    throw Error(ErrorKind::interrupted, "stopped as asked",
-                fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy),
-                "");
-  }
+  std::optional<Error> failure = sampled.failure;
+  if (sampled.stopped)
+    failure = Error(
+        ErrorKind::interrupted, "stopped as asked",
+        fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
   const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
   EnsembleResult result{.title = resolved.title,
                         .plan = sampled.plan,
@@ -119,8 +119,10 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                                      sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
     write_case(options, read_case(chosen));
   }
-  results.append(ensemble_results(result)).append(accuracy_results(reached));
-  deliver_ensemble(options, result, std::move(results), "done", std::move(times), [&] { save(result.samples); });
+  results.append(ensemble_results(result));
+  if (sampled.estimated > 0 || !failure) results.append(accuracy_results(reached));
+  deliver_ensemble(
+      options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
   return 0;
 }
 

@@ -114,7 +114,8 @@ int run(const CommonOptions& common) {
   times.add("statics", watch.lap());
   const PackingMeasures measures = measured(resolved, packing);
   times.add("measures", watch.lap());
-  const bool stopped = packing.failure && packing.failure->kind() == ErrorKind::interrupted;
+  std::optional<Error> failure;
+  if (packing.failure) failure = failure_of([&] { located(resolved, "method", [&] { throw *packing.failure; }); });
   std::vector<OutputPart> parts;
   if (common.out) {
     parts.push_back({"case.toml", [&] { write_case(common, resolved.document); }});
@@ -122,12 +123,8 @@ int run(const CommonOptions& common) {
     parts.push_back({"the assembly", [&] { write_assemblies(common, resolved, packing, network); }});
     parts.push_back({"the picture", [&] { draw(common, resolved, packing); }});
   }
-  deliver(common,
-          stopped           ? "interrupted"
-          : packing.failure ? "failed"
-                            : "done",
-          packing_results(resolved, packing, network, density, measures, rest), std::move(times), parts);
-  if (packing.failure) located(resolved, "method", [&] { throw *packing.failure; });
+  deliver(common, "done", packing_results(resolved, packing, network, density, measures, rest), std::move(times), parts,
+          failure);
   hand_over(std::make_shared<const Assembly>(std::move(network)));
   hand_over([shared_case, shared_packing](const CommonOptions& into) {
     draw(into, *shared_case, *shared_packing);

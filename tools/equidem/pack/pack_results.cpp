@@ -213,12 +213,6 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   Results out = pack_case_results(resolved);
   out.set("title", resolved.title).set("method", to_string(options.method)).set("shape", to_string(packing.shape));
   out.set("grains", packing.size()).set("complete", packing.complete).set("box", packing.box.size);
-  if (packing.failure) {
-    const Error& failure = *packing.failure;
-    out.set("failure", failure.what());
-    out.line("NOT DONE", failure.kind() == ErrorKind::interrupted ? "stopped as asked" : failure.problem())
-        .note(": what follows is how the bodies lie now");
-  }
   if (packing.size() < options.radii.size()) {
     out.line("packed", fmt::format("{} of {}", packing.size(), options.radii.size()));
   } else if (options.method == PackingMethod::growth && !packing.complete) {

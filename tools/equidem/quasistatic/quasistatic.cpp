@@ -275,14 +275,6 @@ struct Stop {
   std::optional<PathState> state{};  ///< behind the last event; none: not known
 };
 
-/// The sentence with which a path ends where the next event cannot be computed.
-Error failure_of(const std::exception& exception) {
-  if (const auto* error = dynamic_cast<const Error*>(&exception)) return *error;
-  const bool memory = dynamic_cast<const std::bad_alloc*>(&exception) != nullptr;
-  return {ErrorKind::computation_failed, memory ? "there is too little memory for the next event" : exception.what(),
-          "", memory ? "Use fewer discs, or a machine with more memory" : "Please report this case"};
-}
-
 /// Whatever ends the path, all that was found so far stays.
 /// \param from frames of the path so far
 Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<FileMark>& from) {
@@ -311,7 +303,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     return goes_on;
   };
   Stop stop;
-  try {
+  stop.failure = failure_of([&] {
     Progress progress("breaking");
     while (advance()) {
       if (watch.seconds() - saved > sequence.problem.resolved.output.checkpoint_interval) {
@@ -320,14 +312,12 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
       }
       progress.update(static_cast<double>(run.events().size()) / most);
     }
-  } catch (const std::exception& exception) {
-    const auto* error = dynamic_cast<const Error*>(&exception);
-    stop.interrupted = error != nullptr && error->kind() == ErrorKind::interrupted;
-    if (!stop.interrupted) {
-      stop.failure = failure_of(exception);
-      const std::string& why = stop.failure->why();
-      run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
-    }
+  });
+  stop.interrupted = stop.failure && stop.failure->kind() == ErrorKind::interrupted;
+  if (stop.interrupted) stop.failure.reset();
+  if (stop.failure) {
+    const std::string& why = stop.failure->why();
+    run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
   }
   save();
   if (!stop.interrupted || sequence.unbonded) stop.state = stop.failure ? sequence.state_anew() : sequence.state();

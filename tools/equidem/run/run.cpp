@@ -40,6 +40,11 @@ void check_outputs(const RunVerb& options, const RunJob& job) {
   for (const std::string& name : job.files()) plan.expect(name);
 }
 
+/// Writes the files of a run into another folder, as a FigureWriter does.
+void write_parts(const RunJob& job, const RunResult& result, const CommonOptions& into) {
+  for (const OutputPart& part : job.parts(*into.out, result, into.overwrite)) part.write();
+}
+
 /// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
 /// long.
 bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, StepSearch* search = nullptr) {
@@ -49,32 +54,35 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
   if (common.out || arrays_wanted()) plan.film_frames = frames_of_film(job.simulation().motions().size());
   const HistoryFolder tables(common.out, arrays_wanted() && (plan.probe_interval || plan.recorder != nullptr));
   if (tables.is_temporary()) plan.frame_interval.reset();
-  const auto shared_result = [&] {
+  const auto shared_result = std::make_shared<RunResult>();
+  const RunResult& result = *shared_result;
+  const std::optional<Error> failure = failure_of([&] {
     try {
-      return std::make_shared<const RunResult>(run_through(
-          job.simulation(), plan, {.folder = tables.path(), .overwrite = common.overwrite, .resume = options.resume}));
+      run_through(job.simulation(), plan,
+                  {.folder = tables.path(), .overwrite = common.overwrite, .resume = options.resume}, *shared_result);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::interrupted) throw;
       throw_stopped(common, fmt::format("{} of {} steps are done", job.simulation().step(), plan.steps),
                     "Run the same command with --resume to do the rest");
     }
-  }();
-  const RunResult& result = *shared_result;
-  if (search != nullptr && !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
+  });
+  if (failure && failure->kind() == ErrorKind::bad_input && result.steps_done == 0) throw *failure;
+  if (!failure && search != nullptr &&
+      !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
     return false;
   StageTimes times = job.times();
   times.add("steps", result.seconds);
-  Results results = run_results(job, plan, result);
-  if (search != nullptr) results.append(accuracy_results(search->reached()));
+  Results results = run_results(job, plan, result, failure.has_value());
+  results.set("complete", true);
+  if (!failure && search != nullptr) results.append(accuracy_results(search->reached()));
   std::vector<OutputPart> parts;
-  if (common.out)
-    parts.push_back({"the tables", [&] { job.write_files(*common.out, result, common.overwrite || options.resume); }});
-  deliver(common, "done", std::move(results), std::move(times), parts);
+  if (common.out) parts = job.parts(*common.out, result, common.overwrite || options.resume);
+  deliver(common, "done", std::move(results), std::move(times), parts, failure);
   if (!arrays_wanted()) return true;
   hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
   hand_over([shared_job, shared_result, history = tables.history()](const CommonOptions& into) {
     if (!history.empty()) write_file(*into.out / "history.csv", history, into.overwrite);  // of which paths are drawn
-    shared_job->write_files(*into.out, *shared_result, into.overwrite);
+    write_parts(*shared_job, *shared_result, into);
   });
   return true;
 }
@@ -85,12 +93,16 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
     bad_input("--resume of a run to rest", "it keeps no checkpoints: it ends where it ends", "Run it anew");
   }
   StageTimes times = job.times();
-  Results results = job.relax(times);
   const CommonOptions& common = options.common;
+  Results results;
+  const std::optional<Error> failure = failure_of([&] { results = job.relax(times); });
+  if (failure && failure->kind() == ErrorKind::bad_input) throw *failure;
+  if (failure) results = job.scene();
+  results.set("complete", true);
   std::vector<OutputPart> parts;
-  if (common.out) parts.push_back({"the tables", [&] { job.write_files(*common.out, {}, common.overwrite); }});
-  deliver(common, "at_rest", std::move(results), std::move(times), parts);
-  hand_over([shared_job](const CommonOptions& into) { shared_job->write_files(*into.out, {}, into.overwrite); });
+  if (common.out) parts = job.parts(*common.out, {}, common.overwrite);
+  deliver(common, "at_rest", std::move(results), std::move(times), parts, failure);
+  hand_over([shared_job](const CommonOptions& into) { write_parts(*shared_job, {}, into); });
 }
 
 int run_to_accuracy(RunVerb options, double accuracy) {
@@ -157,11 +169,14 @@ std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
   prepare(options);
   if (describes_grains(casefile::read_document(options.case_file, options.set))) {
     GrainCase resolved = read_grain_case(options.case_file, options.set);
-    if (!begin_from) {
-      const std::optional<double> step =
-          resume ? kept_grain_step(*options.out / "run.checkpoint.h5", resolved) : std::nullopt;
-      return std::make_unique<GrainRun>(std::move(resolved), step);
+    if (resume) {
+      const std::string text = case_of_checkpoint(*options.out / "run.checkpoint.h5");
+      const std::optional<double> step = kept_grain_step(text, resolved);
+      auto job = std::make_unique<GrainRun>(std::move(resolved), step);
+      job->go_on_from(text);
+      return job;
     }
+    if (!begin_from) return std::make_unique<GrainRun>(std::move(resolved));
     auto job = std::make_unique<GrainRun>(std::move(resolved), step_of_stages(*begin_from));
     job->begin_from(*begin_from);
     return job;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <utility>
 
@@ -227,34 +228,47 @@ std::string BondedRun::fingerprint() const {
                      checksum_of(problem_.assembly, problem_.springs.springs), checksum_of_schedules(scene_));
 }
 
-void BondedRun::write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions,
-                            bool overwrite) const {
-  const OutputCase& output = problem_.resolved.output;
-  std::vector<ContactForce> forces;
-  if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
-  const AssemblyState state{
-      .assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}};
-  if (output.csv) write_disc_csv(folder / "discs.csv", state, overwrite);
-  if (output.vtk) write_vtk(folder, "state", state, overwrite);
-  if (output.picture) {
-    const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-    write_picture(folder, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, overwrite);
-  }
-  write_file(folder / "case.toml", to_toml(problem_.resolved, folder), overwrite);
-}
-
-void BondedRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
-  constexpr EnergyCurve curves[] = {
+std::vector<OutputPart> BondedRun::parts(const std::filesystem::path& folder, const RunResult& result,
+                                         bool overwrite) const {
+  static constexpr EnergyCurve curves[] = {
       {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
       {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
       {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
       {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.lost(); }},
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
-  if (goes_to_rest()) return write_state(folder, at_rest_, overwrite);
-  write_state(folder, simulation_.motions(), overwrite);
-  write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves, overwrite);
-  if (problem_.resolved.output.picture) add_film(problem_.resolved.title, problem_.assembly, result.record.film);
+  const OutputCase& output = problem_.resolved.output;
+  std::vector<OutputPart> parts;
+  parts.push_back(
+      {"case.toml", [=, this] { write_file(folder / "case.toml", to_toml(problem_.resolved, folder), overwrite); }});
+  if (goes_to_rest() && at_rest_.empty()) return parts;
+  const auto part = [&](const char* name, const std::function<void(const AssemblyState&)>& write) {
+    parts.push_back(
+        {name, [this, write] {
+           const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
+           std::vector<ContactForce> forces;
+           if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
+           write({.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
+         }});
+  };
+  if (output.csv)
+    part("discs.csv", [=](const AssemblyState& state) { write_disc_csv(folder / "discs.csv", state, overwrite); });
+  if (output.vtk)
+    part("the state for ParaView", [=](const AssemblyState& state) { write_vtk(folder, "state", state, overwrite); });
+  if (output.picture)
+    part("the picture", [=, this](const AssemblyState& state) {
+      const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
+      write_picture(folder, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, overwrite);
+    });
+  if (goes_to_rest()) return parts;
+  parts.push_back({"the plot of energies", [=, this, &result] {
+                     write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies,
+                                       curves, overwrite);
+                   }});
+  if (output.picture)
+    parts.push_back(
+        {"the film", [this, &result] { add_film(problem_.resolved.title, problem_.assembly, result.record.film); }});
+  return parts;
 }
 
 RelaxationOptions BondedRun::relaxation_options() const {

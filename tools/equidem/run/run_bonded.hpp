@@ -56,7 +56,8 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
-  void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
+  [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
+                                              bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
   [[nodiscard]] Results estimate_of_relaxation() const override;
   Results relax(StageTimes& times) override;
@@ -69,7 +70,6 @@ class BondedRun final : public RunJob {
   /// None without waves, and where the cell has no stiffness or is too large to be homogenized beside a run.
   [[nodiscard]] std::optional<WaveStiffness> stiffness_of_waves() const;
   [[nodiscard]] LargestDeformation deformation_at(const std::vector<DiscMotion>& motions) const;
-  void write_state(const std::filesystem::path& folder, const std::vector<DiscMotion>& motions, bool overwrite) const;
 
   Problem problem_;
   Scene scene_;

@@ -194,8 +194,8 @@ double step_of_stages(const std::filesystem::path& checkpoint) {
                    "Name run.STAGE.checkpoint.h5 of a run whose first stages this case has too");
 }
 
-std::optional<double> kept_grain_step(const std::filesystem::path& checkpoint, const GrainCase& resolved) {
-  const auto found = step_in(case_of_checkpoint(checkpoint));
+std::optional<double> kept_grain_step(const std::string& text, const GrainCase& resolved) {
+  const auto found = step_in(text);
   if (!found || found->step >= choose_grain_step(resolved).step) return {};
   return found->step;
 }
@@ -246,14 +246,14 @@ void GrainRun::begin_from(const std::filesystem::path& path) {
   simulation_.restore(state);
   if (simulation_.over())
     refuse(fmt::format("the stage '{}' is over, and this case has no other", last), "Add the stages that follow");
-  begun_from_ = path.string();
+  beginning_ = {.path = path.string(), .stage = last};
 }
 
 RunPlan GrainRun::plan() {
   const bool draws_paths = case_.bodies().size() <= most_drawn_paths;
   return {.steps = steps_,
           .time_step = step_.step,
-          .case_text = case_text_of(case_, step_.step),
+          .case_text = case_text_of(case_, step_.step) + (beginning_ ? text_of(*beginning_) : ""),
           .frame_interval = case_.output.frame_interval,
           .probe_interval = case_.output.probe_interval,
           .checkpoint_interval = case_.output.checkpoint_interval,
@@ -281,8 +281,53 @@ int GrainRun::colour_of(const std::string& group) const {
   return static_cast<int>(std::ranges::find(kinds, group) - kinds.begin());
 }
 
-void GrainRun::write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
-  constexpr EnergyCurve curves[] = {
+GrainRun::Snapshot GrainRun::snapshot() const {
+  Snapshot now{.grains = simulation_.present().grains(), .walls = simulation_.present().placed_walls()};
+  const std::vector<std::string>& kinds = present_contacts().kinds;
+  for (const Grain& grain : now.grains) {
+    now.groups.push_back(kinds[static_cast<std::size_t>(grain.kind)]);
+    now.colours.push_back(colour_of(now.groups.back()));
+  }
+  return now;
+}
+
+void GrainRun::write_tables(const std::filesystem::path& folder, bool overwrite) const {
+  const Snapshot now = snapshot();
+  const std::vector<std::size_t>& numbers = simulation_.numbers();
+  std::vector<double> densities;
+  for (const std::size_t number : numbers) densities.push_back(case_.densities[number]);
+  write_grain_csv(folder / "grains.csv",
+                  {.grains = now.grains,
+                   .clumps = case_.scene.clumps,
+                   .groups = now.groups,
+                   .densities = densities,
+                   .numbers = bodies_come_and_go(case_) ? numbers : std::span<const std::size_t>()},
+                  overwrite);
+}
+
+void GrainRun::draw(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
+  const Snapshot now = snapshot();
+  std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
+  for (const std::vector<Vec2>& places : result.record.paths) {
+    std::vector<Vec2>& shown = paths.emplace_back();
+    for (const std::size_t number : simulation_.numbers()) shown.push_back(places[number]);
+  }
+  write_grain_picture(folder, "picture",
+                      {.title = case_.title,
+                       .time = simulation_.time(),
+                       .grains = now.grains,
+                       .clumps = case_.scene.clumps,
+                       .groups = now.colours,
+                       .bonds = simulation_.holding_bonds().bonds,
+                       .walls = now.walls,
+                       .started = case_.scene.grains,
+                       .paths = paths},
+                      overwrite);
+}
+
+std::vector<OutputPart> GrainRun::parts(const std::filesystem::path& folder, const RunResult& result,
+                                        bool overwrite) const {
+  static constexpr EnergyCurve curves[] = {
       {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
       {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
       {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
@@ -293,61 +338,47 @@ void GrainRun::write_files(const std::filesystem::path& folder, const RunResult&
       {"lost in bonds", PlotColour::yellow, [](const EnergyLedger& l) { return l.lost_bond + l.lost_breaking; }},
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
-  const GrainCase& resolved = case_;
-  const std::vector<Grain> grains = simulation_.present().grains();
-  const std::vector<Wall> walls = simulation_.present().placed_walls();
-  const std::vector<std::size_t>& numbers = simulation_.numbers();
-  const std::vector<std::string>& kinds = present_contacts().kinds;
-  std::vector<std::string> groups;
-  std::vector<double> densities;
-  std::vector<int> colours;
-  for (std::size_t k = 0; k < grains.size(); ++k) {
-    groups.push_back(kinds[static_cast<std::size_t>(grains[k].kind)]);
-    densities.push_back(resolved.densities[numbers[k]]);
-    colours.push_back(colour_of(groups.back()));
+  std::vector<OutputPart> parts;
+  const auto part = [&](const char* name, std::function<void()> write) { parts.push_back({name, std::move(write)}); };
+  part("case.toml", [=, this] { write_file(folder / "case.toml", to_toml(case_.document, folder), overwrite); });
+  part("energy.csv", [=, this, &result] {
+    write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, case_.body, overwrite);
+  });
+  if (case_.output.csv) {
+    part("grains.csv", [=, this] { write_tables(folder, overwrite); });
+    part("contacts.csv", [=, this] {
+      write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), snapshot().walls, case_.body,
+                              overwrite);
+    });
+    if (!simulation_.bonds().empty())
+      part("bonds.csv", [=, this] {
+        const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
+        write_bond_csv(folder / "bonds.csv", holding.bonds, simulation_.present().bond_drifts(), holding.strengths,
+                       overwrite);
+      });
   }
-  if (resolved.output.csv) {
-    const std::span<const std::size_t> told = bodies_come_and_go(resolved) ? numbers : std::span<const std::size_t>();
-    write_grain_csv(
-        folder / "grains.csv",
-        {.grains = grains, .clumps = resolved.scene.clumps, .groups = groups, .densities = densities, .numbers = told},
-        overwrite);
-    write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), walls, resolved.body, overwrite);
+  part("the table of breaks", [=, this] {
+    const std::vector<BondBreak> breaks = simulation_.breaks();
+    write_breaks(folder, case_, {simulation_.bonds(), breaks}, step_.step, overwrite);
+  });
+  if (case_.output.picture) {
+    part("the picture", [=, this, &result] { draw(folder, result, overwrite); });
+    part("the plot of energies", [=, this, &result] {
+      write_energy_plot(folder, "energy_plot", case_.title, case_.body, result.record.energies, curves, overwrite);
+    });
+    part("the paths of probes", [=, this] { write_probe_paths(folder, case_, overwrite); });
+    part("the film", [=, this, &result] {
+      std::vector<int> first_colours;
+      for (const std::string& group : case_.groups) first_colours.push_back(colour_of(group));
+      // where paths are drawn, pictures show where each body went
+      const auto started =
+          result.record.paths.empty() ? std::span<const Grain>(case_.scene.grains) : std::span<const Grain>();
+      add_film(case_, walls_, first_colours, started, result.record.film);
+    });
   }
-  const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
-  if (resolved.output.csv && !simulation_.bonds().empty())
-    write_bond_csv(folder / "bonds.csv", holding.bonds, simulation_.present().bond_drifts(), holding.strengths,
-                   overwrite);
-  const std::vector<BondBreak> breaks = simulation_.breaks();
-  write_breaks(folder, resolved, {simulation_.bonds(), breaks}, step_.step, overwrite);
-  if (resolved.output.picture) {
-    std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
-    const std::span<const Grain> started = resolved.scene.grains;
-    for (const std::vector<Vec2>& places : result.record.paths) {
-      std::vector<Vec2>& shown = paths.emplace_back();
-      for (const std::size_t number : numbers) shown.push_back(places[number]);
-    }
-    write_grain_picture(folder, "picture",
-                        {.title = resolved.title,
-                         .time = simulation_.time(),
-                         .grains = grains,
-                         .clumps = resolved.scene.clumps,
-                         .groups = colours,
-                         .bonds = holding.bonds,
-                         .walls = walls,
-                         .started = started,
-                         .paths = paths},
-                        overwrite);
-    write_energy_plot(folder, "energy_plot", resolved.title, resolved.body, result.record.energies, curves, overwrite);
-    write_probe_paths(folder, resolved, overwrite);
-    std::vector<int> first_colours;
-    for (const std::string& group : resolved.groups) first_colours.push_back(colour_of(group));
-    // where paths are drawn, pictures show where each body went
-    add_film(resolved, walls_, first_colours, paths.empty() ? started : std::span<const Grain>(), result.record.film);
-  }
-  write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, resolved.body, overwrite);
-  write_file(folder / "case.toml", to_toml(resolved.document, folder), overwrite);
-  if (measures_) measures_->write_files(folder, overwrite);
+  if (measures_ && measures_->last_step() >= 0)
+    part("the measures", [=, this] { measures_->write_files(folder, overwrite); });
+  return parts;
 }
 
 }  // namespace equidem

@@ -9,6 +9,7 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "run/run_grains_measures.hpp"
+#include "run/run_grains_text.hpp"
 #include "run/run_job.hpp"
 
 namespace equidem {
@@ -17,10 +18,9 @@ namespace equidem {
 /// \throws Error (bad_input) as case_of_checkpoint; a checkpoint of another run
 double step_of_stages(const std::filesystem::path& checkpoint);
 
-/// The step of the checkpoint of a run that goes on, s: a run that has begun from another one has the step of that one,
-/// which may be shorter than its own. None where this case needs a shorter one.
-/// \throws Error (bad_input) as case_of_checkpoint
-std::optional<double> kept_grain_step(const std::filesystem::path& checkpoint, const GrainCase& resolved);
+/// The step of a run that goes on, s, from the case text of its checkpoint: a run that has begun from another one has
+/// the step of that one, which may be shorter than its own. None where this case needs a shorter one.
+std::optional<double> kept_grain_step(const std::string& text, const GrainCase& resolved);
 
 class GrainRun final : public RunJob {
  public:
@@ -34,6 +34,8 @@ class GrainRun final : public RunJob {
   /// \throws Error (bad_input) as read_checkpoint; a run that is not in stages, a case that is another one until
   ///         then, or has nothing to follow
   void begin_from(const std::filesystem::path& path);
+  /// Go on with a run whose checkpoint is of that case text: how it began is known from there.
+  void go_on_from(const std::string& text) { beginning_ = beginning_in(text); }
 
   [[nodiscard]] AnySimulation& simulation() override { return simulation_; }
   [[nodiscard]] RunPlan plan() override;
@@ -43,9 +45,20 @@ class GrainRun final : public RunJob {
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
-  void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const override;
+  [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
+                                              bool overwrite) const override;
 
  private:
+  struct Snapshot {
+    std::vector<Grain> grains;
+    std::vector<Wall> walls;
+    std::vector<std::string> groups = {};  ///< of each grain
+    std::vector<int> colours = {};         ///< likewise
+  };
+  /// The bodies that are there now.
+  [[nodiscard]] Snapshot snapshot() const;
+  void write_tables(const std::filesystem::path& folder, bool overwrite) const;
+  void draw(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const;
   /// Contacts as the present stage has them.
   [[nodiscard]] const ContactTable& present_contacts() const;
   [[nodiscard]] int colour_of(const std::string& group) const;
@@ -58,7 +71,7 @@ class GrainRun final : public RunJob {
   std::optional<GrainMeasures> measures_;
   FrameOptions frames_;
   Assembly frame_discs_;
-  std::string begun_from_;  ///< checkpoint of another run; empty: none
+  std::optional<Beginning> beginning_;
 };
 
 }  // namespace equidem

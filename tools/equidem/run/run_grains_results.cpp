@@ -269,10 +269,10 @@ Results GrainRun::step() const {
   Results out;
   out.line("time step").add("time_step", "", step_.step, "s").note(step_.automatic ? ", automatic" : "");
   out.set("time_step_automatic", step_.automatic);
-  if (!begun_from_.empty()) {
-    const StageReport& stage = simulation_.reports().back();
-    out.line("begun with").add("begun_from", "the state in", begun_from_).note(fmt::format(", stage '{}'", stage.name));
-  }
+  if (beginning_)
+    out.line("begun with")
+        .add("begun_from", "the state in", beginning_->path)
+        .note(fmt::format(", stage '{}'", beginning_->stage));
   if (step_.contact > 0) {
     out.line("")
         .add("contact_duration", "the shortest contact lasts", step_.contact, "s", {.digits = 4})
@@ -303,7 +303,7 @@ Results GrainRun::step() const {
 
 Results GrainRun::events() const {
   const GrainCounters& counters = simulation_.present().counters();
-  Results out = measures_ ? measures_->results() : Results();
+  Results out = measures_ && measures_->last_step() >= 0 ? measures_->results() : Results();
   if (!case_.stages.empty()) out.append(stage_results(case_, simulation_.reports(), step_.step));
   out.append(servo_results(case_, simulation_.reports(), simulation_.present().servos()));
   if (const auto cell = simulation_.cell())

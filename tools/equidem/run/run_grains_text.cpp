@@ -12,7 +12,8 @@ namespace equidem {
 namespace {
 
 constexpr std::string_view stage_heading = "\n# stage ", schedule_heading = "\n# schedules\n",
-                           checksum_line = "\n# checksum of grains and schedules ";
+                           checksum_line = "\n# checksum of grains and schedules ",
+                           beginning_heading = "\n# begun behind stage ";
 
 void add_bodies(Checksum& sum, std::span<const Grain> grains, std::span<const double> densities) {
   for (std::size_t g = 0; g < grains.size(); ++g) {
@@ -91,6 +92,18 @@ std::string case_text_of(const GrainCase& resolved, double step) {
     bodies += resolved.stages[k].bodies.added.size();
   }
   return text + std::string(schedule_heading) + to_toml(std::move(schedules), {});
+}
+
+std::string text_of(const Beginning& beginning) {
+  return fmt::format("{}{}\n{}", beginning_heading, beginning.stage, beginning.path);
+}
+
+std::optional<Beginning> beginning_in(std::string_view text) {
+  const std::size_t at = text.rfind(beginning_heading);
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + beginning_heading.size());
+  const std::size_t end = text.find('\n');
+  return Beginning{.path = std::string(text.substr(end + 1)), .stage = std::string(text.substr(0, end))};
 }
 
 std::size_t stages_in(std::string_view text) {

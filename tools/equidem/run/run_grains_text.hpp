@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,15 @@ namespace equidem {
 /// Returns what acts in all stages, the time step, each stage, and the schedules as they are given, which the checksums
 /// of the stages contain as well. \param step s
 std::string case_text_of(const GrainCase& resolved, double step);
+/// The checkpoint of another run with whose state a run has begun.
+struct Beginning {
+  std::string path;
+  std::string stage;  ///< that ended there
+};
+/// What a case text has of it at its end.
+std::string text_of(const Beginning& beginning);
+/// None: the run has begun with its case.
+std::optional<Beginning> beginning_in(std::string_view text);
 /// The number of stages that a case text has.
 std::size_t stages_in(std::string_view text);
 /// The part of a case text that decides on the motion until the end of some stages. \param stages at most stages_in()

@@ -45,14 +45,15 @@ class RunJob {
   [[nodiscard]] virtual Results events() const { return {}; }
   /// Advice on the energy balance.
   [[nodiscard]] virtual Results advice(const Balance& balance) const = 0;
-  /// The state at the end, plots, the case.
-  virtual void write_files(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const = 0;
+  /// The state at the end, plots, the case. The job and the result must stay where they are.
+  [[nodiscard]] virtual std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
+                                                      bool overwrite) const = 0;
 
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
   /// The steps and the time that relax() is expected to take.
   [[nodiscard]] virtual Results estimate_of_relaxation() const { return {}; }
-  /// Relax the scene to rest, the state that write_files() then writes.
+  /// Relax the scene to rest, the state that parts() then write.
   virtual Results relax(StageTimes& /*times*/) { return {}; }
 };
 

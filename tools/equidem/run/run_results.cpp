@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <exception>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -49,16 +51,15 @@ bool add_terms(Results& out, const char* lead, BodyFamily family, const EnergyLe
   return any;
 }
 
-void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body, const EnergyLedger& l,
-                  const RunRecord& record) {
+Results energies_of(const RunJob& job, BodyFamily family, Body body, const EnergyLedger& l, const RunRecord& record) {
   const double scale = scale_of(family, l, record);
-  out.append(energy_results(family, body, l, scale).under("energy"));
+  Results out = energy_results(family, body, l, scale).under("energy");
   out.line("energy")
       .add("energy/kinetic", "kinetic", l.kinetic)
       .add("energy/elastic", "elastic", l.elastic())
       .add("energy/potential", "potential", l.potential, energy_unit(body));
   out.line("").add("energy/initial", "at the start", l.initial);
-  const double overlap = record.energies.front().ledger.elastic();
+  const double overlap = record.energies.empty() ? 0 : record.energies.front().ledger.elastic();
   if (overlap > 1e-6 * l.largest()) out.add("", "", overlap, "of it elastic");
   add_terms(out, "; work done by ", family, l, EnergyRole::work);
   if (std::abs(l.sway) > worth_telling * l.largest()) {
@@ -74,7 +75,7 @@ void add_energies(Results& out, const RunJob& job, BodyFamily family, Body body,
                                         : "of the largest term at the end of the run",
            {Shown::power, 1})
       .add("", "at most", balance.most, "on the way", {Shown::power, 1});
-  out.append(job.advice(balance));
+  return out.append(job.advice(balance));
 }
 
 Results memory_results(RunJob& job) {
@@ -123,7 +124,7 @@ Results dry_run_results(RunJob& job) {
            {.digits = 2});
 }
 
-Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result) {
+Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed) {
   const AnySimulation& simulation = job.simulation();
   const double body_steps = static_cast<double>(result.steps_done) * static_cast<double>(simulation.motions().size());
   Results out = job.scene().append(step_results(job, plan));
@@ -133,9 +134,17 @@ Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result) {
       .note("; ")
       .add("particle_steps_per_second", "", result.seconds > 0 ? body_steps / result.seconds : 0.0,
            fmt::format("{}-steps per second", job.body_name()), {.digits = 3});
-  out.append(job.events());
-  out.append(wall_results(simulation.walls(), simulation.family(), plan.body));
-  add_energies(out, job, simulation.family(), plan.body, simulation.energy(), result.record);
+  const auto add = [&](const std::function<Results()>& part) {
+    try {
+      out.append(part());
+    } catch (const std::exception& error) {
+      if (!failed) throw;
+      out.line("missing", error.what());
+    }
+  };
+  add([&] { return job.events(); });
+  add([&] { return wall_results(simulation.walls(), simulation.family(), plan.body); });
+  add([&] { return energies_of(job, simulation.family(), plan.body, simulation.energy(), result.record); });
   return out;
 }
 

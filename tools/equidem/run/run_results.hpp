@@ -20,7 +20,8 @@ Results dry_run_results(RunJob& job);
 
 /// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},
 /// particle_steps_per_second, bytes_per_disc or bytes_per_grain, and the results of the job.
-Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result);
+/// \param failed the run did not come to its end: what then cannot be computed is left out
+Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed = false);
 
 /// "J per m of depth", "J".
 const char* energy_unit(Body body);

@@ -116,6 +116,21 @@ void judge(const ElasticModuli& target, Calibration& result) {
                                    error(result.moduli.bulk_modulus_2d, target.bulk_modulus_2d()));
 }
 
+/// Does what refuses a Poisson's ratio. \throws InfeasibleModuli with the range of G/K of the assembly
+template <typename Task>
+auto with_range(double least, double greatest, const Task& task) {
+  try {
+    return task();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::bad_input) throw;
+    Calibration range;
+    range.smallest_shear_to_bulk = least;
+    range.largest_shear_to_bulk = greatest;
+    range.scanned = true;
+    throw InfeasibleModuli(error, std::move(range));
+  }
+}
+
 /// Six decimals of nu, at least half of the last inside a limit.
 double below(double limit) {
   return std::floor(limit * 1e6 - 0.5) / 1e6;
@@ -182,8 +197,10 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
   }
   if (!found.reached && !range.rising) try_negative();
   if (!found.reached) {
-    if (negative.at.ratio < 0 && negative.at.shear_to_bulk < range.least) refuse_unstable(target, negative);
-    refuse_outside(target, range, below_zero && !options.static_only);
+    with_range(range.least, range.greatest, [&] {
+      if (negative.at.ratio < 0 && negative.at.shear_to_bulk < range.least) refuse_unstable(target, negative);
+      refuse_outside(target, range, below_zero && !options.static_only);
+    });
   }
   homogenizer.deliver(target.shear_modulus / shear_part(homogenizer.last().stiffness), result);
   result.smallest_shear_to_bulk = range.least;
@@ -217,12 +234,14 @@ Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target,
               fmt::format("its relation to moduli ({}) is for equal springs", relation.source),
               "Use weighting = \"uniform\"");
   }
-  const SpringConstants springs = springs_for(target, relation, {}, NegativeTangential::static_only);
-  const double ratio = springs.ratio();
-  if (ratio <= lattice.critical_ratio) refuse_unstable_lattice(target, lattice, ratio, options.static_only);
-  if (!options.static_only) static_cast<void>(springs_for(target, relation));  // refuses kT < 0
-  Calibration result;
+  if (relation.equal_springs != nullptr) static_cast<void>(springs_for(target, relation));  // refuses other nu than 0
   const ShearToBulkRange range = shear_to_bulk_range(relation);
+  const SpringConstants springs = with_range(range.least, range.greatest, [&] {
+    const SpringConstants k = springs_for(target, relation, {}, NegativeTangential::static_only);
+    if (k.ratio() <= lattice.critical_ratio) refuse_unstable_lattice(target, lattice, k.ratio(), options.static_only);
+    return options.static_only ? k : springs_for(target, relation);  // refuses kT < 0
+  });
+  Calibration result;
   result.smallest_shear_to_bulk = range.least;
   result.largest_shear_to_bulk = range.greatest;
   result.scanned = true;
@@ -230,9 +249,9 @@ Calibration solve_lattice(const Assembly& assembly, const ElasticModuli& target,
   result.verified = assembly.periodic();
   if (result.verified) {
     Homogenizer homogenizer(assembly, options);
-    if (!homogenizer.sample(ratio).stable) {
+    if (!homogenizer.sample(springs.ratio()).stable) {
       if (homogenizer.failed()) homogenizer.fail();
-      refuse_unstable_lattice(target, lattice, ratio, options.static_only);
+      refuse_unstable_lattice(target, lattice, springs.ratio(), options.static_only);
     }
     // Not scaled to the wanted moduli: the closed form is tried as it is.
     homogenizer.deliver(springs.kN, result);

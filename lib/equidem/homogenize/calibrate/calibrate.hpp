@@ -4,12 +4,15 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/lattices/lattice.hpp"
 #include "equidem/contact/contact_springs.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
@@ -55,6 +58,20 @@ struct Calibration {
   [[nodiscard]] double highest_poisson_ratio(Plane plane) const;
 };
 
+/// The Poisson's ratio wanted lies outside the range of the assembly.
+class InfeasibleModuli : public Error {
+ public:
+  InfeasibleModuli(const Error& error, Calibration range)
+      : Error(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where()),
+        range_(std::make_shared<const Calibration>(std::move(range))) {}
+
+  /// Of which the range of G/K and `scanned` are set.
+  [[nodiscard]] const Calibration& range() const { return *range_; }
+
+ private:
+  std::shared_ptr<const Calibration> range_;
+};
+
 /// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Newton on r
 /// with the exact derivative dC/dr = C_T/r from the tangential strain energies C_T of EffectiveStiffness; two
 /// factorizations at the ends of the range of r, then few more (ratio_search.hpp). Where q(r) does not rise at both
@@ -65,9 +82,10 @@ struct Calibration {
 /// read from the symmetric part of stress by strain, which is independent of the mean rotation; (53), the relation by
 /// wave speeds and prescribed displacements, is springs_for(..., *Lattice::restrained). The square lattice can show nu
 /// = 0 only.
-/// \throws Error (bad_input) where nu is out of the range of this assembly, with the range and the nearest feasible
-///         value; springs in the assembly file; as effective_stiffness and springs_for;
-///         (computation_failed) as effective_stiffness; where the tolerance is not reached
+/// \throws InfeasibleModuli where nu is out of the range of this assembly, with the range and the nearest feasible
+///         value; Error (bad_input) for other nu than 0 on the square lattice; springs in the assembly file; as
+///         effective_stiffness and springs_for; (computation_failed) as effective_stiffness; where the tolerance is not
+///         reached
 Calibration calibrate(const Assembly& assembly, const ElasticModuli& target, const CalibrateOptions& options = {});
 
 /// The springs that the mean field of Abe (1996), eqs. (21) and (22), advises, and the moduli of the assembly with

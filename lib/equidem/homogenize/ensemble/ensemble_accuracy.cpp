@@ -161,6 +161,32 @@ class Sampling {
     return !done.stopped;
   }
 
+  /// Samples until the accuracy is reached; false: the user stopped it.
+  /// \throws Error (computation_failed) where it cannot be reached
+  bool go() {
+    for (const EnsembleSetting& pilots : accuracy_pilots(options_))
+      if (!sample(pilots)) return false;
+    EnsembleSetting setting = cheapest(misses_of(result_.statistics), options_, aim * options_.accuracy);
+    for (;;) {
+      if (setting.samples == 0 || setting.all_discs() > options_.most_discs)
+        refuse(misses_of(result_.statistics), options_);
+      if (!sample(setting)) return false;
+      if (error() <= options_.accuracy) return true;
+      // The scatter falls as one over the root of the number of cells; drift, with their size.
+      const EnsembleSetting again = cheapest(misses_of(result_.statistics), options_, aim * options_.accuracy);
+      setting = again.discs > setting.discs
+                    ? again
+                    : EnsembleSetting{setting.discs, std::max(setting.samples + 1 + setting.samples / 16,
+                                                              again.discs == setting.discs ? again.samples : 0)};
+    }
+  }
+
+  /// Whether two cells or more of each size have them.
+  [[nodiscard]] bool has_moduli() const {
+    return std::ranges::all_of(result_.statistics.sizes,
+                               [](const EnsembleSize& size) { return size.estimates.front().samples >= 2; });
+  }
+
   /// Accuracy that the chosen cells reach.
   [[nodiscard]] double error() const {
     return accuracy_of(misses_of(result_.statistics), static_cast<double>(result_.chosen.discs), result_.chosen.samples,
@@ -201,29 +227,19 @@ AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAc
                                     const std::function<void(const std::vector<EnsembleSample>&)>& save) {
   assert(options.accuracy > 0 && options.smallest >= 3);
   Sampling sampling(sampler, options, save);
-  for (const EnsembleSetting& pilots : accuracy_pilots(options))
-    if (!sampling.sample(pilots)) return std::move(sampling.result());
-  EnsembleSetting setting = cheapest(misses_of(sampling.result().statistics), options, aim * options.accuracy);
-  for (;;) {
-    if (setting.samples == 0 || setting.all_discs() > options.most_discs)
-      refuse(misses_of(sampling.result().statistics), options);
-    if (!sampling.sample(setting)) return std::move(sampling.result());
-    const double error = sampling.error();
-    if (error <= options.accuracy) break;
-    // The scatter falls as one over the root of the number of cells; drift, with their size.
-    const EnsembleSetting again = cheapest(misses_of(sampling.result().statistics), options, aim * options.accuracy);
-    setting = again.discs > setting.discs
-                  ? again
-                  : EnsembleSetting{setting.discs, std::max(setting.samples + 1 + setting.samples / 16,
-                                                            again.discs == setting.discs ? again.samples : 0)};
+  AccurateEnsemble& result = sampling.result();
+  try {
+    if (!sampling.go()) return std::move(result);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::computation_failed) throw;
+    result.failure = error;
+    if (!sampling.has_moduli()) return std::move(result);
   }
-  const double estimated = sampling.error();
-  AccurateEnsemble result = std::move(sampling.result());
+  result.estimated = sampling.error();
   EnsembleAccuracy all = options;
   all.most_discs = 1e15;
-  result.estimated = estimated;
   result.ten_times_more = cheapest(misses_of(result.statistics), all, aim * options.accuracy / 10);
-  return result;
+  return std::move(result);
 }
 
 }  // namespace equidem

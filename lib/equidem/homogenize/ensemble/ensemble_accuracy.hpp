@@ -6,8 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "equidem/core/error.hpp"
 #include "equidem/homogenize/ensemble/ensemble.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 
@@ -39,6 +41,7 @@ struct AccurateEnsemble {
   double estimated = 0;            ///< error of the mean of the chosen cells: scatter and drift, the worst of the three
   EnsembleSetting ten_times_more;  ///< setting that reaches a tenth of the wanted error
   bool stopped = false;            ///< by the user, before the end
+  std::optional<Error> failure;    ///< the accuracy is not reached; the rest is that of the cells sampled
 };
 
 /// The cells that are sampled first.
@@ -51,8 +54,8 @@ std::array<EnsembleSetting, 2> accuracy_pilots(const EnsembleAccuracy& options);
 ///
 /// at least eight cells; they are sampled, and more of them until their own scatter reaches the accuracy. The choice
 /// depends on the samples alone, not on the clock.
-/// \throws Error (computation_failed) where that takes more discs than most_discs, naming what can be reached, or where
-///         no two cells have moduli
+/// That it takes more discs than most_discs, with what can be reached, or that no two cells have moduli is a failure in
+/// the result.
 AccurateEnsemble sample_to_accuracy(const CellSampler& sampler, const EnsembleAccuracy& options,
                                     const std::function<void(const std::vector<EnsembleSample>& done)>& save = {});
 

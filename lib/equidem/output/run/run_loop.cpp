@@ -23,18 +23,19 @@ Error placed(const Error& error, const RunPlan& plan) {
 
 class RunLoop {
  public:
-  RunLoop(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files)
+  RunLoop(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files, RunResult& result)
       : simulation_(simulation),
         plan_(plan),
         stride_(static_cast<std::int64_t>(
             std::bit_floor(static_cast<std::uint64_t>(std::max<std::int64_t>(1, plan.steps / plan.samples))))),
         frame_times_(plan.frame_interval, plan.time_step),
         probe_times_(plan.probe_interval, plan.time_step),
-        files_(files) {
+        files_(files),
+        result_(result) {
     if (files.folder) open(files);
   }
 
-  RunResult go() {
+  void go() {
     look();
     if (!files_.resume) save();   // a run that is killed before the next one goes on, too
     step_to(simulation_.step());  // what can never go on says so
@@ -49,6 +50,7 @@ class RunLoop {
       const Stopwatch steps;
       step_to(next);
       const double taken = steps.seconds();
+      result_.steps_done = simulation_.step() - first;
       result_.seconds += taken;
       if (taken < 0.5 * look_every && next - now == chunk) chunk *= 2;
       if (taken > look_every && chunk > 1) chunk /= 2;
@@ -67,8 +69,6 @@ class RunLoop {
     }
     save();
     close();
-    result_.steps_done = simulation_.step() - first;
-    return std::move(result_);
   }
 
  private:
@@ -141,6 +141,9 @@ class RunLoop {
     } catch (const Error& error) {
       save();
       fail(error);
+    } catch (...) {
+      close();
+      throw;
     }
   }
 
@@ -235,13 +238,13 @@ class RunLoop {
   std::optional<CheckpointWriter> checkpoint_;
   std::optional<FrameWriter> frames_;
   std::optional<ProbeWriter> history_;
-  RunResult result_;
+  RunResult& result_;
 };
 
 }  // namespace
 
-RunResult run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files) {
-  return RunLoop(simulation, plan, files).go();
+void run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files, RunResult& result) {
+  RunLoop(simulation, plan, files, result).go();
 }
 
 double estimate_seconds(AnySimulation& simulation, const RunPlan& plan) {

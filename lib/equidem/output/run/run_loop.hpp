@@ -70,9 +70,10 @@ struct RunResult {
 /// Perform all steps. Writes frames.pvd, history.csv and run.checkpoint.h5 on their schedules; progress on stderr. A
 /// checkpoint is also written at the start, at an interrupt and when a step fails, and at a milestone another one that
 /// stays. A run that is resumed writes the same files as one that was never stopped, or that was killed at any moment.
+/// \param result as far as the run goes, also where it throws
 /// \throws Error as the writers, the watch, advance() and stop_if_interrupted; (bad_input) where a checkpoint lies past
 ///         the end, or a file that it counts on was altered: then no file is changed
-RunResult run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files);
+void run_through(AnySimulation& simulation, const RunPlan& plan, const RunFiles& files, RunResult& result);
 
 /// Estimate of the wall-clock seconds of all steps, from the first few steps, which are performed.
 /// \throws Error as advance()
