@@ -109,7 +109,8 @@ template <class Law, bool friction, class Others>
         const SlipByOthers by_others = others();
         slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.inverse_mass, normal_force, dt);
       } else {
-        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt);
+        // where bodies of parts begin to touch, their places before are not known
+        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt, (begins ? slip : drift.slip) * dt);
       }
       tangential = slide.force * dt;
       candidate.stretch = slide.stretch;
