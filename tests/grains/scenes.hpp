@@ -133,21 +133,9 @@ inline Bits bits_of(const GrainSimulation& simulation) {
     bits.push_back(static_cast<std::uint64_t>(c.steps) << 8 | static_cast<std::uint64_t>(c.mode));
     add({c.overlap, c.closing, c.normal.x, c.normal.y, c.normal_force, c.tangential_force});
   }
-  for (const BodyContact& c : simulation.body_contacts()) {
-    bits.push_back(static_cast<std::uint64_t>(c.i) << 32 | static_cast<std::uint32_t>(c.j));
-    add({c.arm.x, c.arm.y, c.shift.x, c.shift.y, c.force.x, c.force.y, c.normal_force, c.tangential_force,
-         c.bending_moment});
-  }
-  for (const WallState& w : simulation.walls())
-    add({w.place.x, w.place.y, w.velocity.x, w.velocity.y, w.force.x, w.force.y, w.moment, w.impulse.x, w.impulse.y,
-         w.work});
-  for (const ServoReport& s : simulation.servos())
-    add({s.wanted, s.force, s.max_speed, s.overshoot, s.peak, s.mean_error});
-  if (const auto c = simulation.cell())
-    add({c->width, c->height, c->shift, c->strain.xx, c->strain.yy, c->strain.xy, c->stress.xx, c->stress.xy,
-         c->stress.yx, c->stress.yy, c->coordination_number});
-  const EnergyLedger ledger = simulation.energy();
-  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) add({ledger.*term.value});
+  const EnergyLedger l = simulation.energy();
+  add({l.kinetic, l.elastic_normal, l.elastic_tangential, l.potential, l.lost_restitution, l.lost_dashpot, l.lost_slip,
+       l.lost_tangential_dashpot, l.lost_release, l.work_of_walls, l.initial, l.elastic_bond, l.lost_bond});
   return {std::move(bits)};
 }
 
