@@ -108,15 +108,16 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
 }
 
 /// Mean of the slip at both ends of the drift. At its start the distance was q times the present one, what the
-/// velocities of the centres give 1/q, and what the rims give q times theirs. 1/q by a third-order step of Newton's
-/// kind from its expansion: to the eighth order, without a root or quotient.
+/// velocities of the centres give 1/q, and what the rims give q times theirs. 1/q by a step of Newton's from its
+/// expansion: to the sixth order, without a root or quotient.
+/// \param mean_closing q = 1 + mean_closing dt/distance, but for the third order
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const Lanes& rims, double dt) {
-  const Lanes opened = dt * geometry.inverse * geometry.opening, turned = dt * geometry.inverse * geometry.along;
-  const Lanes square = (1 - opened) * (1 - opened) + turned * turned;
-  const Lanes near = 1 + opened * (1 + opened) - 0.5 * turned * turned, rest = 1 - square * near * near;
-  const Lanes inverse = near * (1 + rest * (0.5 + 0.375 * rest));
-  return 0.5 * ((geometry.along - rims) + (geometry.along - rims * square) * inverse);
+EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const Lanes& rims, const Lanes& now,
+                                         const Lanes& mean_closing, double dt) {
+  const Lanes part = dt * geometry.inverse, opened = part * geometry.opening, closed = part * mean_closing;
+  const Lanes square = 1 + (closed + closed + opened * opened), near = 1 - closed * (1 - closed);
+  const Lanes inverse = near * (1.5 - 0.5 * (square * near * near));
+  return 0.5 * (now + (geometry.along - rims * square) * inverse);
 }
 
 /// The levers of the contacts, for count_instants().
@@ -201,7 +202,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
       const Lanes rims = share * geometry.rims;
       const Lanes now = geometry.along - rims;
       velocity = kind.rigid ? 2 * velocity - now : now;
-      mean_slip = mean_slip_of(geometry, rims, dt);
+      mean_slip = mean_slip_of(geometry, rims, now, mean_closing, dt);
       if (!kind.rigid && changes) [[unlikely]]
         stretch += only(begun, (velocity - mean_slip) * dt);  // as of parts, whose places before are not known
       if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
