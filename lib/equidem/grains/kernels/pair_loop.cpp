@@ -203,8 +203,8 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
       const Lanes now = geometry.along - rims;
       velocity = kind.rigid ? 2 * velocity - now : now;
       mean_slip = mean_slip_of(geometry, rims, now, mean_closing, dt);
-      if (!kind.rigid && changes) [[unlikely]]
-        stretch += only(begun, (velocity - mean_slip) * dt);  // as of parts, whose places before are not known
+      if (!kind.rigid && (changes || numbers.now == 0)) [[unlikely]]  // as of parts, whose places before are not known
+        stretch += only(numbers.now == 0 ? touch : begun, (velocity - mean_slip) * dt);
       if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
