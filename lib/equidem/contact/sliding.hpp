@@ -57,18 +57,22 @@ inline double yield_of(const Sliding& law, double normal_force) {
 
 /// \param resistance of spring and dashpot
 /// \param velocity mean over the step
-inline SlidingStep stick_through(const Sliding& law, double stretch, double resistance, double velocity, double step) {
+/// \param way slip in the step, m
+inline SlidingStep stick_through(const Sliding& law, double stretch, double resistance, double velocity, double step,
+                                 double way) {
   return {.force = -resistance,
-          .stretch = law.stiffness > 0 ? stretch + velocity * step : 0,
+          .stretch = law.stiffness > 0 ? stretch + way : 0,
           .dashpot_loss = law.dashpot * velocity * velocity * step};
 }
 
 /// \param friction mu N, with the sign of the force that passed it
 /// \param velocity mean over the step under that friction
-inline SlidingStep slide_through(const Sliding& law, double stretch, double friction, double velocity, double step) {
+/// \param way slip in the step, m
+inline SlidingStep slide_through(const Sliding& law, double stretch, double friction, double velocity, double step,
+                                 double way) {
   // Held at what friction carries, but never carried further than the bodies moved: so work - energy stored >= 0.
   const double largest = law.stiffness > 0 ? std::abs(friction) / law.stiffness : 0;
-  const double end = std::clamp(stretch + velocity * step, -largest, largest);
+  const double end = std::clamp(stretch + way, -largest, largest);
   const double released = law.stiffness * (stretch - end) * (stretch + end) / 2;
   const double dashpot = law.cap == FrictionCap::spring_alone ? law.dashpot * velocity : 0;
   return {.force = -(friction + dashpot),
@@ -82,16 +86,22 @@ inline SlidingStep slide_through(const Sliding& law, double stretch, double fric
 /// (2.9)-(2.16)). The work of a spring that sticks exceeds the energy it stores by kT (v dt)²/2: the error of the
 /// integrator, counted nowhere. kT = c = 0: mu N even if that reverses the slip within the step; use the midpoint rule.
 /// The losses are those at the velocity given.
-inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
+/// \param way of the spring, m: in Verlet schemes that of the drift, in which the normal turns. By the
+///        velocity at its end the energy of the spring would differ from the work on it by the first order of the step.
+inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step,
+                                double way) {
   const double yield = yield_of(law, normal_force);
   if (is_rigid(law)) {
     const double friction = velocity == 0 ? 0 : std::copysign(yield, velocity);
-    return slide_through(law, 0, friction, velocity, step);
+    return slide_through(law, 0, friction, velocity, step, way);
   }
-  const double spring = law.stiffness * (stretch + velocity * step), dashpot = law.dashpot * velocity;
+  const double spring = law.stiffness * (stretch + way), dashpot = law.dashpot * velocity;
   const double capped = law.cap == FrictionCap::whole_force ? spring + dashpot : spring;
-  if (std::abs(capped) <= yield) return stick_through(law, stretch, spring + dashpot, velocity, step);
-  return slide_through(law, stretch, std::copysign(yield, capped), velocity, step);
+  if (std::abs(capped) <= yield) return stick_through(law, stretch, spring + dashpot, velocity, step, way);
+  return slide_through(law, stretch, std::copysign(yield, capped), velocity, step, way);
+}
+inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
+  return sliding_step(law, stretch, velocity, normal_force, step, velocity * step);
 }
 
 /// Midpoint rule: force, stretch and velocity consistent over the step, so that sticking keeps energy and sliding only
@@ -106,7 +116,7 @@ inline SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, dou
   const double mobility = 0.5 * step * inverse_mass;  // mean velocity per mean force
   if (is_rigid(law)) {
     const double friction = std::clamp(velocity / (2 * mobility), -yield, yield);
-    return slide_through(law, 0, friction, velocity - mobility * friction, step);
+    return slide_through(law, 0, friction, velocity - mobility * friction, step, 0);
   }
   // Sticking: spring and dashpot resist with kT (stretch + mean dt/2) + c mean, and mean = velocity - mobility * that.
   const double rate = law.stiffness * step / 2 + law.dashpot, share = 1 + mobility * rate;
@@ -114,10 +124,10 @@ inline SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, dou
   const double resistance = (law.stiffness * stretch + rate * velocity) / share;
   const bool whole = law.cap == FrictionCap::whole_force;
   const double capped = whole ? resistance : resistance - law.dashpot * mean;
-  if (std::abs(capped) <= yield) return stick_through(law, stretch, resistance, mean, step);
+  if (std::abs(capped) <= yield) return stick_through(law, stretch, resistance, mean, step, mean * step);
   const double friction = std::copysign(yield, capped);
   const double slipping = (velocity - mobility * friction) / (whole ? 1 : 1 + mobility * law.dashpot);
-  return slide_through(law, stretch, friction, slipping, step);
+  return slide_through(law, stretch, friction, slipping, step, slipping * step);
 }
 
 }  // namespace equidem

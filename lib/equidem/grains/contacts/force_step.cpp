@@ -84,8 +84,7 @@ TouchPlace place_of(const ContactGeometry& geometry, bool wall) {
           wall ? Vec2{} : -geometry.lever_j * geometry.normal};
 }
 
-/// The normal turns in a drift, and levers change: to the first order, as in the loop over near pairs; with walls the
-/// normal is known.
+/// The normal turns in a drift, and levers change: as in the loop over near pairs; with walls the normal is known.
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
   const double dt = system.dt();
   const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(candidate.i)];
@@ -100,9 +99,10 @@ ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, con
   const Vec2 relative = other.velocity - motion.velocity;
   const double along = dot(relative, perpendicular(geometry.normal)), closing = -dot(relative, geometry.normal);
   const double rims = motion.spin * geometry.lever_i + other.spin * geometry.lever_j;
-  const double half = 0.5 * dt / (geometry.lever_i + geometry.lever_j);
-  const double mean = closing + half * along * along;
-  return {mean, along - rims - half * closing * (along + rims), geometry.overlap - mean * dt};
+  const double part = dt / (geometry.lever_i + geometry.lever_j);
+  const double mean = closing + 0.5 * part * along * along;
+  const double before = std::hypot(1 + part * closing, part * along);  // distance, in the present one
+  return {mean, 0.5 * (along - rims + along / before - rims * before), geometry.overlap - mean * dt};
 }
 
 template <class Law, bool friction>

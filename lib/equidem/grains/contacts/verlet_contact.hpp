@@ -109,7 +109,9 @@ template <class Law, bool friction, class Others>
         const SlipByOthers by_others = others();
         slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.inverse_mass, normal_force, dt);
       } else {
-        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt);
+        // where bodies of parts begin to touch, or a simulation, no place before is known
+        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt,
+                             (candidate.steps > 0 ? drift.slip : slip) * dt);
       }
       tangential = slide.force * dt;
       candidate.stretch = slide.stretch;

@@ -107,6 +107,19 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
   }
 }
 
+/// Mean of the slip at both ends of the drift. At its start the distance was q times the present one, what the
+/// velocities of the centres give 1/q, and what the rims give q times theirs. 1/q by a step of Newton's from its
+/// expansion: to the sixth order, without a root or quotient.
+/// \param mean_closing q = 1 + mean_closing dt/distance, but for the third order
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const Lanes& rims, const Lanes& now,
+                                         const Lanes& mean_closing, double dt) {
+  const Lanes part = dt * geometry.inverse, opened = part * geometry.opening, closed = part * mean_closing;
+  const Lanes square = 1 + (closed + closed + opened * opened), near = 1 - closed * (1 - closed);
+  const Lanes inverse = near * (1.5 - 0.5 * (square * near * near));
+  return 0.5 * (now + (geometry.along - rims * square) * inverse);
+}
+
 /// The levers of the contacts, for count_instants().
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE void add_levers(const GrainSystem& system, const PairGroup& group,
@@ -189,7 +202,9 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
       const Lanes rims = share * geometry.rims;
       const Lanes now = geometry.along - rims;
       velocity = kind.rigid ? 2 * velocity - now : now;
-      mean_slip = now + ((0.5 * dt) * opening * geometry.inverse) * (geometry.along + rims);
+      mean_slip = mean_slip_of(geometry, rims, now, mean_closing, dt);
+      if (!kind.rigid && (changes || numbers.now == 0)) [[unlikely]]  // as of parts, whose places before are not known
+        stretch += only(numbers.now == 0 ? touch : begun, (velocity - mean_slip) * dt);
       if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;
         const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);

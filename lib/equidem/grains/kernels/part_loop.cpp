@@ -150,7 +150,8 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     Lanes velocity, mobility{};
     if constexpr (kind.verlet) {
       velocity = dot(s.velocity, t) + (s.spin_j * along_j - s.spin_i * along_i);
-      mean_slip = choose(begun, velocity, slip_of(s, normal_before, arm_i_before, arm_j_before));
+      const Bits<Lanes> first = numbers.now == 0 ? touch : begun;  // no place before is known
+      mean_slip = choose(first, velocity, slip_of(s, normal_before, arm_i_before, arm_j_before));
       mean_slip = choose(ended, mean_slip, 0.5 * (velocity + mean_slip));
       if (changes && numbers.corrected) [[unlikely]] {
         const Lanes way = mean_closing * dt;

@@ -40,7 +40,7 @@ struct Tangent {
 /// \tparam equal the dashpot is inactive while contacts slide, and all have a spring
 /// \param dashpot times dt, kg
 /// \param velocity slip at the start of the step; midpoint rule: with half the change by other forces
-/// \param mean_slip Verlet schemes: mean over the drift before, to count losses
+/// \param mean_slip Verlet schemes: mean over the drift before, which stretches the spring
 /// \param mobility midpoint rule: mean velocity per impulse, 1/kg
 /// \param before Verlet schemes: impulse on j in the last step
 /// \param yield largest impulse of friction
@@ -54,7 +54,7 @@ EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const LawLanes<Lanes>& law, const Lan
     const Lanes rate = law.rate + dashpot;
     resistance = (law.spring * stretch + rate * velocity) * (1 / (1 + mobility * rate));
   } else {
-    resistance = law.spring * (stretch + velocity * dt) + dashpot * velocity;
+    resistance = law.spring * (stretch + mean_slip * dt) + dashpot * velocity;
   }
   Lanes capped = resistance;
   if constexpr (!equal) {
@@ -72,7 +72,7 @@ EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const LawLanes<Lanes>& law, const Lan
     drag = only(slides, law.beyond_cap * dashpot * mean);
     impulse += drag;
   }
-  const Lanes moved = stretch + mean * dt;
+  const Lanes moved = stretch + (verlet ? mean_slip : mean) * dt;
   Lanes end = choose(slides, within(moved, yield * law.slack), moved);
   if constexpr (!equal) end = only(negative(Lanes{} - law.spring), end);
   const Lanes released = law.half_spring * (stretch - end) * (stretch + end);
