@@ -77,7 +77,7 @@ class CellTest(RunTest):
         for servo in cell["servos"]:
             self.assertEqual(servo["stress"], cell[f"stress_{servo['component']}"])
             self.assertTrue(servo["reached"] or servo["wanted"] != 0)
-            # whether a sample without lateral stress reaches the other one, hangs on single contacts
+            # whether a sample without lateral stress reaches the other one, depends on single contacts
             for key in ("overshoot", "mean_error") if servo["reached"] else ():
                 self.assertEqual(servo[key] is None, servo["wanted"] == 0, (servo, key))
 

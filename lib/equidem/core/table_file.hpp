@@ -86,7 +86,7 @@ class TableFile {
   /// \throws Error (bad_input) as read_file; a text of UTF-16
   TableFile(const std::filesystem::path& path, Names needed);
   /// \param text must outlive the object
-  /// \param name of the file for messages; empty: its lines alone are told
+  /// \param name of the file for messages; empty: messages give lines alone
   TableFile(std::string_view text, std::string name, Names needed, const OfComment& of_comment = {});
   ~TableFile() = default;
   TableFile(const TableFile&) = delete;  // cells refer to the content
