@@ -58,7 +58,7 @@ class Sukegawa2010(ProgramTest):
         self.assertLess(len(page), 2_000_000)
         report = (out / "report.txt").read_text(encoding="utf-8")
         for words in ("0.213", "0.139", "1.85 s follows from neither", "(7.2) as printed", "8.5.2", "NOT DECIDED",
-                      "rejection, growth, gravity", "would be pressed into"):
+                      "rejection, growth, gravity", "as printed: step "):
             self.assertIn(words, report)
         with open(out / "runs.csv", newline="", encoding="utf-8") as file:
             self.assertEqual([row["run"] for row in csv.DictReader(file)], list(runs))
