@@ -124,7 +124,14 @@ TEST_CASE("a_box_filled_past_its_volume_balances_or_is_refused") {
     const double down = 4 - area / 1.05 / 4;
     scene.walls[3].move_y = {Schedule::Kind::ramp, -down, 0, 20};
     GrainSimulation simulation(scene, verlet(5e-4));
-    const Balance balance = keep(simulation, 80000);
+    Balance balance;
+    const Answer pressed = attempt([&] { balance = keep(simulation, 80000); });
+    // A clump has a disc of a quarter of the circle's radius, which the lid may pass: where bodies go is chaotic.
+    if (kind == BodyKind::clump && !pressed.refusal.message.empty()) {
+      table.refused("pressed to 1.05 times its area, " + name_of(kind), pressed, {"grain", "Use stiffer contacts"});
+      continue;
+    }
+    REQUIRE(pressed.refusal.message.empty());
     const double lack = lack_of_balance(simulation, scene);
     double overlap = 0, off = 0, least = std::numeric_limits<double>::infinity();
     for (const GrainContact& c : simulation.contacts()) {
