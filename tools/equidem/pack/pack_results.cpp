@@ -216,7 +216,9 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   if (packing.size() < options.radii.size()) {
     out.line("packed", fmt::format("{} of {}", packing.size(), options.radii.size()));
   } else if (options.method == PackingMethod::growth && !packing.complete) {
-    out.line("packed", fmt::format("all radii scaled by {:.6g}", packing.radii[0] / options.radii[0]));
+    const auto [smallest, largest] = std::ranges::minmax(packing.radii);
+    out.line("packed", fmt::format("all radii scaled by {:.6g}: {:.6g} to {:.6g} m",
+                                   packing.radii[0] / options.radii[0], smallest, largest));
   }
   const Region& region = measures.region;
   out.line("solid fraction")
