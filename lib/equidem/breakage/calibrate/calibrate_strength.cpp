@@ -144,12 +144,13 @@ const Tried& Search::at(double value) {
 void Search::refuse() const {
   const auto by_ratio = [](const Tried& a, const Tried& b) { return a.ratio < b.ratio; };
   const auto [least, most] = std::minmax_element(tried_.begin(), tried_.end(), by_ratio);
+  const auto& nearest = target_ < least->ratio ? *least : *most;
   const auto give_up = [&](const std::string& why, const std::string& remedy) {
     const std::string of =
         wanted_.compressive ? "compressive over tensile strength" : "toughness over tensile strength";
     const Error error(ErrorKind::computation_failed,
                       fmt::format("{} of {:.4g}{} is not feasible with this sample", of, target_, unit()), why, remedy);
-    throw InfeasibleStrengths(error, result(target_ < least->ratio ? *least : *most));
+    throw InfeasibleStrengths(error, result(nearest));
   };
   const std::string what = finds_friction() ? "friction" : "f_s/f_t";
   if (!std::isfinite(least->ratio))

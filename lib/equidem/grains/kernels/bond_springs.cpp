@@ -109,13 +109,13 @@ template <bool strengths, bool cell>
 PackedBonds::Loop loop_of(BondSprings springs) {
   switch (springs) {
     case BondSprings::along:
-      return loop_of<{BondSprings::along, strengths, cell}>();
+      return loop_of<SpringKind{BondSprings::along, strengths, cell}>();
     case BondSprings::across:
-      return loop_of<{BondSprings::across, strengths, cell}>();
+      return loop_of<SpringKind{BondSprings::across, strengths, cell}>();
     case BondSprings::bending:
       break;
   }
-  return loop_of<{BondSprings::bending, strengths, cell}>();
+  return loop_of<SpringKind{BondSprings::bending, strengths, cell}>();
 }
 
 }  // namespace
