@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 
 #include "equidem/assembly/sites.hpp"
@@ -49,12 +50,10 @@ class Grid {
     }
     width_ = (high_.x - low_.x) / static_cast<double>(columns_);
     height_ = (high_.y - low_.y) / static_cast<double>(rows_);
-    reach_x_ = width_ > 0 ? static_cast<std::int64_t>(std::ceil(reach / width_)) : 0;
-    reach_y_ = height_ > 0 ? static_cast<std::int64_t>(std::ceil(reach / height_)) : 0;
-    if (!assembly.period) {
-      reach_x_ = std::min<std::int64_t>(reach_x_, 1);
-      reach_y_ = std::min<std::int64_t>(reach_y_, 1);
-    }
+    // A free sample may be as flat as one likes: its discs lie in neighbouring squares at most.
+    const double farthest = assembly.period ? std::numeric_limits<std::int32_t>::max() : 1;
+    reach_x_ = width_ > 0 ? static_cast<std::int64_t>(std::min(std::ceil(reach / width_), farthest)) : 0;
+    reach_y_ = height_ > 0 ? static_cast<std::int64_t>(std::min(std::ceil(reach / height_), farthest)) : 0;
     sort_discs();
   }
 
