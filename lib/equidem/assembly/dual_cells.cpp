@@ -64,7 +64,7 @@ class DualGeometry {
     if (before(at_b, b, at_c, c)) return ab + radical_centre(b, c, a, bc, -ab);
     return radical_centre(c, a, b, ca, -bc) - ca;
   }
-  /// The same from p, with the branches u and v from there to q and r.
+  /// Centre of equal power of three discs, from p, with the branches u and v from there to q and r.
   [[nodiscard]] Vec2 radical_centre(std::int32_t p, std::int32_t q, std::int32_t r, Vec2 u, Vec2 v) const {
     const double wp = sites_.weight(p), uu = squared(u), vv = squared(v);
     const double to_q = 0.5 * (uu + (wp - sites_.weight(q))), to_r = 0.5 * (vv + (wp - sites_.weight(r)));

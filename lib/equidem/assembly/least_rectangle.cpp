@@ -134,7 +134,7 @@ double reach_of_all(const Discs& discs, const Hull& hull, Vec2 along) {
   return furthest;
 }
 
-/// Of the four directions at right angles the one turned least from x.
+/// Turns n by right angles to the direction that is nearest to x. \pre finite
 Vec2 folded(Vec2 n) {
   while (!(n.x >= std::abs(n.y))) n = perpendicular(n);
   return n.y == -n.x ? perpendicular(n) : n;
@@ -162,15 +162,15 @@ struct Candidate {
   double area = 0;
   double off_middle = 0;  ///< m, of the mean of the centres
 
-  /// Of a place from the nearest side, m.
+  /// Distance of a place from the nearest side, m.
   [[nodiscard]] double depth(Vec2 place) const {
     const Vec2 x = {dot(along, place), cross(along, place)};
     return std::min({x.x - low.x, x.y - low.y, high.x - x.x, high.y - x.y});
   }
 };
 
-/// Of rectangles of equal area: those with the mean of the centres nearest to the middle, then those to whose sides the
-/// first disc, the second, ... lie nearest.
+/// Decides between rectangles of equal area: by the distance of the mean of the centres from the middle, then by the
+/// distances of the first disc, the second, ... from the nearest side.
 Vec2 chosen_direction(const Discs& discs, std::vector<Candidate> equal) {
   const double close = 1e-9 * std::sqrt(equal.front().area);
   const auto keep_least = [&](const auto& value) {

@@ -28,7 +28,7 @@ struct PowerCells {
   bool collinear = false;                  ///< all centres lie on one line
 };
 
-/// What the cells of a free assembly fill: its box, else the rectangle of least area that holds all discs
+/// The region that the cells of a free assembly fill: its box, else the rectangle of least area that holds all discs
 /// (least_rectangle.hpp), which turns with them.
 TurnedRectangle region_of_cells(const Assembly& assembly);
 

@@ -65,7 +65,7 @@ bool is_abandoned(std::string_view name) {
   computation_failed(fmt::format("cannot write '{}'", path.string()), reason, "Make room on its disk");
 }
 
-/// The same for all names of a file.
+/// Device and inode: all names of a file share them.
 using FileIdentity = std::pair<dev_t, ino_t>;
 
 std::optional<FileIdentity> identity_of(const fs::path& path) {

@@ -168,7 +168,8 @@ std::string Search::unit() const {
   return wanted_.compressive ? "" : " sqrt(m)";
 }
 
-/// What moves the range of ratios towards the one wanted, as measured on packings (docs/explanation/breakage.md).
+/// Names changes that move the range of ratios towards the wanted one, as measured on packings
+/// (docs/explanation/breakage.md).
 std::string Search::remedy(const Tried& least, const Tried& most) const {
   if (!wanted_.compressive) {
     // Strength of a contact f, radius r: stresses are f/r, toughnesses f/sqrt(r).

@@ -219,7 +219,7 @@ void UnbondedRun::finish_stage() {
     end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
 }
 
-/// What the bonds that are breaking have given up so far, with their events.
+/// Notes, with the events of the breaking bonds, the energy that these have released so far.
 void UnbondedRun::note_released() {
   for (const std::size_t k : breaking_) {
     events_[k].energy_after = state_->ledger().elastic;
