@@ -5,14 +5,28 @@
     check_architecture.py FOLDER
 
 reads a source tree and prints every broken rule, one per line, as "file:line: what is wrong". Exit code 1 if there is
-one. The order of the rooms is read from lib/CMakeLists.txt.
+one. The order of the rooms is read from lib/CMakeLists.txt; the lines of each room, the order of folders inside rooms,
+short pairs of files and includes that run backwards are listed in tests/architecture/house.toml: these lists may only
+shrink.
+
+    check_architecture.py FOLDER --lines
+
+prints the lines of each room beside its limit and its budget,
+
+    check_architecture.py FOLDER --lower
+
+writes house.toml with what rooms and lists have shrunk to.
 """
 
+import collections
 import fnmatch
 import os
 import re
 import sys
+import tomllib
 
+HOUSE = "tests/architecture/house.toml"
+SHORTEST_PAIR = 100  # lines of a pair NAME.cpp, NAME.hpp: one concept that a reader has
 LONGEST_SOURCE = 800  # lines
 WIDEST_LINE = 120  # characters
 FULLEST_FOLDER = 30  # sources in one folder of lib or tools
@@ -204,6 +218,159 @@ def check_folders(paths):
             yield folder, 1, f"the folder has {files} sources, more than {most}: divide it by what they do"
 
 
+def part_of(path, house):
+    """The entry of [lines] that a source of lib or tools counts in, or None."""
+    if not path.endswith((".cpp", ".hpp")) or not path.startswith(("lib/", "tools/")):
+        return None
+    inside = [part for part in house["lines"] if path.startswith(part + "/")]
+    return max(inside, key=len) if inside else os.path.dirname(path)
+
+
+def check_lines(texts, house):
+    """Rooms do not grow unnoticed."""
+    for part, length in sorted(lines_of(texts, house).items()):
+        most = house["lines"].get(part, 0)
+        if length > most:
+            yield HOUSE, 1, (f"{part} has {length} lines, more than {most}: take lines away, or raise its number in "
+                             "[lines] in the same commit and say why in its message")
+
+
+def lines_of(texts, house):
+    count = collections.Counter()
+    for path, text in texts.items():
+        part = part_of(path, house)
+        if part:
+            count[part] += text.count("\n")
+    return count
+
+
+def is_interface(text):
+    """A header of functions that others implement, or of a template or table that others fill in."""
+    return re.search(r"\)[^;{}]*= 0;", text) is not None
+
+
+def short_pairs(texts):
+    """Pairs of lib and tools below the least length, and their lines; main.cpp and interfaces may be short."""
+    pairs = collections.Counter()
+    for path, text in texts.items():
+        if path.endswith((".cpp", ".hpp")) and path.startswith(("lib/", "tools/")):
+            stem = os.path.splitext(path)[0]
+            pairs[stem] += SHORTEST_PAIR if is_interface(text) or stem.endswith("/main") else text.count("\n")
+    return {stem: length for stem, length in pairs.items() if length < SHORTEST_PAIR}
+
+
+def check_short_pairs(texts, house):
+    short = short_pairs(texts)
+    for stem, length in sorted(short.items()):
+        if stem not in house["short"]:
+            yield stem, 1, (f"the pair has {length} lines, fewer than {SHORTEST_PAIR}: put it where a reader looks for it "
+                            "in a file of its folder")
+    for stem in sorted(set(house["short"]) - set(short)):
+        yield HOUSE, 1, f"{stem} is not short any more, or gone: take it from the list 'short'"
+
+
+def backward_includes(texts, house):
+    """Room: {"folder -> folder": files with an include of that kind} against the order of folders in [folders]."""
+    found = {}
+    for path, text in texts.items():
+        room = room_of(path)
+        if room not in house["folders"]:
+            continue
+        order, here = house["folders"][room], os.path.dirname(path).partition(f"lib/equidem/{room}")[2].strip("/") or "."
+        for header in {header for _, _, header in includes_of(text) if header.startswith(f"equidem/{room}/")}:
+            there = os.path.dirname(header[len(f"equidem/{room}/"):]) or "."
+            if here in order and there in order and order.index(there) > order.index(here):
+                arrow = f"{room}: {here} -> {there}"
+                found.setdefault(arrow, set()).add(path)
+    return found
+
+
+def folders_of(texts):
+    found = {}
+    for path in texts:
+        room = room_of(path)
+        if room and path.endswith((".cpp", ".hpp")):
+            inside = os.path.dirname(path).partition(f"lib/equidem/{room}")[2].strip("/") or "."
+            found.setdefault(room, set()).add(inside)
+    return {room: folders for room, folders in found.items() if len(folders) > 1}
+
+
+def check_order_of_folders(texts, house):
+    for room, folders in sorted(folders_of(texts).items()):
+        for missing in sorted(folders - set(house["folders"].get(room, []))):
+            yield f"lib/equidem/{room}", 1, f"folder '{missing}' has no place in the order of [folders] in {HOUSE}"
+    found = backward_includes(texts, house)
+    for arrow, files in sorted(found.items()):
+        most = house["backward"].get(arrow, 0)
+        if len(files) > most:
+            yield min(files), 1, (f"{arrow} runs backwards in {len(files)} file(s), {most} at most: {', '.join(sorted(files))}")
+    for arrow in sorted(set(house["backward"]) - set(found)):
+        yield HOUSE, 1, f"'{arrow}' runs backwards nowhere any more: take it from [backward]"
+
+
+def house_of(root):
+    empty = {"lines": {}, "budget": {}, "folders": {}, "backward": {}, "short": []}
+    path = os.path.join(root, HOUSE)
+    if not os.path.exists(path):
+        return None
+    with open(path, "rb") as file:
+        return {**empty, **tomllib.load(file)}
+
+
+def check_house(texts, root):
+    house = house_of(root)
+    if house is None:
+        return
+    yield from check_lines(texts, house)
+    yield from check_short_pairs(texts, house)
+    yield from check_order_of_folders(texts, house)
+
+
+def sources_of(root):
+    texts = {}
+    for path in files_of(root):
+        if path.endswith((".cpp", ".hpp")) and path.startswith(("lib/", "tools/")):
+            with open(os.path.join(root, path), encoding="utf-8") as file:
+                texts[path] = file.read()
+    return texts
+
+
+def print_lines(root):
+    texts, house = sources_of(root), house_of(root)
+    count = lines_of(texts, house)
+    files = collections.Counter(part_of(path, house) for path in texts)
+    print(f"{'part':28}{'files':>7}{'lines':>8}{'limit':>8}{'budget':>8}")
+    for part in sorted(set(count) | set(house["lines"]), key=lambda p: -count[p]):
+        print(f"{part:28}{files[part]:7}{count[part]:8}{house['lines'].get(part, 0):8}{house['budget'].get(part, 0):8}")
+    print(f"{'all':28}{len(texts):7}{sum(count.values()):8}{sum(house['lines'].values()):8}{sum(house['budget'].values()):8}")
+
+
+def lower(root):
+    """house.toml with the numbers and lists of today where these are smaller; what grew keeps its old number."""
+    texts, house = sources_of(root), house_of(root)
+    count, short, backward = lines_of(texts, house), short_pairs(texts), backward_includes(texts, house)
+    lines = {part: min(most, count[part]) for part, most in house["lines"].items() if count[part]}
+    folders = {room: [f for f in order if f in folders_of(texts).get(room, ())] for room, order in house["folders"].items()}
+    kept = {"lines": lines, "budget": house["budget"], "folders": {r: f for r, f in folders.items() if len(f) > 1},
+            "backward": {a: min(n, len(backward[a])) for a, n in house["backward"].items() if a in backward},
+            "short": [stem for stem in house["short"] if stem in short]}
+    with open(os.path.join(root, HOUSE), encoding="utf-8") as file:
+        head = "".join(line for line in file if line.startswith("#"))
+    with open(os.path.join(root, HOUSE), "w", encoding="utf-8") as file:
+        file.write(head + "\n" + text_of(kept))
+
+
+def text_of(house):
+    rows = ["short = ["] + [f'  "{stem}",' for stem in sorted(house["short"])] + ["]"]
+    for table in ("lines", "budget", "folders", "backward"):
+        rows += ["", f"[{table}]"] + [f'"{key}" = {json_of(value)}' for key, value in house[table].items()]
+    return "\n".join(rows) + "\n"
+
+
+def json_of(value):
+    return str(value).replace("'", '"')
+
+
 def has_licence(path, text):
     lines = text.splitlines()[:2]
     return any(SPDX in line for line in (lines[:2] if lines and lines[0].startswith("#!") else lines[:1]))
@@ -218,7 +385,7 @@ def violations(root):
     if not rooms:
         yield "lib/CMakeLists.txt", 1, "it lists no rooms in set(EQUIDEM_ROOMS ...)"
         return
-    used, includes, types, paths = {}, {}, {}, list(files_of(root))
+    used, includes, types, sources, paths = {}, {}, {}, {}, list(files_of(root))
     yield from check_folders(paths)
     for path in paths:
         full = os.path.join(root, path)
@@ -231,6 +398,8 @@ def violations(root):
                 text = file.read()
         except UnicodeDecodeError:
             continue
+        if path.startswith(("lib/", "tools/")) and path.endswith((".cpp", ".hpp")):
+            sources[path] = text
         if is_source(path) and not has_licence(path, text):
             yield path, 1, f"the first line is not '{SPDX}'"
         if path.endswith(SOURCES):
@@ -247,11 +416,16 @@ def violations(root):
                 yield path, number, f"the line has {len(line)} characters, more than {WIDEST_LINE}"
             if MACHINE_PATH.search(line) and not line.startswith("#!"):
                 yield path, number, f"a path of one machine: {line.strip()[:100]}"
+    yield from check_house(sources, root)
     for circle in circles(includes):
         yield circle[0], 1, f"headers include one another: {', '.join(circle)}"
 
 
 def main():
+    if sys.argv[2:] == ["--lines"]:
+        return print_lines(sys.argv[1])
+    if sys.argv[2:] == ["--lower"]:
+        return lower(sys.argv[1])
     count = 0
     for path, number, wrong in violations(sys.argv[1]):
         print(f"{path}:{number}: {wrong}")

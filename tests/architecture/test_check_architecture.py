@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from check_architecture import SPDX, violations  # noqa: E402
+from check_architecture import SPDX, text_of, violations  # noqa: E402
 
 LISTS = f"# {SPDX}\nset(EQUIDEM_ROOMS\n  core      # first\n  contact   # needs core (and nothing else)\n  output\n)\n"
 GOOD = {
@@ -121,6 +121,45 @@ class TheCheck(unittest.TestCase):
         files = {f"tools/equidem/file{k}.cpp": "\n" for k in range(30)}
         self.fails_with(files, "tools/equidem:1", "has 31 sources")
         self.assertEqual(violations_of(dict(list(files.items())[:29])), [])
+
+    def house(self, **changes):
+        lines = {"lib/equidem/core": 2, "lib/equidem/contact": 3, "lib/equidem/output": 3, "tools/equidem": 4, **changes.pop("lines", {})}
+        short = ["lib/equidem/core/error", "lib/equidem/core/text", "lib/equidem/contact/spring", "lib/equidem/output/picture"]
+        parts = {"lines": lines, "budget": {}, "folders": {}, "backward": {}, "short": short, **changes}
+        return {"tests/architecture/house.toml": text_of(parts),
+                "lib/equidem/core/error.hpp": f"// {SPDX}\n", "lib/equidem/core/text.hpp": f"// {SPDX}\n"}
+
+    def test_rejects_a_room_that_grows(self):
+        self.assertEqual(violations_of(self.house()), [])
+        self.fails_with(self.house(lines={"lib/equidem/contact": 2}), "lib/equidem/contact has 3 lines, more than 2")
+        self.assertEqual(violations_of(self.house(lines={"lib/equidem/contact": 9})), [])
+        extra = {"tools/new/main.cpp": "int main() {}\n"}
+        self.fails_with({**self.house(), **extra}, "tools/new has 2 lines, more than 0")
+
+    def test_rejects_a_short_pair_that_is_not_listed(self):
+        extra = {"tools/equidem/verb.cpp": "\n" * 59, "tools/equidem/verb.hpp": "\n" * 38}
+        house = self.house(lines={"tools/equidem": 200})
+        self.fails_with({**house, **extra}, "tools/equidem/verb:1", "has 99 lines, fewer than 100")
+        self.assertEqual(violations_of({**house, **extra, "tools/equidem/verb.hpp": "\n" * 39}), [])
+        interface = {"tools/equidem/verb.hpp": "struct Verb {\n  virtual void run() = 0;\n};\n"}
+        self.assertEqual(violations_of({**house, **interface}), [])
+        self.fails_with({**house, "lib/equidem/core/error.cpp": "\n" * 100,
+                         **self.house(lines={"lib/equidem/core": 200})}, "core/error is not short any more")
+
+    def test_rejects_a_backward_include_between_folders_of_a_room(self):
+        wide = "\n" * 100
+        below = {"lib/equidem/core/files/a.hpp": wide, "lib/equidem/core/b.cpp": '#include "equidem/core/files/a.hpp"\n' + wide}
+        lines = {"lib/equidem/core": 400}
+        wrong = violations_of({**self.house(lines=lines), **below})
+        self.assertEqual(len(wrong), 2, wrong)  # the room itself and its folder have no place
+        self.assertIn("has no place in the order", wrong[0])
+        order = {"folders": {"core": ["files", "."]}}
+        self.assertEqual(violations_of({**self.house(lines=lines, **order), **below}), [])
+        back = {"folders": {"core": [".", "files"]}}
+        self.fails_with({**self.house(lines=lines, **back), **below}, "core/b.cpp:1: core: . -> files runs backwards in 1 file(s)")
+        allowed = {**back, "backward": {"core: . -> files": 1}}
+        self.assertEqual(violations_of({**self.house(lines=lines, **allowed), **below}), [])
+        self.fails_with(self.house(backward={"core: . -> files": 1}), "runs backwards nowhere any more")
 
     def test_rejects_a_huge_figure(self):
         self.fails_with({"data/a/figure.svg": "<svg>" + " " * 300_000}, "data/a/figure.svg:1", "keep its PNG alone")
