@@ -93,6 +93,27 @@ TEST_CASE("a_dump_and_a_data_file_of_lammps_are_the_same_periodic_packing") {
   CHECK(dump.solid_fraction() == Approx(36 * 3.14159265 * (0.0056 * 0.0056 + 0.0048 * 0.0048) / 2 / 0.0036));
 }
 
+TEST_CASE("a_sample_in_another_plane_is_the_same_as_in_the_plane_x_y") {
+  const std::string dump = read_file(packing("packing.dump"));
+  const Assembly flat = read_packing(dump, {.frame = 0});
+  // bounds of y are as those of x, so that exchanging two lines exchanges two axes
+  const std::string x = "0.0000000000000000e+00 5.9999999999999998e-02\n",
+                    z = "-5.0000000000000001e-03 5.0000000000000001e-03\n";
+  const std::string along_xz = replaced(replaced(dump, x + x + z, x + z + x), "x y z radius", "x z y radius");
+  const std::string along_yz = replaced(replaced(dump, x + x + z, z + x + x), "x y z radius", "y z x radius");
+  for (const auto& [text, plane] : {std::pair(along_xz, SamplePlane::xz), std::pair(along_yz, SamplePlane::yz)}) {
+    CAPTURE(to_string(plane));
+    const Assembly turned = read_packing(text, {.frame = 0, .plane = plane});
+    CHECK(turned.centres == flat.centres);
+    CHECK(turned.radii == flat.radii);
+    CHECK(turned.period == flat.period);
+    CHECK(pairs_of(turned) == pairs_of(flat));
+    const SamplePlane other = plane == SamplePlane::xz ? SamplePlane::yz : SamplePlane::xz;
+    check_words(refused_packing(text, {.frame = 0}), {"plane " + to_string(plane), "assembly.plane"});
+    check_words(refused_packing(text, {.frame = 0, .plane = other}), {"does not lie in the plane " + to_string(other)});
+  }
+}
+
 TEST_CASE("contacts_that_lammps_lists_are_those_of_discs_that_touch") {
   const Assembly found = read_assembly(packing("packing.dump"));
   const Assembly listed = read_assembly(packing("packing.dump"), {.contacts = packing("contacts.dump")});
@@ -250,7 +271,7 @@ TEST_CASE("bad_files_of_other_programs_are_refused_in_one_sentence") {
       {"x y r\n0 0 1\n2 0 -1\n", {"line 3", "radius is -1"}},
       {"id x y r\n4 0 0 1\n4 2 0 1\n", {"line 3", "particle 4 is there twice", "line 2"}},
       {"x y z r\n0 0 0 1\n2 0.5 1.5 1\n", {"line 3", "three-dimensional", "0 to 1.5"}},
-      {"x y z r\n0 0 0 1\n2 0 1.5 1\n", {"line 3", "plane x-z", "0 to 1.5", "Exchange the columns y and z"}},
+      {"x y z r\n0 0 0 1\n2 0 1.5 1\n", {"line 3", "plane x-z", "0 to 1.5", "assembly.plane = \"x-z\""}},
       {"id x y r\n7 0 0 1\n8 2 0 1\n9 3e-9 0 1\n", {"line 4", "particles 7 and 9 lie in one place", "line 2"}},
       {"id x y r\n7 0 0 1\n8 2 0 1\n9 0 0 1\n", {"line 4", "particles 7 and 9 lie in one place", "line 2"}},
       // boxes

@@ -135,6 +135,33 @@ TEST_CASE("sides_of_a_free_lattice_are_its_outer_discs") {
   CHECK(group(assembly, "bottom_left").discs[0] == 0);
 }
 
+TEST_CASE("a_lattice_is_one_whatever_it_is_read_from_and_no_other_assembly_is") {
+  const bool hexagonal = GENERATE(true, false), periodic = GENERATE(true, false);
+  Assembly assembly = lattice(hexagonal, {.columns = 5, .rows = 6, .radius = 0.02, .periodic = periodic});
+  const std::string name = assembly.kind;
+  CAPTURE(name, periodic);
+  assembly.kind = "file";
+  REQUIRE(lattice_of(assembly) != nullptr);
+  CHECK(lattice_of(assembly)->name == name);
+
+  Assembly other = assembly;
+  other.centres[7].x += 1e-7 * other.radii[7];
+  CHECK(lattice_of(other) == nullptr);
+  other = assembly;
+  other.radii[3] *= 1 - 1e-7;
+  CHECK(lattice_of(other) == nullptr);
+  other = assembly;
+  std::swap(other.centres[7], other.centres[8]);
+  CHECK(lattice_of(other) == nullptr);
+  other = assembly;
+  other.centres.pop_back(), other.radii.pop_back();
+  CHECK(lattice_of(other) == nullptr);
+  CHECK(lattice_of(Assembly{}) == nullptr);
+  if (periodic) other = assembly, other.period->x *= 1.1;
+  if (!periodic) other = assembly, other.groups["left"].discs.pop_back();
+  CHECK(lattice_of(other) == nullptr);
+}
+
 TEST_CASE("lattices_refuse_what_makes_no_lattice") {
   CHECK_THROWS_WITH(hexagonal_lattice({.columns = 0}),
                     "columns = 0 (a row of a lattice has at least one disc). Ask for 1 or more.");

@@ -190,7 +190,7 @@ Problem problem_of(Case resolved, Purpose purpose) {
   StageTimes times;
   Stopwatch watch;
   Assembly assembly = assembly_of(resolved);
-  if (resolved.assembly.kind == AssemblyKind::file) resolved.assembly.arrangement = find_lattice(assembly.kind);
+  if (resolved.assembly.kind == AssemblyKind::file) resolved.assembly.arrangement = lattice_of(assembly);
   times.add("assembly", watch.lap());
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());

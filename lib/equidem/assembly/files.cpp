@@ -331,11 +331,10 @@ namespace {
 
 /// Files of this program say all that a case could say of others.
 void refuse_foreign_options(const AssemblyFileOptions& options) {
-  const std::pair<bool, const char*> foreign[] = {{!options.unit_of_length.empty(), "unit_of_length"},
-                                                  {options.frame.has_value(), "frame"},
-                                                  {options.contacts.has_value(), "contacts"},
-                                                  {options.periodic_box.has_value(), "periodic_box"},
-                                                  {options.period.has_value(), "period"}};
+  const std::pair<bool, const char*> foreign[] = {
+      {!options.unit_of_length.empty(), "unit_of_length"}, {options.frame.has_value(), "frame"},
+      {options.plane != SamplePlane::xy, "plane"},         {options.contacts.has_value(), "contacts"},
+      {options.periodic_box.has_value(), "periodic_box"},  {options.period.has_value(), "period"}};
   for (const auto& [given, name] : foreign) {
     if (given)
       bad_input(fmt::format("assembly.{} is given, and the file is an assembly file", name),

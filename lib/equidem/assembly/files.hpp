@@ -26,12 +26,23 @@ struct EnumNames<AssemblyFormat> {
 /// "assembly.json" or "assembly.h5".
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format);
 
+/// The plane that the sample of another program lies in; the second axis becomes y, the upward one.
+enum class SamplePlane { xy, xz, yz };
+
+template <>
+struct EnumNames<SamplePlane> {
+  static constexpr const char* what = "plane of a sample";
+  static constexpr NamedValue<SamplePlane> list[] = {
+      {SamplePlane::xy, "x-y"}, {SamplePlane::xz, "x-z"}, {SamplePlane::yz, "y-z"}};
+};
+
 /// Settings for what a file does not say. All but the gap tolerance are for files of other programs.
 struct AssemblyFileOptions {
   double gap_tolerance = 0;  ///< largest gap that is bonded, of the sum of the radii, without contacts in the file
   std::string unit_of_length = {};                     ///< "mm", "2.5 mm"; empty: the file says it
   std::optional<std::int64_t> frame = {};              ///< time step in a LAMMPS dump; none: its last
-  std::optional<std::filesystem::path> contacts = {};  ///< table of contacts
+  std::optional<std::filesystem::path> contacts = {};  ///< table of contacts, in the plane of the sample
+  SamplePlane plane = SamplePlane::xy;                 ///< of the columns, or the LAMMPS file
   std::optional<bool> periodic_box = {};               ///< whether the box of a LAMMPS file is the periodic cell
   std::optional<Vec2> period = {};                     ///< m, the cell where the file has no box; none: free
 };

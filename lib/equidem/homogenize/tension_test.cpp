@@ -218,7 +218,7 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
               "Give the assembly contacts");
   }
   TensionSetup setup = tension_loads(test, total_length(side(assembly, "left")), total_length(side(assembly, "right")));
-  const Lattice* lattice = find_lattice(assembly.kind);
+  const Lattice* lattice = lattice_of(assembly);
   if (lattice != nullptr && lattice->alignment != RowAlignment::irregular) {
     LatticeGauges(assembly, lattice->alignment, test.gauge).place(setup);
     return setup;

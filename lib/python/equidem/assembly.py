@@ -212,7 +212,7 @@ class Assembly:
 
 def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_length: str = "",
          frame: int | None = None, contacts: str | os.PathLike[str] | None = None, periodic_box: bool | None = None,
-         period: tuple[float, float] | None = None) -> Assembly:
+         period: tuple[float, float] | None = None, plane: str = "x-y") -> Assembly:
     """Read an assembly file, JSON or HDF5, or a packing of another program: a LAMMPS data file or dump, a text export
     of YADE, a table with the columns x, y and radius or diameter.
 
@@ -230,10 +230,12 @@ def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_le
         Whether the box of a LAMMPS file is the periodic cell; default: as its flags say.
     period : (float, float), optional
         Width and height in m of the periodic cell of such a file without a box.
+    plane : str
+        Plane that such a sample lies in: "x-y", "x-z" or "y-z"; its second axis is read as y.
     """
     tolerance = share("gap_tolerance", gap_tolerance)
     return Assembly._of(_core.read_assembly(os.fspath(path), tolerance, unit_of_length, frame,
-                                            None if contacts is None else os.fspath(contacts), periodic_box, period))
+                                            None if contacts is None else os.fspath(contacts), periodic_box, period, plane))
 
 
 def assembly(**keys: Any) -> Assembly:

@@ -160,12 +160,14 @@ void bind_assembly(py::module_& module) {
   });
   module.def("read_assembly", [](const std::filesystem::path& path, double gap_tolerance, std::string unit_of_length,
                                  std::optional<std::int64_t> frame, std::optional<std::filesystem::path> contacts,
-                                 std::optional<bool> periodic_box, std::optional<std::pair<double, double>> period) {
+                                 std::optional<bool> periodic_box, std::optional<std::pair<double, double>> period,
+                                 const std::string& plane) {
     const AssemblyFileOptions options{
         .gap_tolerance = gap_tolerance,
         .unit_of_length = std::move(unit_of_length),
         .frame = frame,
         .contacts = std::move(contacts),
+        .plane = enum_from<SamplePlane>(plane),
         .periodic_box = periodic_box,
         .period = period ? std::optional(Vec2{period->first, period->second}) : std::nullopt};
     return without_lock([&] { return shared(read_assembly(path, options)); });

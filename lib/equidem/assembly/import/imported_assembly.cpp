@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "equidem/assembly/files/file_keys.hpp"
@@ -21,6 +22,24 @@ using Particle = ParticleRows::Particle;
 
 std::string at_line(int line) {
   return fmt::format("line {}", line);
+}
+
+/// The plane of the sample as x and y.
+void turn_to_plane(SamplePlane plane, ParticleRows& rows) {
+  if (plane == SamplePlane::xy) return;
+  const bool from_yz = plane == SamplePlane::yz;
+  for (Particle& particle : rows.particles) {
+    if (from_yz) std::swap(particle.x, particle.y);
+    std::swap(particle.y, particle.z);
+  }
+  if (!rows.box) return;
+  ParticleRows::Box& box = *rows.box;
+  if (from_yz) {
+    std::swap(box.low.x, box.low.y), std::swap(box.high.x, box.high.y);
+    std::swap(box.periodic_x, box.periodic_y);
+  }
+  std::swap(box.low.y, box.low_z), std::swap(box.high.y, box.high_z);
+  std::swap(box.periodic_y, box.periodic_z);
 }
 
 ParticleRows rows_of(std::string_view text, ParticleFormat format, const AssemblyFileOptions& options) {
@@ -96,21 +115,32 @@ void sort_by_id(std::vector<Particle>& particles) {
                fmt::format("it stands at line {}, too", twice->line), "Keep one");
 }
 
-/// All centres in one plane.
-void check_plane(const std::vector<Particle>& particles) {
-  constexpr double rounding = 1e-6;  // of the largest radius
-  const auto [low, high] = std::ranges::minmax_element(particles, {}, &Particle::z);
-  const double largest = std::ranges::max_element(particles, {}, &Particle::radius)->radius;
-  if (high->z - low->z <= rounding * largest) return;
-  const auto [near, far] = std::ranges::minmax_element(particles, {}, &Particle::y);
-  if (far->y - near->y <= rounding * largest)
-    bad_input_at(at_line(high->line),
-                 fmt::format("the sample lies in the plane x-z: every y is {:.6g}, and z goes from {:.6g} to {:.6g}",
-                             near->y, low->z, high->z),
-                 "discs lie in the plane x-y here, y upwards",
-                 "Exchange the columns y and z, and in the box of a LAMMPS file the bounds of y and z");
-  bad_input_at(at_line(high->line),
-               fmt::format("the particles are three-dimensional: z goes from {:.6g} to {:.6g}", low->z, high->z),
+/// All centres in the plane that the case names, by default x-y.
+void check_plane(const std::vector<Particle>& particles, SamplePlane plane) {
+  const double rounding = 1e-6 * std::ranges::max_element(particles, {}, &Particle::radius)->radius;
+  const auto range = [&](double Particle::*axis) {
+    const auto [low, high] = std::ranges::minmax_element(particles, {}, axis);
+    return std::tuple((*low).*axis, (*high).*axis, high->line);
+  };
+  const auto [low, high, line] = range(&Particle::z);
+  if (high - low <= rounding) return;
+  if (plane != SamplePlane::xy)
+    bad_input_at(at_line(line),
+                 fmt::format("the sample does not lie in the plane {}: across it centres go from {:.6g} to {:.6g}",
+                             to_string(plane), low, high),
+                 "discs lie in one plane", "Correct assembly.plane, or leave it out");
+  for (const auto& [axis, name, found] :
+       {std::tuple(&Particle::y, "y", SamplePlane::xz), std::tuple(&Particle::x, "x", SamplePlane::yz)}) {
+    const auto [least, most, at] = range(axis);
+    if (most - least > rounding) continue;
+    bad_input_at(at_line(line),
+                 fmt::format("the sample lies in the plane {}: every {} is {:.6g}, and z goes from {:.6g} to {:.6g}",
+                             to_string(found), name, least, low, high),
+                 "discs are read in the plane x-y, y upwards, unless the case says otherwise",
+                 fmt::format("Give assembly.plane = \"{}\"", to_string(found)));
+  }
+  bad_input_at(at_line(line),
+               fmt::format("the particles are three-dimensional: z goes from {:.6g} to {:.6g}", low, high),
                "discs lie in one plane", "Export a two-dimensional packing, all of it with one z");
 }
 
@@ -226,7 +256,7 @@ auto within_file(const std::filesystem::path& path, const Task& task) {
 /// The discs and the period, checked.
 Assembly discs_of(ParticleRows& rows, double unit, const AssemblyFileOptions& options) {
   sort_by_id(rows.particles);
-  check_plane(rows.particles);
+  check_plane(rows.particles, options.plane);
   Assembly assembly = discs_of(rows.particles, unit);
   assembly.period = period_of(rows, unit, options);
   check(assembly);
@@ -244,6 +274,7 @@ Assembly imported_assembly(const std::filesystem::path& path, std::string_view t
   double unit = 1;
   Assembly assembly = within_file(path, [&] {
     rows = rows_of(text, format, options);
+    turn_to_plane(options.plane, rows);
     if (rows.particles.empty())
       bad_input("the file has no particles", "there is nothing to solve for", "Write it again");
     unit = unit_of_rows(rows, options.unit_of_length);

@@ -112,6 +112,8 @@ class DataReader {
     if (x == bounds.end() || y == bounds.end()) return;
     result_.box = ParticleRows::Box{
         .low = {x->second[0], y->second[0]}, .high = {x->second[1], y->second[1]}, .periodic_x = {}, .periodic_y = {}};
+    if (const auto z = bounds.find("z"); z != bounds.end())
+      result_.box->low_z = z->second[0], result_.box->high_z = z->second[1];
   }
 
   /// \return the line of the next section; empty at the end

@@ -18,7 +18,6 @@ struct DumpFrame {
   std::int64_t step = -1, atoms = -1;
   std::string units;
   ParticleRows::Box box;
-  double low_z = 0, length_z = 0;
   std::vector<std::string_view> columns;
   TextLines rows{""};  ///< before the first row
 };
@@ -133,11 +132,12 @@ class DumpReader {
     }
     frame.box.low = {low[0], low[1]};
     frame.box.high = {high[0], high[1]};
-    frame.low_z = low[2];
-    frame.length_z = high[2] - low[2];
+    frame.box.low_z = low[2];
+    frame.box.high_z = high[2];
     if (flags.size() != 3) return;
     frame.box.periodic_x = flags[0] == "pp";
     frame.box.periodic_y = flags[1] == "pp";
+    frame.box.periodic_z = flags[2] == "pp";
   }
 
   TextLines lines_;
@@ -173,7 +173,7 @@ ParticleRows read_lammps_dump(std::string_view text, std::optional<std::int64_t>
   result.box = frame.box;
   const Vec2 size = frame.box.high - frame.box.low;
   const auto x = find_place(frame, "x", frame.box.low.x, size.x), y = find_place(frame, "y", frame.box.low.y, size.y),
-             z = find_place(frame, "z", frame.low_z, frame.length_z);
+             z = find_place(frame, "z", frame.box.low_z, frame.box.high_z - frame.box.low_z);
   if (!x) fail_missing(frame, "x", "every particle has a place");
   if (!y) fail_missing(frame, "y", "every particle has a place");
   const auto radius = dump_column(frame, {"radius"}), diameter = dump_column(frame, {"diameter"});

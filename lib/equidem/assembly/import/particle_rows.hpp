@@ -45,6 +45,8 @@ struct ParticleRows {
   struct Box {
     Vec2 low, high;
     std::optional<bool> periodic_x, periodic_y;  ///< none: the file does not say
+    double low_z = 0, high_z = 0;
+    std::optional<bool> periodic_z = {};
   };
   std::string format;                    ///< "a LAMMPS dump", for messages
   std::vector<Particle> particles = {};  ///< in the order of the file

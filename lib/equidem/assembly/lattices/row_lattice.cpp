@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/lattices/row_lattice.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "equidem/core/error.hpp"
@@ -15,6 +17,25 @@ void check_numbers(const LatticeOptions& o) {
   if (discs <= std::numeric_limits<std::int32_t>::max()) return;
   bad_input(fmt::format("{} columns and {} rows make {} discs", o.columns, o.rows, discs),
             fmt::format("at most {} can be numbered", std::numeric_limits<std::int32_t>::max()), "Ask for fewer");
+}
+
+/// The block of rows along x that discs numbered row by row form.
+LatticeOptions rows_of(const Assembly& assembly) {
+  LatticeOptions block{.columns = 0, .rows = 0, .radius = assembly.radii.front(), .periodic = assembly.periodic()};
+  double y = 0;
+  for (const Vec2 centre : assembly.centres) {
+    if (block.rows == 0 || std::abs(centre.y - y) > 1e-9 * block.radius) ++block.rows, y = centre.y;
+    if (block.rows == 1) ++block.columns;
+  }
+  return block;
+}
+
+bool has_sides_of(const RowLattice& lattice, const Assembly& assembly) {
+  const auto sides = row_lattice_sides(lattice);
+  return std::ranges::all_of(std::array{"left", "right", "bottom"}, [&](const char* name) {
+    const auto side = assembly.groups.find(name);
+    return side != assembly.groups.end() && side->second.discs == sides.at(name).discs;
+  });
 }
 
 }  // namespace
@@ -129,6 +150,21 @@ Assembly row_lattice(const LatticeOptions& options, const RowPattern& pattern) {
   const double half = 0.5 * static_cast<double>(assembly.size()) * pattern.cell_area / height;
   assembly.box = Rectangle{{middle - half, 0}, {middle + half, height}};
   return assembly;
+}
+
+bool is_row_lattice(const Assembly& assembly, const RowPattern& pattern) {
+  const RowLattice lattice(rows_of(assembly), pattern);
+  const auto [columns, rows, radius, periodic] = lattice.options();
+  const double near = 1e-9 * radius;
+  if (pattern.staggered && (periodic ? rows % 2 != 0 : columns < 2)) return false;
+  if (lattice.first(rows) != static_cast<std::int64_t>(assembly.size())) return false;
+  if (periodic && norm(lattice.period() - *assembly.period) > near) return false;
+  if (std::ranges::any_of(assembly.radii, [&](double r) { return std::abs(r - radius) > near; })) return false;
+  std::size_t disc = 0;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < lattice.count(row); ++column, ++disc)
+      if (norm(lattice.centre(row, column) - assembly.centres[disc]) > near) return false;
+  return periodic || has_sides_of(lattice, assembly);
 }
 
 }  // namespace equidem

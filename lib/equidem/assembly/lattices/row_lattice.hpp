@@ -67,4 +67,7 @@ std::map<std::string, DiscGroup> row_lattice_sides(const RowLattice& lattice);
 /// \throws Error (bad_input) on counts or a radius that make no lattice, odd `rows` of a periodic staggered lattice
 Assembly row_lattice(const LatticeOptions& options, const RowPattern& pattern);
 
+/// Whether row_lattice makes these centres (to 1e-9 of a radius), radii and sides in this order.
+bool is_row_lattice(const Assembly& assembly, const RowPattern& pattern);
+
 }  // namespace equidem

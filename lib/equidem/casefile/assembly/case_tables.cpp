@@ -79,6 +79,8 @@ void bind_assembly(File<CaseTables>& file) {
                "as \"2.5 mm\""),
            key("frame", &A::file, &F::frame, from(0, 9e15), when("kind", from_file),
                "time step of the frame of a LAMMPS dump; left out: its last"),
+           key("plane", &A::file, &F::plane, when("kind", from_file),
+               "plane that such a sample lies in; its second axis is read as y"),
            key("contacts", &A::file, &F::contacts, when("kind", from_file),
                "table of the contacts of such a file, with the columns i and j (ids, or rows from 0) and, if wanted, "
                "lever_i and lever_j, normal_x, normal_y, offset_i and offset_j; left out: its bonds, or discs that "
