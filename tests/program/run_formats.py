@@ -84,6 +84,18 @@ class Page(RunTest):
                 after = self.run_verb("solve", back)
                 self.assertEqual({n: before[n] for n in names}, {n: after[n] for n in names}, (columns, rows, form))
 
+    def test_the_sides_of_a_row_of_discs_are_pulled_apart(self):
+        (self.folder / "row.csv").write_text("x_mm,y_mm,r_mm\n0,0,3\n6,0,3\n12,0,3\n")
+        held = '[[support]]\ngroup = "left"\nux = 0.0\nuy = 0.0\nrotation = 0.0\n[[support]]\ngroup = "right"\nuy = 0.0\n'
+        case = self.case('[assembly]\nkind = "file"\npath = "row.csv"\ngap_tolerance = 1.0e-6\n'
+                         f'[springs]\nkN = 1.0e6\nkT = 4.0e5\n{held}[[load]]\ngroup = "right"\nforce = [2.0, 0.0]\n')
+        self.check_done(equidem("solve", case, "--out", self.folder / "row"))
+        with open(self.folder / "row" / "discs.csv", encoding="utf8") as file:
+            motions = [float(disc["ux_m"]) for disc in csv.DictReader(file)]
+        self.assertEqual(len(motions), 3)
+        for found, expected in zip(motions, (0, 2e-6, 4e-6)):
+            self.assertAlmostEqual(found, expected, delta=1e-15)
+
     def test_every_column_that_is_written_is_on_the_page(self):
         out = self.folder / "out"
         states = "Discs and contacts (CSV)"

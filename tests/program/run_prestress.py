@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Forces at rest from pack to moduli and critical loads: run_prestress.py PROGRAM SOURCE_FOLDER [unittest options]."""
+import csv
 import json
 import math
 import unittest
@@ -28,6 +29,23 @@ class Prestress(ProgramTest):
         self.assertNotEqual(done.returncode, 0, done.stdout)
         for word in words:
             self.assertIn(word, done.stderr)
+
+    def test_forces_of_contacts_are_totals_where_forces_at_rest_count(self):
+        row = {"schema": "equidem-assembly/1", "discs": [[0, 0, 1], [2, 0, 1], [4, 0, 1]],
+               "contacts": [[0, 1, 0, 0], [1, 2, 0, 0]], "forces": [[-100, 0], [-100, 0]], "curvatures": [[1, 1], [1, 1]],
+               "groups": {"a": {"discs": [0]}, "b": {"discs": [2]}}}
+        (self.folder / "row.json").write_text(json.dumps(row))
+        case = self.case_of("row.json", '[springs]\nkN = 1.0e6\nkT = 5.0e5\n[effects]\nrotation = "restrained"\n'
+                            '[[support]]\ngroup = "a"\nux = 0.0\nuy = 0.0\n[[support]]\ngroup = "b"\nuy = 0.0\n'
+                            '[[load]]\ngroup = "b"\nforce = [30.0, 0.0]\n')
+        for counts, force in (("on", 30 - 100), ("off", 30)):
+            out = self.folder / counts
+            self.done("solve", case, "--set", f"effects.prestress={counts}", "--out", out)
+            with open(out / "contacts.csv", encoding="utf8") as file:
+                found = [float(contact["normal_force_N_per_m"]) for contact in csv.DictReader(file)]
+            self.assertEqual(len(found), 2)
+            for value in found:
+                self.assertAlmostEqual(value, force, delta=1e-9 * abs(force))
 
     def test_frictionless_ellipses_have_moduli_by_their_forces(self):
         packed = self.folder / "packed"
