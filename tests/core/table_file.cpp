@@ -121,6 +121,11 @@ TEST_CASE("what_a_table_cannot_mean_is_a_sentence_with_its_line") {
   refused("x,r,name\n1,2,a\n1,2,\xe4\n", {"a.csv:3", "byte 5", "0xe4"});
   refused(std::string("\xff\xfex\0,\0r\0\n\0", 10), {"a.csv:1", "UTF-16", "0xff"});
   refused(std::string("x\0,\0r\0\n\0", 8), {"a.csv:1", "UTF-16"});
+  refused(std::string("\0x\0,\0r\0\n", 8), {"a.csv:1", "UTF-16"});
+  refused(std::string("\xff\xfe\0\0x\0\0\0", 8), {"a.csv:1", "UTF-32", "0xff"});
+  refused(std::string("\0\0\xfe\xff\0\0\0x", 8), {"a.csv:1", "UTF-32", "0x00"});
+  refused(std::string("x\0\0\0,\0\0\0", 8), {"a.csv:1", "UTF-32"});
+  refused(std::string("\0\0\0x\0\0\0,", 8), {"a.csv:1", "UTF-32"});
   refused("X_MM,R_MM\n1,2\n", {"a.csv:1", "'x' is missing", "'X_MM' ends in no unit"});
   refused("x [in],r [in]\n1,2\n", {"a.csv:1", "'x [in]' has the unit 'in'", "mm"});
   refused("x_mm,X [m],r\n1,2,3\n", {"a.csv:1", "'x' is there twice", "'x_mm' and 'X [m]'", "columns 1 and 2"});

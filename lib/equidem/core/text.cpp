@@ -130,12 +130,15 @@ std::optional<std::size_t> place_of_wrong_byte(std::string_view text) {
 }
 
 void refuse_utf16(std::string_view text, const std::string& name) {
-  const bool little = text.starts_with("\xFF\xFE"), big = text.starts_with("\xFE\xFF");
-  const std::string_view begin = text.substr(0, text.find('\n'));
-  const bool unmarked = begin.size() > 3 && ((begin[0] == 0 && begin[1] != 0 && begin[2] == 0) ||
-                                             (begin[1] == 0 && begin[0] != 0 && begin[3] == 0));
-  if (!little && !big && !unmarked) return;
-  bad_input_at(name.empty() ? "line 1" : name + ":1", "the text is UTF-16, not UTF-8",
+  using namespace std::string_view_literals;
+  const auto zero = [&](std::size_t byte) { return text[byte] == 0; };
+  const bool four = text.size() > 3;
+  const bool of_32 = four && (text.starts_with("\xFF\xFE\0\0"sv) || text.starts_with("\0\0\xFE\xFF"sv) ||
+                              (zero(1) && zero(2) && zero(0) != zero(3)));
+  const bool of_16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF") ||
+                     (four && zero(0) == zero(2) && zero(1) == zero(3) && zero(0) != zero(1));
+  if (!of_32 && !of_16) return;
+  bad_input_at(name.empty() ? "line 1" : name + ":1", fmt::format("the text is UTF-{}, not UTF-8", of_32 ? 32 : 16),
                fmt::format("byte 1 of the line is 0x{:02x}", static_cast<unsigned char>(text[0])),
                "Save the file as UTF-8 (in spreadsheets: CSV UTF-8)");
 }

@@ -70,7 +70,7 @@ std::vector<std::string_view> words_of(std::string_view line);
 std::optional<std::size_t> place_of_wrong_byte(std::string_view text);
 
 /// \param name of its file
-/// \throws Error (bad_input) where the text is of UTF-16
+/// \throws Error (bad_input) where the text is of UTF-16 or UTF-32
 void refuse_utf16(std::string_view text, const std::string& name);
 
 /// Whether the text consists of letters, digits, '_' and '-' only.
