@@ -188,7 +188,6 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
   StageTimes times;
   SolverOptions options;
   options.method = SolverMethod::multifrontal;
-  options.precision = FactorPrecision::double_precision;
   const StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
                                Mechanisms::hold, times);
   const std::vector<Solution> solutions = solver.solve(scene.cases, times);

@@ -162,7 +162,6 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   const FactorReport& report = solver_->factor().report();
   result.solver = solver_->solver_name();
   result.factor_bytes = report.bytes;
-  result.single_precision = report.single_precision;
   result.iterations = report.iterations;
   result.times.add("error bound", watch.lap());
   return solutions;

@@ -11,15 +11,11 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/rigid_growth.hpp"
-#include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/precision/factor_precision.hpp"
-#include "equidem/statics/precision/refinement.hpp"
+#include "equidem/statics/refinement.hpp"
 
 namespace equidem {
 namespace {
@@ -38,15 +34,14 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       options_(options),
       mechanisms_(mechanisms),
       on_graph_{matrix_, assembly_, graph_} {
-  const MethodChoice choice = choose_method({assembly_, graph_, springs_, unknowns_}, options_);
-  why_method_ = choice.reason;
-  if (!entry_of(choice.method).back_end.iterative) {
-    eliminate(choice.method, times);
-  } else if (options.method == choice.method) {
-    iterate(choice.method, times);
+  const SolverMethod method = choose_method(assembly_, springs_, options_);
+  if (!entry_of(method).back_end.iterative) {
+    eliminate(method, times);
+  } else if (options.method == method) {
+    iterate(method, times);
   } else {
     try {
-      iterate(choice.method, times);
+      iterate(method, times);
     } catch (const Error& error) {
       eliminate_instead(error, times);
     }
@@ -76,26 +71,13 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   times.add("order", watch.lap());
   symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
-  const bool single = tries_single_precision(options_, springs_, *symbolic_);
-  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite(), single);
+  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite());
   size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
   times.add("assemble", watch.lap());
-  if (!single) {
-    factor_ = factorize(system(), method, mechanisms_, times);
-    return;
-  }
-  std::string reason;
-  factor_ = factorize_in_single_precision(system(), reason);
-  times.add("factorize", watch.lap());
-  if (factor_ && !grows_rigid(assembly_, graph_, springs_, unknowns_.per_disc) && !stands_probe(times)) {
-    reason = "a motion resists much less than others";
-    factor_.reset();
-  }
-  times.add("probe", watch.lap());
-  if (!factor_) factorize_in_double(std::move(reason), times);
+  factor_ = factorize(system(), method, mechanisms_, times);
 }
 
 System StiffnessSolver::system() const {
@@ -104,28 +86,8 @@ System StiffnessSolver::system() const {
   return {on_graph_, springs_, unknowns_, symbolic_, automatic ? given_up : most_iterations, options_};
 }
 
-void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {
-  why_double_ = std::move(reason);
-  factor_.reset();
-  check_memory(estimate(*symbolic_, unknowns_, springs_.may_be_indefinite()), options_.memory_limit);
-  factor_ = factorize(system(), method_, mechanisms_, times);
-}
-
-bool StiffnessSolver::stands_probe(StageTimes& times) const {
-  constexpr double tolerance = 1e-6;  // below the share of one motion in the rough load of 1e11 unknowns
-  const auto b = static_cast<std::size_t>(matrix_.block);
-  Random random(1);
-  RightHandSide rough;
-  rough.force.resize(unknowns_.held.size());
-  for (std::size_t k = 0; k < rough.force.size(); ++k) {
-    rough.force[k] = (random.uniform() - 0.5) * std::sqrt(matrix_.diagonal_block(k / b)[k % b * (b + 1)]);
-  }
-  return refine({&rough, 1}, tolerance, nullptr, times);
-}
-
 std::string StiffnessSolver::solver_name() const {
   std::string name = factor_->report().name;
-  if (!why_double_.empty()) name += " in double precision, since " + why_double_;
   if (!why_method_.empty()) name += fmt::format(" ({})", why_method_);
   return name;
 }
@@ -157,10 +119,9 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
   residual_force({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, given.force, residual);
 }
 
-bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
+void StiffnessSolver::refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions,
                              StageTimes& times) const {
-  constexpr int steps_for_one = 8;  // of conjugate gradients with a factor in single precision
-  const bool single = factor_->report().single_precision;
+  const double good_enough = entry_of(method_).back_end.good_enough;
   const std::size_t n = unknowns_.held.size();
   LargeVector<double> x(n * cases.size());
   const auto column = [&](std::size_t k) { return std::span(x).subspan(k * n, n); };
@@ -174,13 +135,9 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
     }
     times.add("solve", watch.lap());
   }
-  const int most = options_.max_refinements * (single ? steps_for_one : 1);
-  std::optional<Progress> progress;  // iterative methods show their own
-  if (single) progress.emplace("refining");
-  for (int pass = 0; pass <= most; ++pass) {
+  for (int pass = 0; pass <= options_.max_refinements; ++pass) {
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].failed) return false;
       if (all[k].done) continue;
       if (k != open.size()) std::ranges::copy(column(k), column(open.size()).begin());
       open.push_back(&all[k]);
@@ -201,38 +158,25 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
       all[position].correct(column(position), pass);
     }
     times.add(pass == 0 ? "solve" : "refine", watch.lap());
-    if (!progress) continue;
-    double share = 1;
-    for (const Refinement& one : all) {
-      if (!one.done) share = std::min(share, std::log(one.solution.relative_residual()) / std::log(good_enough));
-    }
-    progress->update(std::clamp(share, 0.0, 1.0));
   }
-  if (single && std::any_of(all.begin(), all.end(), [](const Refinement& one) { return !one.done || one.failed; })) {
-    return false;
-  }
-  for (std::size_t k = 0; solutions != nullptr && k < all.size(); ++k) solutions->push_back(all[k].finish());
-  return true;
+  for (Refinement& one : all) solutions.push_back(one.finish());
 }
 
 std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
-  const auto attempt = [&](std::vector<Solution>& solutions) {
-    const double good_enough = entry_of(method_).back_end.good_enough;
-    if (!iterative()) return refine(cases, good_enough, &solutions, times);
-    // One after another: vectors of one take as much memory as the grids.
-    for (std::size_t k = 0; k < cases.size(); ++k) refine(cases.subspan(k, 1), good_enough, &solutions, times);
-    return true;
-  };
   std::vector<Solution> solutions;
+  const auto solve_all = [&] {
+    // Iterations one after another: vectors of one case take as much memory as the grids.
+    const std::size_t at_once = iterative() ? 1 : cases.size();
+    for (std::size_t k = 0; k < cases.size(); k += at_once) refine(cases.subspan(k, at_once), solutions, times);
+  };
   try {
-    if (attempt(solutions)) return solutions;
-    factorize_in_double("refinement did not converge", times);
+    solve_all();
   } catch (const Error& error) {
     if (method_ == options_.method || !iterative()) throw;
     eliminate_instead(error, times);
+    solutions.clear();
+    solve_all();
   }
-  solutions.clear();
-  attempt(solutions);
   return solutions;
 }
 
@@ -296,12 +240,10 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale_of(k) > 0 ? x[k] / scale_of(k) : 0;
-  // Round-off of the factor may make the motion stiffer than it is, and in single precision, or where the solutions are
-  // rough, softer, too. The quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth
-  // of the last pass.
+  // Round-off of the factor may make the motion stiffer than it is, and where the solutions are rough, softer, too. The
+  // quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth of the last pass.
   const double stiffness = springs_.may_be_indefinite() ? 0 : twice_energy(x);
-  const bool rough = factor_->report().single_precision || iterative();
-  if (stiffness > 0) result.inverse_norm = std::max(rough ? 0.0 : result.inverse_norm, 1 / stiffness);
+  if (stiffness > 0) result.inverse_norm = std::max(iterative() ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
 }

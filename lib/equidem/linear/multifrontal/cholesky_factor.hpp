@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "equidem/linear/factorization.hpp"
@@ -19,8 +18,7 @@
 
 namespace equidem {
 
-/// K = L L^T; with Real = float that of S K S (multifrontal_cholesky.hpp). There for float and double.
-template <typename Real>
+/// K = L L^T (multifrontal_cholesky.hpp).
 class CholeskyFactor final : public Factorization {
  public:
   /// Memory for the panels, which hold nothing yet.
@@ -35,7 +33,7 @@ class CholeskyFactor final : public Factorization {
 
   /// Right-hand sides in the order of elimination, one after another.
   struct Columns {
-    Real* data;
+    double* data;
     std::size_t size;
     std::size_t count;  ///< <= most_columns
   };
@@ -44,28 +42,20 @@ class CholeskyFactor final : public Factorization {
   /// L^T x = y on front t, where what stands above it is done: x_own := L_11^-T (y_own - L_21^T x_rows).
   void backward(std::size_t t, const Columns& y) const;
   /// The columns of front t, column-major: rows of its own unknowns, then those that it updates.
-  [[nodiscard]] Real* panel(std::size_t t) { return panels_.data() + offset_[t]; }
-  [[nodiscard]] Panel<Real> panel(std::size_t t) const {
+  [[nodiscard]] double* panel(std::size_t t) { return panels_.data() + offset_[t]; }
+  [[nodiscard]] Panel panel(std::size_t t) const {
     return {panels_.data() + offset_[t], symbolic_->pivots(t), symbolic_->pivots(t) + symbolic_->updates(t)};
   }
   [[nodiscard]] const SymbolicFactor& symbolic() const { return *symbolic_; }
 
  private:
-  using Sweep = TreeSweep<Real>;
-  static constexpr bool single = std::is_same_v<Real, float>;
-
-  void choose_scale(const StiffnessMatrix& matrix);
-  /// x := factor S x.
-  void multiply_by_scale(std::span<double> x, double factor) const;
-  /// x := S x over its largest component, which is returned.
-  double scale_to_one(std::span<double> x) const;
+  using Sweep = TreeSweep;
 
   std::shared_ptr<const SymbolicFactor> symbolic_;
   Sweep solve_sweep_;
-  ForwardSweep<Real> forward_sweep_;
+  ForwardSweep forward_sweep_;
   std::vector<std::size_t> offset_;  // of the panel of each front
-  LargeVector<Real> panels_;
-  std::vector<double> scale_;  // S in single precision, per component; else empty
+  LargeVector<double> panels_;
   FactorReport report_;
 };
 

@@ -8,8 +8,7 @@
 
 namespace equidem {
 
-template <typename Real>
-ForwardSweep<Real>::ForwardSweep(const SymbolicFactor& symbolic) : symbolic_(symbolic), handed_(symbolic.fronts(), -1) {
+ForwardSweep::ForwardSweep(const SymbolicFactor& symbolic) : symbolic_(symbolic), handed_(symbolic.fronts(), -1) {
   constexpr double part = 1.0 / 64, of_front = 200;  // share of the work in one subtree; work of a front by itself
   const auto& nodes = symbolic.tree.nodes;
   std::vector<double> below(nodes.size());
@@ -42,21 +41,20 @@ ForwardSweep<Real>::ForwardSweep(const SymbolicFactor& symbolic) : symbolic_(sym
 }
 
 /// One call of run().
-template <typename Real>
-struct ForwardSweep<Real>::Sweep {
+struct ForwardSweep::Sweep {
   const ForwardSweep& all;
-  const std::function<Panel<Real>(std::size_t)>& panel;
-  Real* y;
+  const std::function<Panel(std::size_t)>& panel;
+  double* y;
   std::size_t size, columns;
-  LargeVector<Real> handed;  // front by front, of each its columns one after another
+  LargeVector<double> handed;  // front by front, of each its columns one after another
 
   /// Consecutive rows of a front and where they are kept.
   struct Run {
-    Real* first;
+    double* first;
     std::size_t count, apart;  // numbers; from one column to the next
   };
   struct Work {
-    std::vector<Real> columns;
+    std::vector<double> columns;
     std::vector<Run> runs;
     std::vector<RowRun> matched;
   };
@@ -66,7 +64,7 @@ struct ForwardSweep<Real>::Sweep {
   }
 
   [[nodiscard]] std::size_t block() const { return static_cast<std::size_t>(all.symbolic_.block); }
-  [[nodiscard]] Real* handed_by(std::size_t t) {
+  [[nodiscard]] double* handed_by(std::size_t t) {
     return handed.data() + static_cast<std::size_t>(all.handed_[t]) * block() * columns;
   }
 
@@ -76,9 +74,9 @@ struct ForwardSweep<Real>::Sweep {
     const auto& above = all.symbolic_.rows[root];
     const std::int32_t end = all.symbolic_.tree.nodes[root].end;
     const std::size_t b = block();
-    Real* const to = handed_by(root);
+    double* const to = handed_by(root);
     runs.clear();
-    const auto add = [&](Real* place, std::size_t apart, bool goes_on) {
+    const auto add = [&](double* place, std::size_t apart, bool goes_on) {
       if (goes_on && runs.back().first + runs.back().count == place) {
         runs.back().count += b;
       } else {
@@ -97,19 +95,19 @@ struct ForwardSweep<Real>::Sweep {
   void visit_subtree(std::size_t root) {
     Work& here = work();
     const std::size_t b = block();
-    std::fill_n(handed_by(root), all.symbolic_.updates(root) * columns, Real{0});
+    std::fill_n(handed_by(root), all.symbolic_.updates(root) * columns, 0.0);
     for (auto t = static_cast<std::size_t>(all.symbolic_.tree.nodes[root].first_descendant); t <= root; ++t) {
-      const Panel<Real> front = panel(t);
+      const Panel front = panel(t);
       if (here.columns.size() < front.rows * columns) here.columns.resize(front.rows * columns);
       find_runs(t, root, here.runs);
-      Real* const own = y + all.symbolic_.tree.nodes[t].begin * b;
+      double* const own = y + all.symbolic_.tree.nodes[t].begin * b;
       for (std::size_t c = 0; c < columns; ++c) {
-        Real* to = std::copy_n(own + c * size, front.pivots, here.columns.data() + c * front.rows);
+        double* to = std::copy_n(own + c * size, front.pivots, here.columns.data() + c * front.rows);
         for (const Run& run : here.runs) to = std::copy_n(run.first + c * run.apart, run.count, to);
       }
       solve_forward(front, here.columns.data(), columns);
       for (std::size_t c = 0; c < columns; ++c) {
-        const Real* from = here.columns.data() + c * front.rows;
+        const double* from = here.columns.data() + c * front.rows;
         std::copy_n(from, front.pivots, own + c * size);
         from += front.pivots;
         for (const Run& run : here.runs) {
@@ -124,30 +122,30 @@ struct ForwardSweep<Real>::Sweep {
     Work& here = work();
     const std::size_t b = block();
     const auto& nodes = all.symbolic_.tree.nodes;
-    const Panel<Real> front = panel(t);
+    const Panel front = panel(t);
     if (here.columns.size() < front.rows * columns) here.columns.resize(front.rows * columns);
-    Real* const w = here.columns.data();
-    Real* const own = y + nodes[t].begin * b;
+    double* const w = here.columns.data();
+    double* const own = y + nodes[t].begin * b;
     for (std::size_t c = 0; c < columns; ++c) {
       std::copy_n(own + c * size, front.pivots, w + c * front.rows);
-      std::fill_n(w + c * front.rows + front.pivots, front.rows - front.pivots, Real{0});
+      std::fill_n(w + c * front.rows + front.pivots, front.rows - front.pivots, 0.0);
     }
     // Children in descending order: each begins where the subtree of the one before it has ended.
     for (auto child = static_cast<std::int32_t>(t) - 1; child >= nodes[t].first_descendant;
          child = nodes[child].first_descendant - 1) {
       match_rows(all.symbolic_, static_cast<std::size_t>(child), here.matched);
       const std::size_t rows = all.symbolic_.updates(static_cast<std::size_t>(child));
-      const Real* const update = handed_by(static_cast<std::size_t>(child));
+      const double* const update = handed_by(static_cast<std::size_t>(child));
       for (std::size_t c = 0; c < columns; ++c) {
         for (const RowRun& run : here.matched) {
-          const Real* from = update + c * rows + run.child * b;
-          Real* to = w + c * front.rows + run.parent * b;
+          const double* from = update + c * rows + run.child * b;
+          double* to = w + c * front.rows + run.parent * b;
           for (std::size_t r = 0; r < run.count * b; ++r) to[r] += from[r];
         }
       }
     }
     solve_forward(front, w, columns);
-    Real* const update = handed_by(t);
+    double* const update = handed_by(t);
     for (std::size_t c = 0; c < columns; ++c) {
       std::copy_n(w + c * front.rows, front.pivots, own + c * size);
       std::copy_n(w + c * front.rows + front.pivots, front.rows - front.pivots,
@@ -156,18 +154,14 @@ struct ForwardSweep<Real>::Sweep {
   }
 };
 
-template <typename Real>
-void ForwardSweep<Real>::run(const std::function<Panel<Real>(std::size_t)>& panel, Real* y, std::size_t size,
-                             std::size_t columns) const {
+void ForwardSweep::run(const std::function<Panel(std::size_t)>& panel, double* y, std::size_t size,
+                       std::size_t columns) const {
   const std::size_t numbers = static_cast<std::size_t>(all_handed_ * symbolic_.block) * columns;
-  Sweep sweep{*this, panel, y, size, columns, LargeVector<Real>(numbers)};
+  Sweep sweep{*this, panel, y, size, columns, LargeVector<double>(numbers)};
   parallel_tasks(subtrees_.size(),
                  [&](std::size_t k, int) { sweep.visit_subtree(static_cast<std::size_t>(subtrees_[k])); });
   for (const auto& level : levels_)
     parallel_tasks(level.size(), [&](std::size_t k, int) { sweep.visit_above(static_cast<std::size_t>(level[k])); });
 }
-
-template class ForwardSweep<float>;
-template class ForwardSweep<double>;
 
 }  // namespace equidem

@@ -15,15 +15,14 @@ namespace equidem {
 
 /// Small subtrees run on separate threads, then the fronts above them, level by level. A subtree keeps what it passes
 /// to the discs above it apart, and its own discs take what they get in place. The division does not depend on the
-/// number of threads, and so the bits of the result do not. There for float and double.
-template <typename Real>
+/// number of threads, and so the bits of the result do not.
 class ForwardSweep {
  public:
   explicit ForwardSweep(const SymbolicFactor& symbolic);
 
   /// \param y columns in the order of elimination, `size` numbers from one to the next: b on input
   /// \param columns <= most_columns
-  void run(const std::function<Panel<Real>(std::size_t front)>& panel, Real* y, std::size_t size,
+  void run(const std::function<Panel(std::size_t front)>& panel, double* y, std::size_t size,
            std::size_t columns) const;
 
  private:

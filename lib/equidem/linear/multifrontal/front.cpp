@@ -33,12 +33,11 @@ namespace {
 
 constexpr std::size_t tiled_from = 768;  // rows of a front from which tiles pay
 
-template <typename Real>
-int factorize_front_in_tiles(std::size_t k, std::size_t m, Real* panel, Real* update) {
+int factorize_front_in_tiles(std::size_t k, std::size_t m, double* panel, double* update) {
   const std::size_t ld = k + m;
   for (std::size_t c = 0; c < k; c += tile) {
     const std::size_t width = std::min(tile, k - c);
-    Real* corner = panel + c * ld + c;
+    double* corner = panel + c * ld + c;
     if (const int bad = dense::cholesky(width, corner, ld)) return static_cast<int>(c) + bad;
     const std::size_t below = ld - c - width;
     parallel_tasks((below + tile - 1) / tile, [&](std::size_t task, int) {
@@ -46,8 +45,8 @@ int factorize_front_in_tiles(std::size_t k, std::size_t m, Real* panel, Real* up
       dense::solve_right_transposed(std::min(tile, below - row), width, corner, ld, corner + width + row, ld);
     });
     // The columns of the panel that are left.
-    const Real* left = corner + width;
-    Real* right = panel + (c + width) * ld + c + width;
+    const double* left = corner + width;
+    double* right = panel + (c + width) * ld + c + width;
     const std::size_t columns = k - c - width;
     std::vector<Tile> tiles;
     for (std::size_t q = 0; q < columns; q += tile) {
@@ -61,18 +60,18 @@ int factorize_front_in_tiles(std::size_t k, std::size_t m, Real* panel, Real* up
                                          right + column * ld + row, ld);
     });
   }
-  subtract_in_tiles<Real>(m, k, {panel + k, ld}, {panel + k, ld}, {update, m});
+  subtract_in_tiles(m, k, {panel + k, ld}, {panel + k, ld}, {update, m});
   return 0;
 }
 
 }  // namespace
 
-template <typename Real>
-void subtract_in_tiles(std::size_t m, std::size_t k, Strided<const Real> a, Strided<const Real> b, Strided<Real> c) {
+void subtract_in_tiles(std::size_t m, std::size_t k, Strided<const double> a, Strided<const double> b,
+                       Strided<double> c) {
   const std::vector<Tile> tiles = lower_tiles(m);
   parallel_tasks(tiles.size(), [&](std::size_t task, int) {
     const auto& [row, column, rows, columns] = tiles[task];
-    Real* target = c.data + column * c.ld + row;
+    double* target = c.data + column * c.ld + row;
     if (row == column && a.data == b.data) {
       dense::subtract_square(rows, k, a.data + row, a.ld, target, c.ld);
     } else {
@@ -81,8 +80,7 @@ void subtract_in_tiles(std::size_t m, std::size_t k, Strided<const Real> a, Stri
   });
 }
 
-template <typename Real>
-int factorize_front(std::size_t k, std::size_t m, Real* panel, Real* update) {
+int factorize_front(std::size_t k, std::size_t m, double* panel, double* update) {
   const std::size_t ld = k + m;
   if (ld >= tiled_from) return factorize_front_in_tiles(k, m, panel, update);
   if (const int bad = dense::cholesky(k, panel, ld)) return bad;
@@ -91,24 +89,19 @@ int factorize_front(std::size_t k, std::size_t m, Real* panel, Real* update) {
   return 0;
 }
 
-template <typename Real, typename Entry>
-void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraphOf<Entry>& k, std::size_t t,
-                        std::span<const double> scale, Real* panel, std::size_t ld) {
+void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraph& k, std::size_t t, double* panel,
+                        std::size_t ld) {
   const auto b = static_cast<std::size_t>(symbolic.block);
   const auto& node = symbolic.tree.nodes[t];
   const auto& rows = symbolic.rows[t];
   const std::int32_t own = node.end - node.begin;
-  const auto scaled = [&](const Entry& entry, std::size_t row, std::size_t column) {
-    return static_cast<Real>(scale.empty() ? entry : entry * scale[row] * scale[column]);
-  };
   for (std::int32_t p = node.begin; p < node.end; ++p) {
     const std::int32_t disc = symbolic.tree.order[p];
-    const std::size_t here = disc * b;
-    Real* column = panel + static_cast<std::size_t>(p - node.begin) * b * ld;
-    const Entry* diagonal = k.matrix.diagonal_block(disc);
-    Real* at = column + static_cast<std::size_t>(p - node.begin) * b;
+    double* column = panel + static_cast<std::size_t>(p - node.begin) * b * ld;
+    const double* diagonal = k.matrix.diagonal_block(disc);
+    double* at = column + static_cast<std::size_t>(p - node.begin) * b;
     for (std::size_t c = 0; c < b; ++c) {
-      for (std::size_t r = c; r < b; ++r) at[c * ld + r] += scaled(diagonal[r * b + c], here + r, here + c);
+      for (std::size_t r = c; r < b; ++r) at[c * ld + r] += diagonal[r * b + c];
     }
     for (const auto& edge : k.graph.of(disc)) {
       const std::int32_t q = symbolic.position[edge.other];
@@ -116,56 +109,40 @@ void add_matrix_columns(const SymbolicFactor& symbolic, const MatrixOnGraphOf<En
       const std::int32_t row =
           q < node.end ? q - node.begin
                        : own + static_cast<std::int32_t>(std::lower_bound(rows.begin(), rows.end(), q) - rows.begin());
-      const Entry* block = k.matrix.coupling_block(edge.contact);
+      const double* block = k.matrix.coupling_block(edge.contact);
       const bool transposed = k.assembly.contacts[edge.contact].i == disc;  // wanted: K_qp
-      const std::size_t there = edge.other * b;
       at = column + static_cast<std::size_t>(row) * b;
       for (std::size_t c = 0; c < b; ++c) {
         for (std::size_t r = 0; r < b; ++r) {
-          at[c * ld + r] += scaled(transposed ? block[c * b + r] : block[r * b + c], there + r, here + c);
+          at[c * ld + r] += transposed ? block[c * b + r] : block[r * b + c];
         }
       }
     }
   }
 }
 
-template <typename Real>
-void extend_add(const std::vector<RowRun>& runs, int block, const Real* child, std::size_t child_size,
-                const ParentFront<Real>& parent) {
+void extend_add(const std::vector<RowRun>& runs, int block, const double* child, std::size_t child_size,
+                const ParentFront& parent) {
   const auto b = static_cast<std::size_t>(block);
   const std::size_t own = parent.own * b;
   const std::size_t update_size = parent.ld - own;
   for (std::size_t first = 0; first < runs.size(); ++first) {
     const RowRun& columns = runs[first];
     for (std::size_t j = 0; j < columns.count * b; ++j) {
-      const Real* from = child + (columns.child * b + j) * child_size;
+      const double* from = child + (columns.child * b + j) * child_size;
       const std::size_t column = columns.parent * b + j;
       // Rows count from the parent's first own unknown; the update matrix starts at row `own`.
-      Real* to = column < own ? parent.panel + column * parent.ld : parent.update + (column - own) * update_size - own;
+      double* to =
+          column < own ? parent.panel + column * parent.ld : parent.update + (column - own) * update_size - own;
       for (std::size_t k = first; k < runs.size(); ++k) {
         const std::size_t skip = k == first ? j : 0;
         const std::size_t count = runs[k].count * b - skip;
-        const Real* source = from + runs[k].child * b + skip;
-        Real* target = to + runs[k].parent * b + skip;
+        const double* source = from + runs[k].child * b + skip;
+        double* target = to + runs[k].parent * b + skip;
         for (std::size_t r = 0; r < count; ++r) target[r] += source[r];
       }
     }
   }
 }
-
-#define EQUIDEM_INSTANTIATE(Real, Entry)                                                              \
-  template void add_matrix_columns(const SymbolicFactor&, const MatrixOnGraphOf<Entry>&, std::size_t, \
-                                   std::span<const double>, Real*, std::size_t);                      \
-  template void subtract_in_tiles(std::size_t, std::size_t, Strided<const Real>, Strided<const Real>, Strided<Real>)
-EQUIDEM_INSTANTIATE(float, double);
-EQUIDEM_INSTANTIATE(double, double);
-EQUIDEM_INSTANTIATE(std::complex<double>, std::complex<double>);
-#undef EQUIDEM_INSTANTIATE
-#define EQUIDEM_INSTANTIATE(Real)                                       \
-  template int factorize_front(std::size_t, std::size_t, Real*, Real*); \
-  template void extend_add(const std::vector<RowRun>&, int, const Real*, std::size_t, const ParentFront<Real>&)
-EQUIDEM_INSTANTIATE(float);
-EQUIDEM_INSTANTIATE(double);
-#undef EQUIDEM_INSTANTIATE
 
 }  // namespace equidem

@@ -14,30 +14,21 @@ namespace {
 
 constexpr std::size_t block_columns = 48;
 
-double size_of(double x) {
-  return std::abs(x);
-}
-double size_of(const std::complex<double>& x) {
-  return std::abs(x.real()) + std::abs(x.imag());
-}
-
 /// A column of the front as the pivots so far have left it, rows `first` .. size.
-template <typename Number>
 struct FrontColumn {
   std::size_t index = 0;
-  std::vector<Number> values;  // by row; rows before `first` are not set
+  std::vector<double> values;  // by row; rows before `first` are not set
 };
 
-template <typename Number>
 class Elimination {
  public:
-  Elimination(IndefiniteFrontOf<Number>& front, double u, double zero)
+  Elimination(IndefiniteFront& front, double u, double zero)
       : front_(front), u_(u), zero_(zero), n_(front.size), scaled_(block_columns * front.size + front.size) {
     one_.values.resize(n_);
     two_.values.resize(n_);
   }
 
-  FrontPivotsOf<Number> run() {
+  FrontPivots run() {
     std::size_t tried = 0;  // candidates refused since the last pivot
     while (done_ + tried < front_.candidates) {
       const std::size_t width = eliminate_next(done_ + tried);
@@ -51,12 +42,12 @@ class Elimination {
   }
 
  private:
-  Number& at(std::size_t row, std::size_t column) { return front_.values[column * n_ + row]; }
+  double& at(std::size_t row, std::size_t column) { return front_.values[column * n_ + row]; }
   /// L D of the pivots of this block.
-  Number& scaled(std::size_t row, std::size_t pivot) { return scaled_[(pivot - block_) * n_ + row]; }
+  double& scaled(std::size_t row, std::size_t pivot) { return scaled_[(pivot - block_) * n_ + row]; }
 
   /// Column j of the Schur complement: what is stored, less the pivots of this block.
-  void current_column(std::size_t j, FrontColumn<Number>& column) {
+  void current_column(std::size_t j, FrontColumn& column) {
     column.index = j;
     auto& v = column.values;
     for (std::size_t r = done_; r < j; ++r) v[r] = at(j, r);
@@ -69,40 +60,40 @@ class Elimination {
   }
 
   /// Largest entry outside the rows a and b, and the row of the largest among the candidates.
-  std::pair<double, std::size_t> largest(const FrontColumn<Number>& column, std::size_t a, std::size_t b) const {
+  std::pair<double, std::size_t> largest(const FrontColumn& column, std::size_t a, std::size_t b) const {
     double best = 0, best_candidate = -1;
     std::size_t row = n_;
     for (std::size_t r = done_; r < n_; ++r) {
       if (r == a || r == b) continue;
-      const double value = size_of(column.values[r]);
+      const double value = std::abs(column.values[r]);
       best = std::max(best, value);
       if (r < front_.candidates && value > best_candidate) best_candidate = value, row = r;
     }
     return {best, row};
   }
 
-  bool acceptable(const Number& pivot, double column_maximum) const {
-    return size_of(pivot) > zero_ && size_of(pivot) >= u_ * column_maximum;
+  bool acceptable(const double& pivot, double column_maximum) const {
+    return std::abs(pivot) > zero_ && std::abs(pivot) >= u_ * column_maximum;
   }
 
   /// Try candidate j as a pivot, alone or with a partner; returns how many were eliminated.
   std::size_t eliminate_next(std::size_t j) {
     current_column(j, one_);
     const auto [maximum, partner] = largest(one_, j, j);
-    const Number d = one_.values[j];
+    const double d = one_.values[j];
     if (acceptable(d, maximum)) return take_one(one_);
-    if (partner == n_ || std::max(maximum, size_of(d)) <= zero_) return 0;
+    if (partner == n_ || std::max(maximum, std::abs(d)) <= zero_) return 0;
 
     current_column(partner, two_);
-    const Number e = two_.values[partner], off = one_.values[partner];
+    const double e = two_.values[partner], off = one_.values[partner];
     const double outside_one = largest(one_, j, partner).first, outside_two = largest(two_, j, partner).first;
-    if (acceptable(e, std::max(outside_two, size_of(off)))) return take_one(two_);
-    const Number determinant = d * e - off * off;
-    const double scale = std::max({size_of(d), size_of(e), size_of(off)});
-    if (scale <= zero_ || size_of(determinant) <= zero_ * scale) return 0;
-    const double bound = size_of(determinant) / u_;
-    if (size_of(e) * outside_one + size_of(off) * outside_two > bound) return 0;
-    if (size_of(off) * outside_one + size_of(d) * outside_two > bound) return 0;
+    if (acceptable(e, std::max(outside_two, std::abs(off)))) return take_one(two_);
+    const double determinant = d * e - off * off;
+    const double scale = std::max({std::abs(d), std::abs(e), std::abs(off)});
+    if (scale <= zero_ || std::abs(determinant) <= zero_ * scale) return 0;
+    const double bound = std::abs(determinant) / u_;
+    if (std::abs(e) * outside_one + std::abs(off) * outside_two > bound) return 0;
+    if (std::abs(off) * outside_one + std::abs(d) * outside_two > bound) return 0;
     return take_two();
   }
 
@@ -117,15 +108,15 @@ class Elimination {
     for (std::size_t r = a + 1; r < b; ++r) std::swap(at(r, a), at(b, r));
     for (std::size_t r = b + 1; r < n_; ++r) std::swap(at(r, a), at(r, b));
     std::swap(at(a, a), at(b, b));
-    for (FrontColumn<Number>* column : {&one_, &two_}) {
+    for (FrontColumn* column : {&one_, &two_}) {
       std::swap(column->values[a], column->values[b]);
       if (column->index == a || column->index == b) column->index = a + b - column->index;
     }
   }
 
-  std::size_t take_one(const FrontColumn<Number>& column) {
+  std::size_t take_one(const FrontColumn& column) {
     exchange(done_, column.index);
-    const Number d = column.values[done_];
+    const double d = column.values[done_];
     for (std::size_t r = done_ + 1; r < n_; ++r) {
       scaled(r, done_) = column.values[r];
       store(r, done_, column.values[r] / d);
@@ -140,10 +131,10 @@ class Elimination {
   std::size_t take_two() {
     exchange(done_, one_.index);
     exchange(done_ + 1, two_.index);
-    const Number d = one_.values[done_], off = one_.values[done_ + 1], e = two_.values[done_ + 1];
-    const Number determinant = d * e - off * off;
+    const double d = one_.values[done_], off = one_.values[done_ + 1], e = two_.values[done_ + 1];
+    const double determinant = d * e - off * off;
     for (std::size_t r = done_ + 2; r < n_; ++r) {
-      const Number v = one_.values[r], w = two_.values[r];
+      const double v = one_.values[r], w = two_.values[r];
       scaled(r, done_) = v;
       scaled(r, done_ + 1) = w;
       store(r, done_, (e * v - off * w) / determinant);
@@ -157,9 +148,9 @@ class Elimination {
     return 2;
   }
 
-  void store(std::size_t row, std::size_t column, const Number& l) {
+  void store(std::size_t row, std::size_t column, const double& l) {
     at(row, column) = l;
-    pivots_.growth = std::max(pivots_.growth, size_of(l));
+    pivots_.growth = std::max(pivots_.growth, std::abs(l));
   }
 
   /// Bring the remaining candidate columns up to date with the pivots of this block.
@@ -181,39 +172,34 @@ class Elimination {
   void update_rest() {
     const std::size_t c = front_.candidates, m = n_ - c;
     if (m == 0 || done_ == 0) return;
-    std::vector<Number> with_d(m * done_);
+    std::vector<double> with_d(m * done_);
     for (std::size_t p = 0; p < done_; ++p) {
-      const Number off = pivots_.off_diagonal[p];
-      const Number before = p > 0 ? pivots_.off_diagonal[p - 1] : Number(0);
+      const double off = pivots_.off_diagonal[p];
+      const double before = p > 0 ? pivots_.off_diagonal[p - 1] : 0.0;
       for (std::size_t r = 0; r < m; ++r) {
-        Number value = pivots_.diagonal[p] * at(c + r, p);
-        if (off != Number(0)) value += off * at(c + r, p + 1);
-        if (before != Number(0)) value += before * at(c + r, p - 1);
+        double value = pivots_.diagonal[p] * at(c + r, p);
+        if (off != 0.0) value += off * at(c + r, p + 1);
+        if (before != 0.0) value += before * at(c + r, p - 1);
         with_d[p * m + r] = value;
       }
     }
-    subtract_in_tiles<Number>(m, done_, {&at(c, 0), n_}, {with_d.data(), m}, {&at(c, c), n_});
+    subtract_in_tiles(m, done_, {&at(c, 0), n_}, {with_d.data(), m}, {&at(c, c), n_});
   }
 
-  IndefiniteFrontOf<Number>& front_;
+  IndefiniteFront& front_;
   double u_, zero_;
   std::size_t n_;
   std::size_t done_ = 0;   // pivots so far
   std::size_t block_ = 0;  // first pivot of this block
-  std::vector<Number> scaled_, coefficients_;
-  FrontColumn<Number> one_, two_;
-  FrontPivotsOf<Number> pivots_;
+  std::vector<double> scaled_, coefficients_;
+  FrontColumn one_, two_;
+  FrontPivots pivots_;
 };
 
 }  // namespace
 
-template <typename Number>
-FrontPivotsOf<Number> factorize_indefinite(IndefiniteFrontOf<Number>& front, double u, double zero) {
-  return Elimination<Number>(front, u, zero).run();
+FrontPivots factorize_indefinite(IndefiniteFront& front, double u, double zero) {
+  return Elimination(front, u, zero).run();
 }
-
-template FrontPivots factorize_indefinite(IndefiniteFront&, double, double);
-template FrontPivotsOf<std::complex<double>> factorize_indefinite(IndefiniteFrontOf<std::complex<double>>&, double,
-                                                                  double);
 
 }  // namespace equidem

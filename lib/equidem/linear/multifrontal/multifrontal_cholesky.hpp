@@ -14,10 +14,6 @@ namespace equidem {
 /// K = L L^T (Duff & Reid 1983), subtrees on separate threads, large fronts in tiles; the same bits for every number
 /// of threads. Returns a null pointer where K is not positive definite to working precision; `report`, where given,
 /// contains the place.
-///
-/// With Real = float the factor is that of S K S with S = diag(K)^-1/2, so that stiffnesses of any size stay within the
-/// range of a float, and solving has the accuracy of single precision.
-template <typename Real = double>
 std::unique_ptr<Factorization> multifrontal_cholesky(std::shared_ptr<const SymbolicFactor> symbolic,
                                                      const MatrixOnGraph& matrix, FactorReport* report = nullptr);
 

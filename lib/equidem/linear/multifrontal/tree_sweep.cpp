@@ -2,7 +2,6 @@
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 #include <algorithm>
-#include <complex>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -14,11 +13,10 @@ namespace equidem {
 namespace tree_sweep {
 
 /// Values of nodes in postorder: those of the children of the next node are always on top.
-template <typename Real>
 class ValueStack {
  public:
   explicit ValueStack(std::size_t capacity) : memory_(capacity) {}
-  Real* push(std::size_t size) {
+  double* push(std::size_t size) {
     starts_.push_back(top_);
     top_ += size;
     return memory_.data() + starts_.back();
@@ -32,20 +30,19 @@ class ValueStack {
     std::copy_n(memory_.data() + from, size, memory_.data() + to);  // downwards: overlap does no harm
     top_ = to + size;
   }
-  /// Entry `depth` below the top one.
-  const Real* below_top(std::size_t depth) const { return memory_.data() + starts_[starts_.size() - 1 - depth]; }
+  /// double `depth` below the top one.
+  const double* below_top(std::size_t depth) const { return memory_.data() + starts_[starts_.size() - 1 - depth]; }
   void clear() { top_ = 0, starts_.clear(); }
 
  private:
-  LargeVector<Real> memory_;
+  LargeVector<double> memory_;
   std::vector<std::size_t> starts_;
   std::size_t top_ = 0;
 };
 
 }  // namespace tree_sweep
 
-template <typename Real>
-TreeSweep<Real>::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t)>& work)
+TreeSweep::TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t)>& work)
     : symbolic_(symbolic), work_(symbolic.fronts()), children_(symbolic.fronts()) {
   for (std::size_t t = 0; t < work_.size(); ++t) {
     work_[t] = work(t);
@@ -55,13 +52,12 @@ TreeSweep<Real>::TreeSweep(const SymbolicFactor& symbolic, const std::function<d
   schedule_ = schedule_tree(symbolic.tree, work_);
 }
 
-template <typename Real>
-void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::function<void(double)>& report) const {
+void TreeSweep::up(const Size& size, const Visit& visit, const std::function<void(double)>& report) const {
   const auto& nodes = symbolic_.tree.nodes;
   const double total = std::accumulate(work_.begin(), work_.end(), 0.0);
   // Updates passed on by the subtree roots and the nodes above them.
-  std::vector<LargeVector<Real>> handed(nodes.size());
-  BufferPool<Real> pool;
+  std::vector<LargeVector<double>> handed(nodes.size());
+  BufferPool pool;
   // Largest height of the stack over all subtrees.
   std::size_t capacity = 0;
   std::vector<std::size_t> sizes(nodes.size());
@@ -76,13 +72,13 @@ void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::functi
       }
     }
   }
-  std::vector<std::unique_ptr<tree_sweep::ValueStack<Real>>> stacks(thread_count());
+  std::vector<std::unique_ptr<tree_sweep::ValueStack>> stacks(thread_count());
   std::mutex report_mutex;
   double unreported = 0;
 
   const auto visit_subtree = [&](std::int32_t root, int worker) {
-    if (!stacks[worker]) stacks[worker] = std::make_unique<tree_sweep::ValueStack<Real>>(capacity);
-    tree_sweep::ValueStack<Real>& stack = *stacks[worker];
+    if (!stacks[worker]) stacks[worker] = std::make_unique<tree_sweep::ValueStack>(capacity);
+    tree_sweep::ValueStack& stack = *stacks[worker];
     stack.clear();
     std::vector<Child> children;
     double done = 0;
@@ -90,7 +86,7 @@ void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::functi
       const std::size_t count = children_[t].size();
       const bool is_root = t == root;
       if (is_root) handed[root] = pool.take(sizes[root]);
-      Real* values = is_root ? handed[root].data() : stack.push(sizes[t]);
+      double* values = is_root ? handed[root].data() : stack.push(sizes[t]);
       children.clear();
       for (std::size_t c = 0; c < count; ++c) {
         children.push_back({static_cast<std::size_t>(children_[t][c]), stack.below_top(count - c - (is_root ? 1 : 0))});
@@ -128,8 +124,7 @@ void TreeSweep<Real>::up(const Size& size, const Visit& visit, const std::functi
   }
 }
 
-template <typename Real>
-void TreeSweep<Real>::down(const std::function<void(std::size_t)>& visit) const {
+void TreeSweep::down(const std::function<void(std::size_t)>& visit) const {
   for (auto wave = schedule_.waves.rbegin(); wave != schedule_.waves.rend(); ++wave) {
     std::for_each(wave->above.rbegin(), wave->above.rend(), visit);
     parallel_tasks(wave->subtrees.size(), [&](std::size_t s, int) {
@@ -138,9 +133,5 @@ void TreeSweep<Real>::down(const std::function<void(std::size_t)>& visit) const 
     });
   }
 }
-
-template class TreeSweep<float>;
-template class TreeSweep<double>;
-template class TreeSweep<std::complex<double>>;
 
 }  // namespace equidem

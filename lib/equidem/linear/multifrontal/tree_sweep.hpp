@@ -13,17 +13,16 @@
 namespace equidem {
 
 /// Visits every front, children before parents or parents before children; subtrees run on separate threads. Updates
-/// consist of floats, of doubles or of complex doubles.
-template <typename Real>
+/// consist of doubles.
 class TreeSweep {
  public:
   /// The update that a child passes to its parent.
   struct Child {
     std::size_t node;
-    const Real* values;
+    const double* values;
   };
   using Size = std::function<std::size_t(std::size_t node)>;
-  using Visit = std::function<void(std::size_t node, Real* values, const std::vector<Child>& children)>;
+  using Visit = std::function<void(std::size_t node, double* values, const std::vector<Child>& children)>;
 
   /// \param work of a front, in any unit, to share it out
   TreeSweep(const SymbolicFactor& symbolic, const std::function<double(std::size_t node)>& work);

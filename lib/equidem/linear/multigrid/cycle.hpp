@@ -22,8 +22,6 @@ struct CycleOptions {
   int degree = 5;          ///< products with the matrix before and after each coarse correction, >= 1
   double range = 15;       ///< largest over smallest eigenvalue that smoothing covers, > 1
   int direct_below = 200;  ///< discs that are solved for without a grid
-  double coarse_factor =
-      1;  ///< by which the matrix of the first grid is multiplied: only tests of a wrong one change it
 };
 
 /// V-cycle: smoothing, correction from the next coarser grid, smoothing (Brandt 1977). Symmetric and positive definite

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "equidem/linear/contact_graph.hpp"
@@ -50,20 +49,13 @@ struct RowRun {
 void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<RowRun>& runs);
 
 /// A vector of discs x block components, from the order of discs to the order of elimination and back.
-/// The order of elimination may have floats where that of discs has doubles.
-template <typename Real, typename Given = double>
-void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const std::type_identity_t<Given>> x,
-                            std::span<Real> y) {
+inline void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<double> y) {
   const int b = symbolic.block;
   for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
-    for (int r = 0; r < b; ++r) {
-      y[p * b + r] = static_cast<Real>(x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r]);
-    }
+    for (int r = 0; r < b; ++r) y[p * b + r] = x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r];
   }
 }
-template <typename Real, typename Given = double>
-void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const Real> y,
-                              std::span<std::type_identity_t<Given>> x) {
+inline void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x) {
   const int b = symbolic.block;
   for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
     for (int r = 0; r < b; ++r) x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r] = y[p * b + r];

@@ -27,6 +27,23 @@ constexpr double suspicious = 1e-9;  // share of a stiffness left when all other
 
 constexpr double enough_digits = 1e11;  // springs further apart leave too few of the digits of a double
 
+/// Discs across the shorter side of a rectangle around the sample.
+double discs_across(const Assembly& assembly) {
+  Vec2 extent;
+  if (assembly.periodic()) {
+    extent = *assembly.period;
+  } else {
+    Vec2 low = assembly.centres.front(), high = low;
+    for (const Vec2 x : assembly.centres) {
+      low = {std::min(low.x, x.x), std::min(low.y, x.y)};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y)};
+    }
+    extent = high - low;
+  }
+  const double longer = std::max(extent.x, extent.y), shorter = std::min(extent.x, extent.y);
+  return std::max(2.0, std::sqrt(static_cast<double>(assembly.size()) * shorter / longer));
+}
+
 bool costs_no_energy(const System& system, const ContactSprings& springs, const std::vector<double>& motion) {
   return std::abs(softness(system.k.assembly, springs, disc_motions(system.unknowns, motion))) < softness_of_mechanisms;
 }
@@ -186,14 +203,22 @@ void check(const SolverOptions& options) {
   }
 }
 
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite, bool single) {
+SolverMethod choose_method(const Assembly& assembly, const ContactSprings& springs, const SolverOptions& options) {
+  if (options.method != SolverMethod::automatic) return options.method;
+  constexpr double many_discs = 2e4;  // up to here multigrid saves less than 50 ms
+  constexpr double wide = 50;        // discs: the work of elimination grows with the width, that of iterations does not
+  constexpr int few_solutions = 10;  // each costs as many iterations anew
+  const bool iterate = static_cast<double>(assembly.size()) >= many_discs && !springs.may_be_indefinite() &&
+                       options.right_hand_sides <= few_solutions && discs_across(assembly) >= wide;
+  return iterate ? SolverMethod::multigrid : SolverMethod::multifrontal;
+}
+
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite) {
   SolveEstimate result;
   result.unknowns = unknowns.unknowns;
   result.factor_nonzeros = symbolic.nonzeros;
-  const double bytes = single ? sizeof(float) : sizeof(double);
-  result.factor_bytes = bytes * symbolic.panel_entries();
+  result.factor_bytes = sizeof(double) * symbolic.panel_entries();
   result.operations = symbolic.operations;
-  result.single_precision = single;
   // Beside the factor: update matrices on their way up, of which buffers are kept; L D L^T works in whole fronts.
   double waiting = 0, largest = 0;
   std::vector<double> of_children(symbolic.fronts(), 0.0);
@@ -208,7 +233,7 @@ SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& u
   // K on the discs and about three contacts each, and the vectors of a solution.
   const double b = symbolic.block, discs = static_cast<double>(symbolic.position.size());
   const double system = sizeof(double) * discs * (4 * b * b + 12 * b);
-  result.peak_bytes = result.factor_bytes + bytes * largest + system;
+  result.peak_bytes = result.factor_bytes + sizeof(double) * largest + system;
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/factorization.hpp"
@@ -26,9 +27,11 @@ struct System {
   SolverOptions options = {};                      ///< settings that back ends use
 };
 
-/// \param single whether the factor consists of floats
-SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite,
-                       bool single = false);
+/// The method that the options name; where they leave it to "auto", multigrid for many discs that form no narrow strip
+/// and are solved for a few load cases: elsewhere elimination is about as fast and finds more, pivots and mechanisms.
+SolverMethod choose_method(const Assembly& assembly, const ContactSprings& springs, const SolverOptions& options);
+
+SolveEstimate estimate(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns, bool indefinite);
 /// Estimates the cost of an iterative method.
 SolveEstimate estimate_iterations(const Assembly& assembly, const DegreesOfFreedom& unknowns);
 

@@ -19,19 +19,12 @@ namespace equidem {
 ///
 /// Where the rounding of extended precision could leave a residual that counts, contacts are evaluated in quadruple
 /// precision.
-///
-/// With a factor in single precision, corrections are the steps of preconditioned conjugate gradients, with the
-/// direction of Polak & Ribiere (Notay 2000). In between, the residual follows from r := r - alpha K p; it is replaced
-/// by that of the contact law (van der Vorst & Ye 2000) where it has fallen by so much that the rounding of K p in
-/// double counts, and at the end.
 struct StiffnessSolver::Refinement {
   const StiffnessSolver& solver;
   const RightHandSide& given;
-  bool conjugate;  ///< the factor is in single precision
   double good_enough;
   Solution solution;
   bool done = false;
-  bool failed = false;                 ///< conjugate gradients do not converge: the factor is too rough
   Factorization::Energies energies{};  ///< of the correction that comes next, where the method is iterative
 
   /// \param residual becomes f - f_int of the start, in which held components move and no other
@@ -48,7 +41,6 @@ struct StiffnessSolver::Refinement {
 
  private:
   void add_correction(std::span<double> x, int pass);
-  void add_conjugate_step(std::span<double> x, int pass);
   double evaluate(std::span<double> residual) const;
   [[nodiscard]] double rounding_of_forces() const;
   bool scale_to_least_energy(std::span<double> x) const;
@@ -59,13 +51,7 @@ struct StiffnessSolver::Refinement {
 
   PreciseMotion previous_{0};
   int corrections_ = 0;
-  double last_step_ = 0;            // size of the last correction, m
-  std::vector<double> residual_;    // of conjugate gradients
-  std::vector<double> direction_;   // p
-  std::vector<double> resistance_;  // K p
-  double last_alpha_ = 0;           // u := u + alpha p
-  double squared_residual_ = 0;     // r.M r of the last step
-  double replaced_ = 0;             // size of the residual when the contact law was last evaluated
+  double last_step_ = 0;  // size of the last correction, m
 };
 
 }  // namespace equidem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/precision/refinement.hpp"
+#include "equidem/statics/refinement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,20 +25,11 @@ double norm_of(std::span<const double> x) {
   })[0]);
 }
 
-double product_of(std::span<const double> x, std::span<const double> y) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
-  return sum;
-}
-
 }  // namespace
 
 StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in,
                                         std::span<double> residual, double good_enough_in)
-    : solver(solver_in),
-      given(given_in),
-      conjugate(solver_in.factor_->report().single_precision),
-      good_enough(good_enough_in) {
+    : solver(solver_in), given(given_in), good_enough(good_enough_in) {
   const auto& unknowns = solver.unknowns_;
   solution.motion = PreciseMotion(unknowns.held.size());
   bool moves = given.gradient.has_value();
@@ -56,13 +47,9 @@ StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const 
       }
     });
   }
-  solution.residual = replaced_ = solver.norm_of_free(residual);
+  solution.residual = solver.norm_of_free(residual);
   solution.scale = std::max(solution.residual, affine_force());
   done = solution.residual == 0;
-  if (!conjugate || done) return;
-  residual_.assign(residual.begin(), residual.end());
-  direction_.resize(residual.size());
-  resistance_.resize(residual.size());
 }
 
 void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
@@ -72,11 +59,7 @@ void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
     }
   });
   ++corrections_;
-  if (conjugate) {
-    add_conjugate_step(x, pass);
-  } else {
-    add_correction(x, pass);
-  }
+  add_correction(x, pass);
 }
 
 void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
@@ -114,43 +97,6 @@ void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) 
   solution.energy_error =
       scaled ? energies.solution : std::max(energies.error, of_one_pass * of_one_pass * energies.solution);
   done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
-}
-
-void StiffnessSolver::Refinement::add_conjugate_step(std::span<double> x, int pass) {
-  constexpr double digits_of_recurrence = 1e-9;  // K p in double has relative rounding of 1e-12 to 1e-10
-  const double rz = product_of(residual_, x);
-  // r - r_before = -alpha K p of the last step.
-  const double turn = pass == 0 ? 0 : std::max(0.0, -last_alpha_ * product_of(x, resistance_) / squared_residual_);
-  for (std::size_t k = 0; k < x.size(); ++k) direction_[k] = x[k] + turn * direction_[k];
-  multiply(solver.matrix_, solver.assembly_, solver.graph_, direction_, resistance_);
-  const double alpha = product_of(residual_, direction_) / product_of(direction_, resistance_);
-  if (!(rz > 0 && alpha > 0 && std::isfinite(alpha))) {
-    done = failed = true;
-    return;
-  }
-  last_alpha_ = alpha;
-  squared_residual_ = rz;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    x[k] = alpha * direction_[k];
-    residual_[k] -= alpha * resistance_[k];
-  }
-  last_step_ = norm_of(x);
-  solution.motion.add(x);
-  solution.refinements = pass;
-  // One pass of elimination in double precision mostly ends far below good_enough. Beside the forces of a prescribed
-  // motion, which cancel, a small residual says little of the motion: the next step has to be at its rounding.
-  const double wanted = 0.05 * good_enough * solution.scale;
-  const bool settled = last_step_ <= 100 * good_enough * norm_of(solution.motion.high);
-  double now = solver.norm_of_free(residual_);
-  if (now <= std::max(digits_of_recurrence * replaced_, wanted)) {
-    now = evaluate(residual_);
-    const bool stalls = now > 0.5 * replaced_;
-    done = stalls || (now <= wanted && settled);
-    failed = stalls && now > good_enough * solution.scale;
-    replaced_ = now;
-  }
-  solution.residual = now;
-  std::copy(residual_.begin(), residual_.end(), x.begin());
 }
 
 Solution StiffnessSolver::Refinement::finish() {
