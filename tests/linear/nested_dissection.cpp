@@ -12,7 +12,6 @@
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
-#include "equidem/linear/ordering/tree_schedule.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

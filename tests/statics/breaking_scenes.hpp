@@ -15,7 +15,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/mechanisms.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/fields.hpp"

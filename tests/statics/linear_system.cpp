@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The equations handed to other solvers are those that the program solves.
-#include "equidem/statics/equations/linear_system.hpp"
+#include "equidem/statics/linear_system.hpp"
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>

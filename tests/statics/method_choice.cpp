@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/equilibrium.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "support/catch.hpp"
 

@@ -19,7 +19,7 @@
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/material/spring_relations.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "left_out.hpp"
 #include "prestressed.hpp"

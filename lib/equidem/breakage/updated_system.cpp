@@ -16,9 +16,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/mechanisms.hpp"
 
 namespace equidem {
 namespace {

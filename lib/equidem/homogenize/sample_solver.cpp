@@ -11,9 +11,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {

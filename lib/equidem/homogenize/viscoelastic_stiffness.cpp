@@ -16,8 +16,8 @@
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/umfpack_factorization.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {

@@ -10,9 +10,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 

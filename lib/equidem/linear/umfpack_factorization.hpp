@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"

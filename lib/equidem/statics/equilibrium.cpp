@@ -10,12 +10,11 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/rigidity.hpp"
+#include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {

@@ -18,9 +18,9 @@
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 

@@ -15,7 +15,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 #include "equidem/waves/lowest_eigenvalues.hpp"
 

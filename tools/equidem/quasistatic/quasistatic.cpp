@@ -20,8 +20,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/statics/choice/solve_time.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"

@@ -13,7 +13,6 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/kernels/panel_solve.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/multifrontal/cholesky_factor.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 

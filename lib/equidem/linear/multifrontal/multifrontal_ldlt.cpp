@@ -12,7 +12,6 @@
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
-#include "equidem/linear/multifrontal/indefinite_front.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
 namespace equidem {

@@ -11,7 +11,7 @@
 
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/kernels/panel_change.hpp"
-#include "equidem/linear/multifrontal/cholesky_factor.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 
 namespace equidem {
 

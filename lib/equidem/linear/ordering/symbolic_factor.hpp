@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The structure of the factor: the discs of each front.
+/// The structure of the factor: the discs of each front, and the division of work on the fronts by several threads.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,20 @@
 #include "equidem/linear/ordering/nested_dissection.hpp"
 
 namespace equidem {
+
+/// A division of the tree into waves, worked off one after another. What each node computes does not depend on it.
+struct TreeSchedule {
+  struct Wave {
+    std::vector<std::int32_t> subtrees;  ///< their roots, independent of each other, the most work first
+    std::vector<std::int32_t> above;  ///< nodes that only wait for subtrees of this and earlier waves, children first
+  };
+  std::vector<Wave> waves;
+};
+
+/// Waves take a fifth of the work each: what waits for its parent is then the update matrices of a few small
+/// subtrees and of some finished waves, not of all subtrees at once.
+/// \param work of each node, in any unit
+TreeSchedule schedule_tree(const DissectionTree& tree, std::span<const double> work);
 
 /// Fronts of a multifrontal factorization (Duff & Reid 1983), one for each node of the dissection tree. Discs are
 /// named by their position in the elimination order.

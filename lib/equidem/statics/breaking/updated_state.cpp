@@ -10,7 +10,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 
