@@ -10,7 +10,6 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/spring_network.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/supports.hpp"
 

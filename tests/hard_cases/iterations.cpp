@@ -12,9 +12,6 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/linear/multigrid/multigrid_solver.hpp"
-#include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/number_unknowns.hpp"
 
 #include "hard_cases/ledger.hpp"
 #include "support/catch.hpp"
@@ -195,48 +192,4 @@ TEST_CASE("multigrid_solves_a_single_load_no_load_and_nothing_to_move") {
   table.note(
       "solve, all discs held", "no motion, reactions are the loads",
       fmt::format("largest motion {}, sum of reactions over the load {}", largest_motion(held), reaction / load));
-}
-
-TEST_CASE("a_wrong_coarse_matrix_gives_the_same_answer_after_more_iterations") {
-  HardCase table({.name = "multigrid with a coarse matrix made wrong",
-                  .why = "a preconditioner that is wrong must cost iterations, never the answer"});
-  const Assembly assembly = delaunay_assembly({.discs = 3000});
-  const Problem problem = pulled(assembly);
-  const ContactGraph graph(assembly);
-  const DegreesOfFreedom unknowns = number_unknowns(
-      assembly, problem.springs, derive_effects(assembly, problem.springs, Rotation::from_scene), left_held);
-  const SpringNetwork network{assembly, graph, problem.springs, unknowns};
-  std::vector<double> load(unknowns.held.size(), 0.0);
-  for (const std::int32_t d : group(assembly, "right").discs) {
-    if (unknowns.held[3 * d] != 0) continue;
-    load[3 * d] = pull[0].force.x;
-    load[3 * d + 1] = pull[0].force.y;
-  }
-  const Equilibrium exact = solve_equilibrium(assembly, problem.springs, left_held, pull,
-                                              {.rotation = {}, .solver = {.method = SolverMethod::multifrontal}});
-  std::int64_t right = 0;
-  for (const double factor : {1.0, 0.1, 10.0}) {
-    const auto solver = multigrid_solver(network, {.coarse_factor = factor});
-    PreciseMotion motion(load.size());
-    std::vector<double> x = load;
-    for (int pass = 0; pass < 4; ++pass) {
-      solver->solve(x, 1);
-      motion.add(x);
-      residual_force(network, motion, {}, load, x);
-    }
-    double off = 0, size = 0;
-    for (std::size_t d = 0; d < assembly.size(); ++d) {
-      off = std::max(off, norm(Vec2{motion.high[3 * d], motion.high[3 * d + 1]} - exact.motions[d].u));
-      size = std::max(size, norm(exact.motions[d].u));
-    }
-    const std::int64_t iterations = solver->report().iterations;
-    CAPTURE(factor, off / size, iterations, right);
-    CHECK(off <= 1e-13 * size);
-    if (factor == 1)
-      right = iterations;
-    else
-      CHECK(iterations > right);
-    table.note(fmt::format("solve, coarse matrix times {}", factor), "the motions of elimination to 1e-13",
-               fmt::format("{:.1e} after {} iterations in four passes", off / size, iterations));
-  }
 }

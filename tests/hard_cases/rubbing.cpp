@@ -11,7 +11,7 @@
 #include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
-#include "equidem/statics/prestress/critical_load.hpp"
+#include "equidem/statics/critical_load.hpp"
 
 #include "breakage/unbonded_scenes.hpp"
 #include "hard_cases/ledger.hpp"

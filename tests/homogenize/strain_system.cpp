@@ -6,19 +6,29 @@
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/linear/eigen_matrix.hpp"
 
 #include "support/catch.hpp"
 
 using namespace equidem;
 
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+Matrix eigen_matrix(const CompressedColumns& k) {
+  using Long = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
+  return Matrix(Eigen::Map<const Long>(k.size, k.size, k.first.back(), k.first.data(), k.rows.data(), k.values.data()));
+}
+
+}  // namespace
+
 TEST_CASE("eigen_finds_the_fluctuations_of_a_periodic_cell_under_each_mean_strain") {
-  using Matrix = Eigen::SparseMatrix<double>;
   const Rotation rotation = GENERATE(Rotation::free, Rotation::restrained);
   for (const Assembly& cell : {delaunay_assembly({.discs = 70, .periodic = true}),
                                hexagonal_lattice({.columns = 4, .rows = 4, .periodic = true})}) {
@@ -28,7 +38,7 @@ TEST_CASE("eigen_finds_the_fluctuations_of_a_periodic_cell_under_each_mean_strai
     CHECK(system.size() == ours.unknowns);
     REQUIRE(system.right_hand_sides.size() == (rotation == Rotation::free ? 3 : 4));
     REQUIRE(system.names.size() == system.right_hand_sides.size());
-    const auto k = eigen_matrix<Matrix>(with_upper_triangle(system.stiffness));
+    const auto k = eigen_matrix(with_upper_triangle(system.stiffness));
     const Eigen::SparseLU<Matrix> factor(k);
     for (std::size_t c = 0; c < 3; ++c) {
       const std::vector<double>& given = system.right_hand_sides[c];

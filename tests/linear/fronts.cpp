@@ -9,7 +9,6 @@
 
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
-#include "equidem/linear/multifrontal/indefinite_front.hpp"
 
 #include "support/catch.hpp"
 #include "support/fields.hpp"
@@ -123,7 +122,7 @@ TEST_CASE("a_front_that_is_not_positive_definite_names_its_first_bad_pivot") {
   Symmetric a = random_symmetric(k, static_cast<double>(k), 0, 5);
   a(bad, bad) = -1;
   CAPTURE(k, bad);
-  CHECK(factorize_front<double>(k, 0, a.values.data(), nullptr) == static_cast<int>(bad) + 1);
+  CHECK(factorize_front(k, 0, a.values.data(), nullptr) == static_cast<int>(bad) + 1);
 }
 
 TEST_CASE("factors_of_an_indefinite_front_multiply_to_the_front") {

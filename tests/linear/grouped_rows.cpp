@@ -13,7 +13,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/linear/multigrid/wavefront.hpp"
+#include "equidem/linear/multigrid/cycle.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 

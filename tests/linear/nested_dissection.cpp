@@ -12,7 +12,6 @@
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
-#include "equidem/linear/ordering/tree_schedule.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
@@ -269,12 +268,12 @@ TEST_CASE("a_sweep_hands_every_parent_the_values_of_its_children") {
     const auto& nodes = symbolic.tree.nodes;
     for (const int threads : {1, 3}) {
       const ThreadsFor with(threads);
-      TreeSweep<double> sweep(symbolic, [](std::size_t) { return 1.0; });
+      TreeSweep sweep(symbolic, [](std::size_t) { return 1.0; });
       // Each front hands on the number of discs in its subtree, in an array of its own odd size.
       std::vector<double> discs_below(nodes.size(), -1);
       double reported = 0;
       sweep.up([](std::size_t t) { return 1 + t % 5; },
-               [&](std::size_t t, double* values, const std::vector<TreeSweep<double>::Child>& children) {
+               [&](std::size_t t, double* values, const std::vector<TreeSweep::Child>& children) {
                  double sum = nodes[t].end - nodes[t].begin;
                  for (const auto& child : children) {
                    for (std::size_t k = 0; k < 1 + child.node % 5; ++k) {

@@ -86,12 +86,12 @@ TEST_CASE("a_changed_factor_is_that_of_the_changed_matrix") {
         changes.push_back(taken_out(present[which]));
         present.erase(present.begin() + static_cast<std::ptrdiff_t>(which));
       }
-      CHECK(factor.change(changes));
+      CHECK(factor.change(changes, {}).held.empty());
       for (const RankOneChange& change : changes) add(k, change, block);
       if (step % 20 == 19) largest_error = std::max(largest_error, error_against(k, factor, step));
     }
     for (const RankOneChange& change : present) {
-      CHECK(factor.change(std::array{taken_out(change)}));
+      CHECK(factor.change(std::array{taken_out(change)}, {}).held.empty());
       add(k, taken_out(change), block);
     }
     CAPTURE(trial, discs, block, leaf_size, largest_error);
@@ -113,8 +113,7 @@ TEST_CASE("solutions_that_are_followed_are_those_of_the_changed_factor") {
     const auto solved = [&](const std::vector<double>& given) {
       std::vector<double> x(given.size());
       for (std::size_t f = 0; f < count; ++f)
-        permute_to_elimination<double>(*system.symbolic, std::span(given).subspan(f * n, n),
-                                       std::span(x).subspan(f * n, n));
+        permute_to_elimination(*system.symbolic, std::span(given).subspan(f * n, n), std::span(x).subspan(f * n, n));
       factor.forward({x.data(), n, count});
       return x;
     };
@@ -180,7 +179,7 @@ TEST_CASE("loads_of_a_change_are_solved_on_its_path") {
         offset += pivots * loads.size();
       }
       for (std::size_t t = system.symbolic->fronts(); t-- > 0;) factor.backward(t, {x.data(), n, 1});
-      permute_from_elimination<double>(*system.symbolic, x, in_order);
+      permute_from_elimination(*system.symbolic, x, in_order);
       std::vector<double> expected = right[c];
       factor.solve(expected, 1);
       CAPTURE(trial, c, changes.size(), loads.size());

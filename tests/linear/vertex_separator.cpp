@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/linear/ordering/vertex_separator.hpp"
-
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -10,6 +8,7 @@
 
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/linear/ordering/nested_dissection.hpp"
 
 #include "support/catch.hpp"
 

@@ -397,7 +397,6 @@ legs = [1.0]
                          "strength_target: a notch of 0.2 m in a sample", "Give shorter notches")
         self.check_error(equidem("calibrate", STRENGTH, *notched), 2, "strength_target: a toughness needs notches")
         result = self.calibrated(STRENGTH, "--dry-run")
-        self.assertGreater(result["estimated_seconds"], 0)
         self.assertEqual(result["estimated_tests"], 64)
 
 

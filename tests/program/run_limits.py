@@ -252,13 +252,6 @@ class Memory(ProgramTest):
                            "--set", "solver.method=multifrontal")
         self.check_error(done, 1, "of address space", "ulimit -v")
 
-    def test_too_little_to_start_is_told(self):
-        for megabytes in (100, 200, 399):
-            done = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, timeout=60,
-                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
-                                                                        (megabytes << 20, megabytes << 20)))
-            self.check_error(done, 1, "address space", "ulimit -v")
-
     def test_a_file_that_memory_cannot_hold_is_refused(self):
         file = self.folder / "many.json"
         file.write_text('{"schema": "equidem-assembly/1", "discs": [' + "[0, 0, 0.5]," * 7000000 + "[0, 0, 0.5]]}")

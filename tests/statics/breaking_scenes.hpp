@@ -15,7 +15,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/mechanisms.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/fields.hpp"
@@ -188,7 +188,6 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
   StageTimes times;
   SolverOptions options;
   options.method = SolverMethod::multifrontal;
-  options.precision = FactorPrecision::double_precision;
   const StiffnessSolver solver(scene.assembly, springs, ContactGraph(scene.assembly), scene.unknowns, options,
                                Mechanisms::hold, times);
   const std::vector<Solution> solutions = solver.solve(scene.cases, times);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Buckling: the factor of the forces at rest at which a column of discs gives way.
-#include "equidem/statics/prestress/critical_load.hpp"
+#include "equidem/statics/critical_load.hpp"
 
 #include <cmath>
 #include <numbers>

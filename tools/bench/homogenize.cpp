@@ -8,7 +8,7 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include "bench.hpp"

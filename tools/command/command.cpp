@@ -53,8 +53,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--seed", options.seed, "short for --set assembly.seed=S, of a packing packing.seed=S")
       ->check(whole_number(0))
       ->type_name("S");
-  command.add_flag("--dry-run", options.dry_run,
-                   "say how large the computation is and how long it takes, without doing it");
+  command.add_flag("--dry-run", options.dry_run, "say how large the computation is, without doing it");
   add_result_options(command, options);
 }
 

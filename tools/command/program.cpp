@@ -15,7 +15,6 @@
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "equidem/casefile/engine/toml.hpp"
@@ -201,82 +200,6 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
   return verb == commands.end() ? 2 : runs[static_cast<std::size_t>(verb - commands.begin())]();
 }
 
-constexpr int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
-
-void hold_back_interrupts(bool held) {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : interrupts) sigaddset(&set, signal);
-  pthread_sigmask(held ? SIG_BLOCK : SIG_UNBLOCK, &set, nullptr);
-}
-
-/// Nothing has begun: the process ends with the exit code of an interruption.
-void end_interrupted(int) {
-  constexpr std::string_view sentence = "equidem: stopped as asked.\n";
-  static_cast<void>(!write(STDERR_FILENO, sentence.data(), sentence.size()));
-  _exit(static_cast<int>(ErrorKind::interrupted));
-}
-
-// Only what stands in .preinit_array runs before libraries start; sanitizers are not ready there.
-#define EQUIDEM_UNCHECKED __attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined")))
-
-constexpr const char* blas_threads = "OPENBLAS_NUM_THREADS";
-char one_blas_thread[] = "OPENBLAS_NUM_THREADS=1";
-
-/// OpenBLAS 0.3.29 maps its buffers when it is loaded, and tries for ever where the limit of the process forbids it.
-EQUIDEM_UNCHECKED void require_address_space_to_start() {
-  constexpr rlim_t least = rlim_t{400} << 20;
-  constexpr std::string_view sentence =
-      "equidem: the address space is limited to less than 420 MB (the libraries of linear algebra need as much to "
-      "start). Raise the limit (ulimit -v).\n";
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur >= least) return;
-  if (write(STDERR_FILENO, sentence.data(), sentence.size()) < 0) _exit(2);
-  _exit(1);
-}
-
-EQUIDEM_UNCHECKED bool begins_with(const char* text, const char* start) {
-  for (; *start != '\0'; ++text, ++start) {
-    if (*text != *start) return false;
-  }
-  return true;
-}
-
-/// Puts the setting into the place of "_", in which shells name the program and which nothing here reads. The
-/// environment has no room for another variable before the C library has started.
-EQUIDEM_UNCHECKED void ask_for_one_blas_thread(char** environment) {
-  char** last_program = nullptr;
-  for (char** variable = environment; *variable != nullptr; ++variable) {
-    if (begins_with(*variable, "OPENBLAS_NUM_THREADS=")) return;
-    if (begins_with(*variable, "_=")) last_program = variable;
-  }
-  if (last_program != nullptr) *last_program = one_blas_thread;
-}
-
-EQUIDEM_UNCHECKED void before_libraries_start(int, char**, char** environment) {
-  require_address_space_to_start();
-  ask_for_one_blas_thread(environment);
-}
-using AtStart = void (*)(int, char**, char**);
-__attribute__((section(".preinit_array"), used)) const AtStart before_libraries = before_libraries_start;
-
-/// OpenBLAS starts threads when it is loaded, before main, and they spin beside ours, although every call here runs on
-/// one thread. Only its environment can prevent that: where the user leaves it unset and no place was found for it,
-/// set it and start again. Handlers of signals end with the old program, held signals do not: in between they wait for
-/// catch_interrupts.
-void start_without_blas_threads(char** argv) {
-  if (std::getenv(blas_threads) != nullptr) return;
-  hold_back_interrupts(true);
-  for (const int signal : interrupts)  // in the threads of OpenBLAS
-    if (std::signal(signal, end_interrupted) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);  // by nohup
-  if (setenv(blas_threads, "1", 0) != 0) return;
-  execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
-}
-
-}  // namespace
-
-namespace {
-
 /// A descriptor of the standard streams that is closed would become that of the first file that is opened: what cannot
 /// be written to takes its place. A pipe or a file that takes no more is an error of the write, not a signal.
 void keep_streams_apart() {
@@ -294,9 +217,7 @@ int run_program(const Program& program, int argc, char** argv) {
     std::fprintf(stderr, "%s: %s\n", program.name, one_line(sentence).c_str());
     return exit_code;
   };
-  start_without_blas_threads(argv);
   catch_interrupts();
-  hold_back_interrupts(false);
   try {
     return run(program, std::vector<std::string>(argv + 1, argv + argc));
   } catch (const Error& error) {

@@ -16,11 +16,10 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/homogenize/stress.hpp"
+#include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/material/spring_relations.hpp"
-#include "equidem/statics/choice/solve_time.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/harmonic/harmonic_solver.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "left_out.hpp"
 #include "prestressed.hpp"
@@ -365,10 +364,8 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
 }
 
 /// \param resident bytes of the process before it solves
-/// \param before s of what is done beside these solutions
 /// \param memory_limit bytes; 0: what is available
-Results estimate_results(const SolveEstimate& e, double resident, double solutions, double before, double memory_limit,
-                         const std::string& trust) {
+Results estimate_results(const SolveEstimate& e, double resident, double memory_limit) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory")
@@ -382,22 +379,14 @@ Results estimate_results(const SolveEstimate& e, double resident, double solutio
   if (e.factor_nonzeros > 0)
     results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize",
                              {.digits = 3});
-  results.line("method", e.why.empty() ? to_string(e.method) : fmt::format("{} ({})", to_string(e.method), e.why));
-  results.set("method", to_string(e.method));
-  if (e.other_bytes > 0) {
-    results.line("instead", e.method == SolverMethod::multigrid ? "multifrontal" : "multigrid")
-        .add("other_peak_bytes", "about", e.other_bytes, "at the peak", {Shown::bytes})
-        .add("other_time_ratio", "", e.other_seconds, "times the time", {.digits = 2});
-  }
-  const double seconds = before + estimate_seconds(e, solutions, measure_solve_rates(e.method), thread_count());
-  results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, " + trust, {.digits = 2});
+  results.line("method").add("method", "", std::string(to_string(e.method)));
   return results.block("nothing was solved (--dry-run)\n");
 }
 
 }  // namespace
 
-Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys,
-                        double complex_solutions, const std::string& trust, std::optional<double> inertia) {
+Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys, bool of_complex,
+                        std::optional<double> inertia) {
   const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   EquilibriumOptions options = problem.options();
@@ -412,17 +401,14 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   constexpr double bytes_of_breaking_contact = 450;
   if (problem.breaks)
     estimate.peak_bytes += bytes_of_breaking_contact * static_cast<double>(problem.assembly.contacts.size());
-  double before = problem.times.total();
-  if (complex_solutions > 0) {
-    constexpr double work = 4;  // multiplications of two complex numbers over those of real ones
-    const SolveEstimate of_complex = estimate_harmonic(problem.assembly, problem.springs.springs, effects);
-    estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + of_complex.peak_bytes);
-    before +=
-        estimate_seconds(of_complex, work * complex_solutions, measure_solve_rates(of_complex.method), thread_count());
+  if (of_complex) {
+    estimate.peak_bytes = std::max(
+        estimate.peak_bytes,
+        estimate.factor_bytes + estimate_viscoelastic(problem.assembly, problem.springs.springs, effects).peak_bytes);
   }
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, resident, solutions, before, problem.resolved.solver.memory_limit, trust));
+      .append(estimate_results(estimate, resident, problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

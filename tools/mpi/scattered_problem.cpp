@@ -5,8 +5,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/rigidity.hpp"
 

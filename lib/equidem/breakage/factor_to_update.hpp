@@ -7,11 +7,10 @@
 
 namespace equidem {
 
-/// With a method and a precision where they are left to the library: a factor in double precision, which alone tells
-/// the stability of each network and can be updated.
+/// With elimination where the method is left to the library: its factor can be updated and tells the stability of each
+/// network.
 inline SolverOptions factor_to_update(SolverOptions options) {
   if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
-  if (options.precision == FactorPrecision::automatic) options.precision = FactorPrecision::double_precision;
   return options;
 }
 

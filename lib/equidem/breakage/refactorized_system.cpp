@@ -9,8 +9,8 @@
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
 
 namespace equidem {

@@ -16,9 +16,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/statics/breaking/updated_equilibrium.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/mechanisms.hpp"
 
 namespace equidem {
 namespace {
@@ -386,8 +386,7 @@ bool squares_fit(const BreakableNetwork& network, double stiffest) {
 
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network) {
   const SolverOptions solver = factor_to_update(network.solver);
-  const bool asked_for =
-      solver.method == SolverMethod::multifrontal && solver.precision == FactorPrecision::double_precision;
+  const bool asked_for = solver.method == SolverMethod::multifrontal;
   if (!asked_for || network.springs.any_negative() || network.cases.size() > 2)
     return make_refactorized_system(std::move(network));
   std::vector<std::uint8_t> held = held_or_loaded(network);

@@ -83,7 +83,6 @@ struct EffectiveStiffness {
   std::string solver;
   std::int64_t iterations = 0;  ///< of all load cases, where the method is iterative
   double factor_bytes = 0;
-  bool single_precision = false;  ///< of the factor
   StageTimes times;
   /// Motion of every disc for unit strain xx, yy, xy beside the uniform strain, m; discs removed stand still. Empty for
   /// tractions.

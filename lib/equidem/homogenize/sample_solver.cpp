@@ -11,9 +11,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {
@@ -162,7 +162,6 @@ std::vector<Solution> SampleSolver::solve(std::span<const RightHandSide> cases, 
   const FactorReport& report = solver_->factor().report();
   result.solver = solver_->solver_name();
   result.factor_bytes = report.bytes;
-  result.single_precision = report.single_precision;
   result.iterations = report.iterations;
   result.times.add("error bound", watch.lap());
   return solutions;

@@ -11,8 +11,8 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/matrix.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {

@@ -6,7 +6,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/statics/equations/linear_system.hpp"
+#include "equidem/statics/linear_system.hpp"
 
 namespace equidem {
 

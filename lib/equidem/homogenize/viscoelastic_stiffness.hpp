@@ -13,6 +13,7 @@
 #include "equidem/core/matrix.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/viscoelasticity.hpp"
 
 namespace equidem {
@@ -45,7 +46,10 @@ struct ViscoelasticStiffness {
   StageTimes times;
 };
 
-/// Unit strains xx, yy and xy on one factorization for each frequency, on the fronts of the elastic matrix.
+/// Size of the complex factors of an assembly without supports.
+SolveEstimate estimate_viscoelastic(const Assembly& assembly, const ContactSprings& springs, const Effects& effects);
+
+/// Unit strains xx, yy and xy on one factorization for each frequency.
 /// \param springs elastic; those of each contact times the factors of `viscoelasticity` are its complex springs
 /// \param frequencies Hz, > 0
 /// \param options boundary periodic or displacement

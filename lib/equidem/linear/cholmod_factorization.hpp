@@ -7,21 +7,14 @@
 #include <memory>
 #include <span>
 
-#include "equidem/core/stopwatch.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 
 namespace equidem {
 
-/// Setting and timings for comparisons of solvers.
-struct CholmodTrial {
-  bool keep_thread_settings = false;  ///< leave the threads of BLAS and OpenMP as the process has them
-  StageTimes times;                   ///< compression, ordering, analysis, factorization
-};
-
-/// K = L L^T over the components that are not held, with 32-bit indices as long as they suffice. Returns a null pointer
+/// K = L L^T over the components that are not held. Returns a null pointer
 /// where K is not positive definite to working precision; `report`, where given, contains the place. Held components
 /// are solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
 /// once.
@@ -29,6 +22,6 @@ struct CholmodTrial {
 /// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                                 CholmodOrdering ordering, std::span<const std::int32_t> order,
-                                                FactorReport* report = nullptr, CholmodTrial* trial = nullptr);
+                                                FactorReport* report = nullptr);
 
 }  // namespace equidem

@@ -15,7 +15,6 @@ struct FactorReport {
   std::string name;     ///< "multifrontal Cholesky", ...
   double nonzeros = 0;  ///< entries of L
   double bytes = 0;
-  bool single_precision = false;      ///< solving has the accuracy of single precision
   std::int64_t negative_pivots = -1;  ///< negative eigenvalues (Sylvester); -1 where the method does not determine it
   double growth = 0;                  ///< largest |L_ij|; 0 where not watched
   /// Smallest pivot over the diagonal entry it started from: the share of a stiffness that is left when all others

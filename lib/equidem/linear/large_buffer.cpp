@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <complex>
 #include <cstdint>
 #include <cstdlib>
 
@@ -60,8 +59,7 @@ void free_large(void* memory, std::size_t bytes) {
   }
 }
 
-template <typename Real>
-LargeVector<Real> BufferPool<Real>::take(std::size_t numbers) {
+LargeVector<double> BufferPool::take(std::size_t numbers) {
   if (numbers < small_buffer) return Buffer(numbers);
   // Sizes in steps of an eighth, so that a buffer fits again.
   const std::size_t step = std::bit_floor(numbers) / 8;
@@ -78,22 +76,16 @@ LargeVector<Real> BufferPool<Real>::take(std::size_t numbers) {
   return Buffer(size);
 }
 
-template <typename Real>
-void BufferPool<Real>::give_back(Buffer&& buffer) {
+void BufferPool::give_back(Buffer&& buffer) {
   Buffer taken = std::move(buffer);
   if (taken.size() < small_buffer) return;
   const std::lock_guard lock(mutex_);
   idle_.emplace(taken.size(), std::move(taken));
 }
 
-template <typename Real>
-void BufferPool<Real>::clear() {
+void BufferPool::clear() {
   const std::lock_guard lock(mutex_);
   idle_.clear();
 }
-
-template class BufferPool<float>;
-template class BufferPool<double>;
-template class BufferPool<std::complex<double>>;
 
 }  // namespace equidem

@@ -45,11 +45,9 @@ template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
 
 /// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
-/// There for float, double and std::complex<double>.
-template <typename Real>
 class BufferPool {
  public:
-  using Buffer = LargeVector<Real>;
+  using Buffer = LargeVector<double>;
   /// At least that many numbers, uninitialized.
   Buffer take(std::size_t numbers);
   void give_back(Buffer&& buffer);

@@ -13,9 +13,7 @@
 namespace equidem {
 
 struct DegreesOfFreedom;
-template <typename Number>
-struct MatrixOnGraphOf;
-using MatrixOnGraph = MatrixOnGraphOf<double>;
+struct MatrixOnGraph;
 struct SolverOptions;
 struct SymbolicFactor;
 
@@ -49,7 +47,10 @@ struct EnumNames<SolverMethod> {
   };
   static constexpr const char* what = "solver method";
   static constexpr Entry list[] = {
-      {SolverMethod::automatic, "auto", "multigrid where it is estimated to be faster, else multifrontal", {}},
+      {SolverMethod::automatic,
+       "auto",
+       "multigrid from 20000 discs on with kT >= 0, but for slender assemblies; else multifrontal",
+       {}},
       {SolverMethod::multifrontal, "multifrontal", "ours: Cholesky where no spring is negative, else L D L^T", {}},
       {SolverMethod::cholmod,
        "cholmod",
@@ -94,15 +95,10 @@ inline double memory_factor(SolverMethod method, CholmodOrdering ordering) {
 /// Iterations after which an iterative method gives up, >= 1.
 inline constexpr int most_iterations = 250;
 
-/// Precision of the multifrontal Cholesky factor. Solutions have that of double precision with either.
-enum class FactorPrecision { automatic, single_precision, double_precision };
-
 struct SolverOptions {
   SolverMethod method = SolverMethod::automatic;
-  CholmodOrdering ordering = CholmodOrdering::equidem;     ///< for SolverMethod::cholmod alone
-  FactorPrecision precision = FactorPrecision::automatic;  ///< single for large factors, as far as the condition allows
-  int max_refinements =
-      4;  ///< steps of iterative refinement, >= 0; eight times as many with a factor in single precision
+  CholmodOrdering ordering = CholmodOrdering::equidem;  ///< for SolverMethod::cholmod alone
+  int max_refinements = 4;                              ///< steps of iterative refinement, >= 0
   double memory_limit = 0;  ///< bytes that factor and factorization may take; 0: what the machine has free
   /// Wanted of the motions, relative, in the norm of energy; iterative methods end there, others ignore it. 0:
   /// round-off.
@@ -117,17 +113,11 @@ void check(const SolverOptions& options);
 /// Estimated cost of a solution.
 struct SolveEstimate {
   SolverMethod method = SolverMethod::multifrontal;
-  std::string why{};         ///< the reason of the choice of "auto"; empty where it did not weigh methods
-  double other_bytes = 0;    ///< at the peak, of elimination where `method` is multigrid, of multigrid where it is not;
-                             ///< 0: not weighed
-  double other_seconds = 0;  ///< over the time of `method`
   std::int64_t unknowns = 0;
-  double discs = 0;
   double factor_nonzeros = 0;  ///< entries of L
   double factor_bytes = 0;
-  double peak_bytes = 0;          ///< factor and what lives beside it during factorization
-  double operations = 0;          ///< additions and multiplications
-  bool single_precision = false;  ///< of the factor
+  double peak_bytes = 0;  ///< factor and what lives beside it during factorization
+  double operations = 0;  ///< additions and multiplications
 };
 
 /// Treatment of zero-energy modes.

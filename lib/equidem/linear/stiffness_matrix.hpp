@@ -10,35 +10,29 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 
 /// A symmetric matrix of small blocks on the graph of discs: K_dd for every disc d and K_ij for every contact (i, j);
 /// K_ji is its transpose. Two discs that touch twice have two blocks, to be added. Unknowns are scaled (u_x, u_y, a
 /// theta), entries in Pa.
-template <typename Number>
-struct StiffnessMatrixOf {
+struct StiffnessMatrix {
   int block = 2;                 ///< rows of a block: DegreesOfFreedom::per_disc
-  LargeVector<Number> diagonal;  ///< discs x block x block, row-major
-  std::vector<Number>
+  LargeVector<double> diagonal;  ///< discs x block x block, row-major
+  std::vector<double>
       coupling;  ///< contacts x block x block, row-major; zero for a contact of a disc with its own image
 
-  [[nodiscard]] const Number* diagonal_block(std::size_t disc) const { return &diagonal[disc * block * block]; }
-  [[nodiscard]] const Number* coupling_block(std::size_t contact) const { return &coupling[contact * block * block]; }
+  [[nodiscard]] const double* diagonal_block(std::size_t disc) const { return &diagonal[disc * block * block]; }
+  [[nodiscard]] const double* coupling_block(std::size_t contact) const { return &coupling[contact * block * block]; }
 };
-using StiffnessMatrix = StiffnessMatrixOf<double>;
 
 /// A matrix with its graph, as fronts are assembled from it.
-template <typename Number>
-struct MatrixOnGraphOf {
-  const StiffnessMatrixOf<Number>& matrix;
+struct MatrixOnGraph {
+  const StiffnessMatrix& matrix;
   const Assembly& assembly;
   const ContactGraph& graph;
 };
-using MatrixOnGraph = MatrixOnGraphOf<double>;
 
 /// The diagonal entry of held components, Pa; 1 where none is held.
 double held_stiffness(const StiffnessMatrix& matrix, const DegreesOfFreedom& unknowns);

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -31,90 +32,67 @@ using Index = SuiteSparse_long;
 
 static_assert(std::is_same_v<Index, std::int64_t>, "the indices of CompressedColumns are handed on");
 
-class UmfpackLu final : public Factorization {
- public:
-  explicit UmfpackLu(double held_stiffness) : held_stiffness_(held_stiffness) {
-    umfpack_dl_defaults(control_.data());
-    control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;  // all entries of K have one unit
+/// The matrix and its factors, which outlive an interrupted factorization.
+struct Work {
+  CompressedColumns k;
+  std::vector<double> imaginary;  ///< parts of the entries of k; empty: the matrix is real
+  std::array<double, UMFPACK_CONTROL> control{};
+  std::array<double, UMFPACK_INFO> info{};
+  Index size = 0, status = UMFPACK_OK;
+  bool complex = false, analyzed = false;
+  void* numeric = nullptr;
+
+  /// \param whole all entries, sorted by column and row
+  explicit Work(CompressedColumns whole, std::vector<double> imaginary_in = {})
+      : k(std::move(whole)), imaginary(std::move(imaginary_in)), size(k.size), complex(!imaginary.empty()) {
+    umfpack_dl_defaults(control.data());          // the same of complex numbers
+    control[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;  // all entries of K have one unit
     // Diagonal pivots must pass the same test as others: where K is indefinite the default, 0.001, is lax.
-    control_[UMFPACK_SYM_PIVOT_TOLERANCE] = control_[UMFPACK_PIVOT_TOLERANCE];
-    control_[UMFPACK_IRSTEP] = 0;  // refinement is done for all back ends alike
-    report_.name = "UMFPACK LU";
+    control[UMFPACK_SYM_PIVOT_TOLERANCE] = control[UMFPACK_PIVOT_TOLERANCE];
+    control[UMFPACK_IRSTEP] = 0;  // refinement is done for all back ends alike
+  }
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+  ~Work() { complex ? umfpack_zl_free_numeric(&numeric) : umfpack_dl_free_numeric(&numeric); }
+
+  void factorize() {
+    const dense::OneThreadPerCall one_thread;
+    const Index *first = k.first.data(), *rows = k.rows.data();
+    const double *real = k.values.data(), *imag = imaginary.data();
+    double *of_control = control.data(), *of_info = info.data();
+    void* symbolic = nullptr;
+    status = complex ? umfpack_zl_symbolic(size, size, first, rows, real, imag, &symbolic, of_control, of_info)
+                     : umfpack_dl_symbolic(size, size, first, rows, real, &symbolic, of_control, of_info);
+    if (status < UMFPACK_OK) return;
+    analyzed = true;
+    status = complex ? umfpack_zl_numeric(first, rows, real, imag, symbolic, &numeric, of_control, of_info)
+                     : umfpack_dl_numeric(first, rows, real, symbolic, &numeric, of_control, of_info);
+    complex ? umfpack_zl_free_symbolic(&symbolic) : umfpack_dl_free_symbolic(&symbolic);
   }
 
-  /// Whether no pivot is zero.
-  bool factorize(CompressedColumns k) {
-    component_ = std::move(k.component);
-    if (component_.empty()) return true;
-    work_ = std::make_shared<Work>();
-    work_->k = std::move(k);
-    work_->control = control_;
-    work_->size = static_cast<Index>(component_.size());
-    constexpr Index small = 30000;  // less than a second
-    if (work_->size < small) {
-      work_->factorize();
-    } else {
-      run_aside();
+  [[nodiscard]] double factor_bytes() const { return info[UMFPACK_NUMERIC_SIZE] * info[UMFPACK_SIZE_OF_UNIT]; }
+
+  [[noreturn]] void fail(const char* doing, Index failed) const {
+    const std::string problem = fmt::format("{} the {}stiffness matrix of {} unknowns failed in UMFPACK", doing,
+                                            complex ? "complex " : "", size);
+    if (failed == UMFPACK_ERROR_out_of_memory) {
+      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
     }
-    if (work_->status < UMFPACK_OK) fail(work_->analyzed ? "factorizing" : "analyzing", work_->status);
-    report_.nonzeros = work_->info[UMFPACK_LNZ];
-    report_.bytes = work_->info[UMFPACK_NUMERIC_SIZE] * work_->info[UMFPACK_SIZE_OF_UNIT];
-    watch_pivots(work_->k);
-    work_->k = {};
-    return work_->status == UMFPACK_OK;
+    computation_failed(problem, fmt::format("its status is {}", failed),
+                       complex ? "Choose another frequency" : "Choose another solver: method = \"multifrontal\"");
   }
+};
 
-  void solve(std::span<double> x, int right_hand_sides) const override {
-    const std::size_t free = component_.size(), columns = static_cast<std::size_t>(right_hand_sides);
-    const std::size_t n = columns == 0 ? 0 : x.size() / columns;
-    std::vector<double> b(free), y(free);
-    for (std::size_t c = 0; c < columns; ++c) {
-      double* column = &x[c * n];
-      for (std::size_t k = 0; k < free; ++k) b[k] = column[component_[k]];
-      for (std::size_t k = 0; k < n; ++k) column[k] /= held_stiffness_;
-      if (free == 0) continue;
-      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), work_->numeric,
-                                            control_.data(), nullptr);
-      if (status != UMFPACK_OK) fail("solving with", status);
-      for (std::size_t k = 0; k < free; ++k) column[component_[k]] = y[k];
-    }
-  }
-
-  [[nodiscard]] const FactorReport& report() const override { return report_; }
-
- private:
-  /// What UMFPACK works on, which outlives an interrupted factorization.
-  struct Work {
-    CompressedColumns k;
-    std::array<double, UMFPACK_CONTROL> control{};
-    std::array<double, UMFPACK_INFO> info{};
-    Index size = 0, status = UMFPACK_OK;
-    bool analyzed = false;
-    void* numeric = nullptr;
-
-    Work() = default;
-    Work(const Work&) = delete;
-    Work& operator=(const Work&) = delete;
-    ~Work() { umfpack_dl_free_numeric(&numeric); }
-
-    void factorize() {
-      void* symbolic = nullptr;
-      status = umfpack_dl_symbolic(size, size, k.first.data(), k.rows.data(), k.values.data(), &symbolic,
-                                   control.data(), info.data());
-      if (status < UMFPACK_OK) return;
-      analyzed = true;
-      status = umfpack_dl_numeric(k.first.data(), k.rows.data(), k.values.data(), symbolic, &numeric, control.data(),
-                                  info.data());
-      umfpack_dl_free_symbolic(&symbolic);
-    }
-  };
-
-  /// UMFPACK asks for no signal, and the analysis of a long strip takes minutes: a thread of its own does the work and
-  /// is left behind where the user interrupts.
-  void run_aside() {
+/// UMFPACK asks for no signal, and the analysis of a long strip takes minutes: a thread of its own does the work and
+/// is left behind where the user interrupts. \throws Error (computation_failed) where UMFPACK fails
+void factorize(const std::shared_ptr<Work>& work) {
+  constexpr Index small = 30000;  // less than a second
+  if (work->size < small) {
+    work->factorize();
+  } else {
     std::promise<void> promise;
     const std::future<void> done = promise.get_future();
-    std::thread aside([work = work_, promise = std::move(promise)]() mutable {
+    std::thread aside([work, promise = std::move(promise)]() mutable {
       work->factorize();
       promise.set_value();
     });
@@ -126,14 +104,53 @@ class UmfpackLu final : public Factorization {
     }
     aside.join();
   }
+  if (work->status < UMFPACK_OK) work->fail(work->analyzed ? "factorizing" : "analyzing", work->status);
+}
 
+class UmfpackLu final : public Factorization {
+ public:
+  explicit UmfpackLu(double held_stiffness) : held_stiffness_(held_stiffness) { report_.name = "UMFPACK LU"; }
+
+  /// Whether no pivot is zero.
+  bool factorize(CompressedColumns k) {
+    component_ = k.component;
+    if (component_.empty()) return true;
+    work_ = std::make_shared<Work>(std::move(k));
+    equidem::factorize(work_);
+    report_.nonzeros = work_->info[UMFPACK_LNZ];
+    report_.bytes = work_->factor_bytes();
+    watch_pivots(work_->k);
+    work_->k = {};
+    return work_->status == UMFPACK_OK;
+  }
+
+  void solve(std::span<double> x, int right_hand_sides) const override {
+    const std::size_t free = component_.size(), columns = static_cast<std::size_t>(right_hand_sides);
+    const std::size_t n = columns == 0 ? 0 : x.size() / columns;
+    const dense::OneThreadPerCall one_thread;
+    std::vector<double> b(free), y(free);
+    for (std::size_t c = 0; c < columns; ++c) {
+      double* column = &x[c * n];
+      for (std::size_t k = 0; k < free; ++k) b[k] = column[component_[k]];
+      for (std::size_t k = 0; k < n; ++k) column[k] /= held_stiffness_;
+      if (free == 0) continue;
+      const Index status = umfpack_dl_solve(UMFPACK_A, nullptr, nullptr, nullptr, y.data(), b.data(), work_->numeric,
+                                            work_->control.data(), nullptr);
+      if (status != UMFPACK_OK) work_->fail("solving with", status);
+      for (std::size_t k = 0; k < free; ++k) column[component_[k]] = y[k];
+    }
+  }
+
+  [[nodiscard]] const FactorReport& report() const override { return report_; }
+
+ private:
   void watch_pivots(const CompressedColumns& k) {
     const std::size_t n = component_.size();
     std::vector<double> pivots(n);
     std::vector<Index> column_of(n);
     const Index status = umfpack_dl_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
                                                 column_of.data(), pivots.data(), nullptr, nullptr, work_->numeric);
-    if (status != UMFPACK_OK) fail("reading the factor of", status);
+    if (status != UMFPACK_OK) work_->fail("reading the factor of", status);
     for (std::size_t p = 0; p < n; ++p) {
       const Index c = column_of[p];
       double largest = 0;
@@ -145,18 +162,7 @@ class UmfpackLu final : public Factorization {
     }
   }
 
-  [[noreturn]] void fail(const char* doing, Index status) const {
-    const std::string problem =
-        fmt::format("{} the stiffness matrix of {} unknowns failed in UMFPACK", doing, component_.size());
-    if (status == UMFPACK_ERROR_out_of_memory) {
-      computation_failed(problem, "there is not enough memory", "Use a smaller assembly or a machine with more memory");
-    }
-    computation_failed(problem, fmt::format("its status is {}", status),
-                       "Choose another solver: method = \"multifrontal\"");
-  }
-
   double held_stiffness_;
-  std::array<double, UMFPACK_CONTROL> control_{};
   std::vector<std::int64_t> component_;  // of each column
   std::shared_ptr<Work> work_;
   FactorReport report_;
@@ -166,7 +172,6 @@ class UmfpackLu final : public Factorization {
 
 std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
                                           FactorReport* report) {
-  dense::use_one_thread_per_call();
   auto factor = std::make_unique<UmfpackLu>(held_stiffness(matrix.matrix, unknowns));
   CompressedColumns whole = compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns);
   whole = with_upper_triangle(whole);
@@ -177,10 +182,37 @@ std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const Deg
 }
 
 std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness) {
-  dense::use_one_thread_per_call();
   auto factor = std::make_unique<UmfpackLu>(held_stiffness);
   if (!factor->factorize(std::move(whole))) return nullptr;
   return factor;
+}
+
+ComplexLu umfpack_complex_lu(const CompressedColumns& storage, const CompressedColumns& loss) {
+  const auto work = std::make_shared<Work>(with_upper_triangle(storage), with_upper_triangle(loss).values);
+  ComplexLu lu;
+  if (work->size == 0) return lu;
+  factorize(work);
+  if (work->status != UMFPACK_OK) {
+    computation_failed("at this frequency a pivot of the complex stiffness matrix is lost in round-off",
+                       "normal and tangential springs are too far apart for the digits of a double",
+                       "Choose a frequency at which both are within a factor of 1e10 of each other");
+  }
+  lu.bytes = work->factor_bytes();
+  work->k.first = {}, work->k.rows = {}, work->k.values = {}, work->imaginary = {};
+  lu.solve = [work](std::span<std::complex<double>> x) {
+    // UMFPACK takes real and imaginary parts in turns where no array of imaginary parts is given.
+    const auto& component = work->k.component;
+    const dense::OneThreadPerCall one_thread;
+    std::vector<std::complex<double>> b(component.size()), y(component.size());
+    for (std::size_t k = 0; k < b.size(); ++k) b[k] = x[static_cast<std::size_t>(component[k])];
+    const Index status = umfpack_zl_solve(
+        UMFPACK_A, nullptr, nullptr, nullptr, nullptr, reinterpret_cast<double*>(y.data()), nullptr,
+        reinterpret_cast<const double*>(b.data()), nullptr, work->numeric, work->control.data(), nullptr);
+    if (status != UMFPACK_OK) work->fail("solving with", status);
+    std::ranges::fill(x, 0.0);
+    for (std::size_t k = 0; k < b.size(); ++k) x[static_cast<std::size_t>(component[k])] = y[k];
+  };
+  return lu;
 }
 
 std::unique_ptr<Factorization> factorize_by_umfpack(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,

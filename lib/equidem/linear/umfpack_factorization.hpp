@@ -3,9 +3,12 @@
 /// Unsymmetric LU factorization by UMFPACK (Davis 2004), for matrices that are not positive definite.
 #pragma once
 
+#include <complex>
+#include <functional>
 #include <memory>
+#include <span>
 
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/multifrontal/front.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -24,5 +27,17 @@ std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const Deg
 /// All entries of a matrix that need not be symmetric, over the components of its columns. As above, but for the rows
 /// of components that are held, which are those of a unit matrix times `held_stiffness`.
 std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness);
+
+/// The factors of a complex matrix.
+struct ComplexLu {
+  double bytes = 0;
+  /// x := K^-1 x over discs x block components; 0 where held.
+  std::function<void(std::span<std::complex<double>> x)> solve = [](auto) {};
+};
+/// P K Q = L U of the complex symmetric matrix K = storage + i loss.
+/// \param storage lower triangle of the real part
+/// \param loss likewise of the imaginary part, on the same rows and columns
+/// \throws Error (computation_failed) where K is singular, memory does not suffice or UMFPACK fails
+ComplexLu umfpack_complex_lu(const CompressedColumns& storage, const CompressedColumns& loss);
 
 }  // namespace equidem

@@ -2,6 +2,7 @@
 #include "equidem/statics/critical_ratio.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 
@@ -9,14 +10,66 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
+#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
-#include "equidem/statics/pencil/matrix_pencil.hpp"
+#include "equidem/statics/mechanisms.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
+namespace {
+
+void clear_held(const DegreesOfFreedom& unknowns, std::vector<double>& x) {
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (unknowns.held[k] != 0) x[k] = 0;
+}
+
+double product(const std::vector<double>& x, const std::vector<double>& y) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> random_motion(const DegreesOfFreedom& unknowns) {
+  Random random(1);
+  std::vector<double> x(unknowns.held.size());
+  for (double& value : x) value = random.uniform(-1, 1);
+  clear_held(unknowns, x);
+  return x;
+}
+
+double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
+                         const StiffnessMatrix& a, const StiffnessMatrix& b, const std::vector<double>& x) {
+  std::vector<double> a_x(x.size()), b_x(x.size());
+  multiply(a, assembly, graph, x, a_x);
+  clear_held(unknowns, a_x);
+  multiply(b, assembly, graph, x, b_x);
+  clear_held(unknowns, b_x);
+  return -product(x, a_x) / product(x, b_x);
+}
+
+double InverseIteration::run(std::vector<double>& x) const {
+  std::vector<double> b_x(x.size());
+  double before = std::numeric_limits<double>::quiet_NaN();
+  constexpr int most = 60;
+  for (int k = 0; k < most; ++k) {
+    multiply(b, assembly, graph, x, b_x);
+    clear_held(unknowns, b_x);
+    shifted.solve(b_x, 1);
+    clear_held(unknowns, b_x);
+    const double size = std::sqrt(product(b_x, b_x));
+    if (!is_positive(size)) break;
+    for (std::size_t c = 0; c < x.size(); ++c) x[c] = b_x[c] / size;
+    const double value = quotient(x);
+    if (settled(value, before)) return value;
+    before = value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 namespace {
 
 void check(const CriticalRatioOptions& options) {

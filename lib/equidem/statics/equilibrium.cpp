@@ -10,14 +10,11 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/statics/choice/method_choice.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/choice/zero_energy_modes.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/precision/factor_precision.hpp"
 #include "equidem/statics/rigidity.hpp"
+#include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 
 namespace equidem {
@@ -121,7 +118,6 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
   }
   const FactorReport& report = solver.factor().report();
   result.solver = solver.solver_name();
-  result.single_precision = report.single_precision;
   result.negative_pivots = report.negative_pivots;
   result.unstable_modes = solver.unstable_modes();
   result.pivot_growth = report.growth;
@@ -246,25 +242,16 @@ SolveEstimate estimate_solve(const Assembly& assembly, const ContactSprings& spr
   const ContactGraph graph(assembly);
   const Effects effects = derive_effects(assembly, springs, options.rotation);
   const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
-  const SpringNetwork network{assembly, graph, springs, unknowns};
-  const MethodChoice choice = choose_method(network, options.solver);
+  const SolverMethod method = choose_method(assembly, springs, options.solver);
   SolveEstimate result;
-  if (entry_of(choice.method).back_end.iterative) {
+  if (entry_of(method).back_end.iterative) {
     result = estimate_iterations(assembly, unknowns);
   } else {
     const SymbolicFactor symbolic = analyze(dissect(assembly, graph), graph, unknowns.per_disc);
-    result = estimate(symbolic, unknowns, indefinite || springs.may_be_indefinite(),
-                      !indefinite && tries_single_precision(options.solver, springs, symbolic));
-    result.peak_bytes *= memory_factor(choice.method, options.solver.ordering);
+    result = estimate(symbolic, unknowns, indefinite || springs.may_be_indefinite());
+    result.peak_bytes *= memory_factor(method, options.solver.ordering);
   }
-  result.method = choice.method;
-  result.why = choice.reason;
-  result.discs = static_cast<double>(assembly.size());
-  const MethodForecast costs = forecast(network, options.solver.right_hand_sides);
-  if (choice.reason.empty() || !std::isfinite(costs.multigrid)) return result;
-  const bool iterative = choice.method == SolverMethod::multigrid;
-  result.other_bytes = iterative ? costs.elimination_bytes : costs.multigrid_bytes;
-  result.other_seconds = iterative ? costs.elimination / costs.multigrid : costs.multigrid / costs.elimination;
+  result.method = method;
   return result;
 }
 

@@ -58,9 +58,8 @@ struct Equilibrium {
   double pivot_growth = 0;      ///< largest |L_ij| of the factorization
   double factor_nonzeros = 0;   ///< entries of L
   double factor_bytes = 0;
-  bool single_precision = false;  ///< of the factor
-  std::string solver;             ///< the back end and factorization used; why double precision where single was tried
-  StageTimes times;               ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
+  std::string solver;  ///< the back end and factorization used
+  StageTimes times;    ///< assembly of K, ordering, analysis, factorization, solve, refinement, ...
 
   /// Total elastic energy, N (J/m per m); of prestressed contacts its part of second order in the motion.
   double energy = 0;

@@ -11,7 +11,6 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/spring_network.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {

@@ -12,12 +12,31 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/contact_points.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/period_span.hpp"
 
 namespace equidem {
 namespace {
+
+/// Multiples of the period.
+struct Shift {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  [[nodiscard]] bool zero() const { return x == 0 && y == 0; }
+};
+
+/// Number of directions that the windings found so far span.
+struct Span {
+  Shift first;
+  int rank = 0;
+
+  void add(Shift winding) {
+    if (rank == 0) first = winding;
+    const std::int64_t area = std::int64_t{first.x} * winding.y - std::int64_t{first.y} * winding.x;
+    rank = std::max(rank, area != 0 ? 2 : 1);
+  }
+};
 
 constexpr double round_off = 1e-9;  ///< sine of an angle, share of a length: less counts as zero
 

@@ -3,15 +3,21 @@
 /// Loads as forces on the components of discs.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
+
+/// Whether the points of three contacts, of which each shares a disc with the next, lie in line: the sine of the angle
+/// between the two chords is at most 1e-6.
+bool points_in_line(const Assembly& assembly, const std::array<std::size_t, 3>& contacts);
 
 /// Force on every component: N/m; moments over a.
 /// \throws Error (bad_input) where a load is not finite, names no group or an empty one, is a traction on a group that

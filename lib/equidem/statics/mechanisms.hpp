@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// All zero-energy modes of an assembly, counted and described, without a solution.
+/// Zero-energy modes: the unknowns that hold those of free pieces, and the mechanisms of a network.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,23 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/rigid_motions.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
+
+struct HeldMotions {
+  std::vector<std::size_t> components;  ///< disc * per_disc + k, one for each motion
+  std::int64_t rigid = 0;
+  std::vector<GearMode> gears;
+};
+
+/// Hold one component for each free rigid motion of a piece (that which the motion moves most) and the rotation of one
+/// disc of each group of gears. The reactions are zero exactly where the loads do no work in those motions.
+HeldMotions hold_free_motions(const Assembly& assembly, const ContactGraph& graph, const ContactSprings& springs,
+                              DegreesOfFreedom& unknowns);
 
 /// Motions that neither stretch nor slip, and that forces at rest do not resist where they count; kT of either sign
 /// counted by its size. The rigid motions of an assembly in one piece that no support is given for (a free body 3, a

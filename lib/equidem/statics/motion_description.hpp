@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A motion of an assembly in words and in energy: the kind of a mode of zero or negative stiffness, and whether
-/// it is a mechanism or merely soft.
+/// A motion of an assembly in words and in energy: which disc moves most, and whether it is a mechanism or merely soft.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +14,10 @@
 
 namespace equidem {
 
-/// The kind of a motion, as words that fit into a sentence (no capital, no full stop): "a rigid rotation of
-/// the whole assembly about (0.1, 0.05)", "a local motion of about 3 of 900 discs: disc 17 at (0.02, 0.01), ...".
-/// Told apart are rigid translation and rotation (of all discs, or of those that move, such as a row or a ring, also
-/// across the period), counter-rotation of discs, motion of one disc or of a few, groups that slide past one another,
-/// uniform strain, and other motions that extend over the assembly; and where no contact stretches, whether discs slip
-/// or roll. Does not depend on the scale or the sign of the motions. \param motions per disc, finite
+/// "a motion of 12 of 22 discs, most of all of disc 21 at (0.05, 0.02), which moves along (0.6, 0.8)": words that fit
+/// into a sentence (no capital, no full stop). Does not depend on the scale or the sign of the motions. Discs that move
+/// less than 1e-3 of the largest motion count as at rest.
+/// \param motions per disc, finite
 std::string describe_motion(const Assembly& assembly, std::span<const DiscMotion> motions);
 
 /// "x", "y" or the unit vector "(0.6, 0.8)"; opposite directions have one name.

@@ -10,7 +10,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {

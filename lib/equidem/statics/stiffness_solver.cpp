@@ -6,27 +6,241 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/rigid_growth.hpp"
-#include "equidem/statics/choice/method_choice.hpp"
 #include "equidem/statics/motion_description.hpp"
-#include "equidem/statics/precision/factor_precision.hpp"
-#include "equidem/statics/precision/refinement.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::size_t components_at_once = 1 << 14;
+constexpr double of_one_pass = 2e-6;  // accuracy of iterations, which multiply by a matrix in single precision
+
+double norm_of(std::span<const double> x) {
+  return std::sqrt(sums_over<1>(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (const double value : x.subspan(begin, end - begin)) sum += value * value;
+    return std::array{sum};
+  })[0]);
+}
 
 }  // namespace
+
+/// K d = f - f_int(u), u := u + d, until the residual no longer falls. The first pass is the solution itself; the
+/// residual comes from the contact law, the motion is kept to twice the digits.
+///
+/// Round-off of a factor in double precision hides the softest motions first, of which a correction then brings only a
+/// part, and always the same one: where corrections shrink slowly, each is scaled to the least energy,
+/// u := u + (d.r / d.K d) d, which brings all of one such motion.
+///
+/// Where the rounding of extended precision could leave a residual that counts, contacts are evaluated in quadruple
+/// precision.
+struct StiffnessSolver::Refinement {
+  const StiffnessSolver& solver;
+  const RightHandSide& given;
+  double good_enough;
+  Solution solution;
+  bool done = false;
+  Factorization::Energies energies{};  ///< of the correction that comes next, where the method is iterative
+
+  /// \param residual becomes f - f_int of the start, in which held components move and no other
+  Refinement(const StiffnessSolver& solver, const RightHandSide& given, std::span<double> residual, double good_enough);
+
+  /// Adds the correction x, which a pass with the factor made of the residual, and replaces x by the new residual.
+  void correct(std::span<double> x, int pass);
+
+  /// Solves for the residual x to a relative accuracy in the norm of energy, and ends there. x becomes the residual.
+  void solve_to(double accuracy, std::span<double> x);
+
+  /// \throws Error where the solution is worth nothing
+  Solution finish();
+
+ private:
+  void add_correction(std::span<double> x, int pass);
+  double evaluate(std::span<double> residual) const;
+  [[nodiscard]] double rounding_of_forces() const;
+  bool scale_to_least_energy(std::span<double> x) const;
+  [[nodiscard]] double affine_length() const;
+  [[nodiscard]] double affine_force() const;
+  template <typename Square>
+  [[nodiscard]] double norm_of_affine(const Square& square) const;
+
+  PreciseMotion previous_{0};
+  int corrections_ = 0;
+  double last_step_ = 0;  // size of the last correction, m
+};
+
+StiffnessSolver::Refinement::Refinement(const StiffnessSolver& solver_in, const RightHandSide& given_in,
+                                        std::span<double> residual, double good_enough_in)
+    : solver(solver_in), given(given_in), good_enough(good_enough_in) {
+  const auto& unknowns = solver.unknowns_;
+  solution.motion = PreciseMotion(unknowns.held.size());
+  bool moves = given.gradient.has_value();
+  for (std::size_t k = 0; k < given.prescribed.size(); ++k) {
+    if (unknowns.held[k] == 0 || given.prescribed[k] == 0) continue;
+    solution.motion.high[k] = given.prescribed[k];
+    moves = true;
+  }
+  if (moves) {
+    evaluate(residual);
+  } else {
+    parallel_ranges(residual.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        residual[k] = unknowns.held[k] != 0 || given.force.empty() ? 0 : given.force[k];
+      }
+    });
+  }
+  solution.residual = solver.norm_of_free(residual);
+  solution.scale = std::max(solution.residual, affine_force());
+  done = solution.residual == 0;
+}
+
+void StiffnessSolver::Refinement::correct(std::span<double> x, int pass) {
+  parallel_ranges(x.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (solver.unknowns_.held[k] != 0) x[k] = 0;
+    }
+  });
+  ++corrections_;
+  add_correction(x, pass);
+}
+
+void StiffnessSolver::Refinement::solve_to(double accuracy, std::span<double> x) {
+  double energy = 0, reached = 1;
+  do {
+    reached = std::max(accuracy, of_one_pass * reached);
+    energies = solver.factor_->solve_to(reached, energy, x);
+    solution.motion.add(x);
+    solution.residual = evaluate(x);
+    solution.energy_error = energies.error;
+    energy = std::max(energy, energies.solution);
+  } while (reached > accuracy);
+  done = true;
+}
+
+void StiffnessSolver::Refinement::add_correction(std::span<double> x, int pass) {
+  constexpr double slow = 0.05;         // share of the error that a pass leaves
+  constexpr double negligible = 1e-13;  // residual over its scale
+  const double step = solver.norm_of_free(x);
+  const bool scaled = pass > 0 && step > slow * last_step_ && scale_to_least_energy(x);
+  last_step_ = step;
+  if (pass > 0) previous_ = solution.motion;
+  solution.motion.add(x);
+  if (pass == 0) solution.motion.quadruple = rounding_of_forces() > negligible * solution.scale;
+  const double before = solution.residual;
+  const double now = evaluate(x);
+  if (pass > 0 && !scaled && !(now < before)) {  // no better: keep the previous motion
+    solution.motion = std::move(previous_);
+    done = true;
+    return;
+  }
+  previous_ = PreciseMotion(0);
+  solution.residual = now;
+  solution.refinements = pass;
+  solution.energy_error =
+      scaled ? energies.solution : std::max(energies.error, of_one_pass * of_one_pass * energies.solution);
+  done = now <= good_enough * solution.scale || (pass > 0 && !scaled && now > 0.5 * before);
+}
+
+Solution StiffnessSolver::Refinement::finish() {
+  constexpr const char* too_soft = "the stiffness matrix is too close to singular for the digits of a double";
+  constexpr const char* remedy =
+      "Hold a slender assembly in more places, make springs less different in size, or use fewer discs";
+  constexpr double worthless = 1e-3;
+  const double relative = solution.relative_residual();
+  if (!std::isfinite(relative)) {
+    bad_input("the numbers of this case overflow a double", fmt::format("the residual comes out as {}", relative),
+              "Check the units of sizes, springs and loads");
+  }
+  if (!(relative <= worthless) && (solver.options_.accuracy == 0 || solution.energy_error == 0)) {
+    computation_failed(fmt::format("the solution leaves a relative residual of {:.1e}", relative), too_soft, remedy);
+  }
+  const double size = std::hypot(norm_of(solution.motion.high), affine_length());
+  if (corrections_ > 1 && relative > 0 && !(last_step_ <= worthless * size)) {
+    computation_failed(fmt::format("the last of {} refinements still changed the motions by {:.1e} of their size",
+                                   corrections_ - 1, last_step_ / size),
+                       too_soft, remedy);
+  }
+  return std::move(solution);
+}
+
+double StiffnessSolver::Refinement::evaluate(std::span<double> residual) const {
+  solver.evaluate_residual(given, solution.motion, residual);
+  return solver.norm_of_free(residual);
+}
+
+/// Size of what the rounding of extended precision, 2^-64 of the motion of one body against the other, does to the
+/// forces of contacts, N/m.
+double StiffnessSolver::Refinement::rounding_of_forces() const {
+  const Assembly& assembly = solver.assembly_;
+  const auto b = static_cast<std::size_t>(solver.unknowns_.per_disc);
+  const double scale = solver.unknowns_.rotation_scale;
+  const std::vector<double>& u = solution.motion.high;
+  const auto squared = [](double x) { return x * x; };
+  return 0x1.0p-64 *
+         std::sqrt(sums_over<1>(assembly.contacts.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+           double sum = 0;
+           for (std::size_t c = begin; c < end; ++c) {
+             const Contact& contact = assembly.contacts[c];
+             const std::size_t i = contact.i * b, j = contact.j * b;
+             double square = squared(u[j] - u[i]) + squared(u[j + 1] - u[i + 1]);
+             if (b == 3)
+               square += squared(contact.lever_i * u[i + 2] / scale) + squared(contact.lever_j * u[j + 2] / scale);
+             const SpringConstants& k = solver.springs_[c];
+             sum += (squared(k.kN) + squared(k.kT)) * square;
+           }
+           return std::array{sum};
+         })[0]);
+}
+
+/// x := (x.r / x.K x) x, the multiple of x at which the energy is stationary; false where there is none.
+bool StiffnessSolver::Refinement::scale_to_least_energy(std::span<double> x) const {
+  std::vector<double> residual(x.size());
+  evaluate(residual);
+  long double work = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) work += static_cast<long double>(x[k]) * residual[k];
+  const double factor = static_cast<double>(work) / solver.twice_energy(x);
+  constexpr double most = 100;  // more: the motions of the factor are not those of K
+  if (!(factor > 0 && factor < most)) return false;
+  for (double& value : x) value *= factor;
+  return true;
+}
+
+/// Root of the sum of square(contact, deformation by the mean strain) over the contacts.
+template <typename Square>
+double StiffnessSolver::Refinement::norm_of_affine(const Square& square) const {
+  if (!given.gradient) return 0;
+  const Assembly& assembly = solver.assembly_;
+  return std::sqrt(sums_over<1>(assembly.contacts.size(), components_at_once, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      sum +=
+          square(c, affine_deformation(frame_of(assembly, c), assembly.branch(assembly.contacts[c]), *given.gradient));
+    }
+    return std::array{sum};
+  })[0]);
+}
+
+double StiffnessSolver::Refinement::affine_length() const {
+  return norm_of_affine(
+      [](std::size_t, const ContactDeformation& d) { return d.normal * d.normal + d.tangential * d.tangential; });
+}
+
+/// Size of the forces that the mean strain causes, before they cancel on each disc.
+double StiffnessSolver::Refinement::affine_force() const {
+  return std::sqrt(2.0) * norm_of_affine([&](std::size_t c, const ContactDeformation& d) {
+           const ContactForce f = linear_spring_force(solver.springs_[c], d);
+           return f.normal * f.normal + f.tangential * f.tangential;
+         });
+}
 
 StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings& springs, ContactGraph graph,
                                  DegreesOfFreedom unknowns, const SolverOptions& options, Mechanisms mechanisms,
@@ -38,15 +252,14 @@ StiffnessSolver::StiffnessSolver(const Assembly& assembly, const ContactSprings&
       options_(options),
       mechanisms_(mechanisms),
       on_graph_{matrix_, assembly_, graph_} {
-  const MethodChoice choice = choose_method({assembly_, graph_, springs_, unknowns_}, options_);
-  why_method_ = choice.reason;
-  if (!entry_of(choice.method).back_end.iterative) {
-    eliminate(choice.method, times);
-  } else if (options.method == choice.method) {
-    iterate(choice.method, times);
+  const SolverMethod method = choose_method(assembly_, springs_, options_);
+  if (!entry_of(method).back_end.iterative) {
+    eliminate(method, times);
+  } else if (options.method == method) {
+    iterate(method, times);
   } else {
     try {
-      iterate(choice.method, times);
+      iterate(method, times);
     } catch (const Error& error) {
       eliminate_instead(error, times);
     }
@@ -76,26 +289,13 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   times.add("order", watch.lap());
   symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
-  const bool single = tries_single_precision(options_, springs_, *symbolic_);
-  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite(), single);
+  SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite());
   size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
   times.add("assemble", watch.lap());
-  if (!single) {
-    factor_ = factorize(system(), method, mechanisms_, times);
-    return;
-  }
-  std::string reason;
-  factor_ = factorize_in_single_precision(system(), reason);
-  times.add("factorize", watch.lap());
-  if (factor_ && !grows_rigid(assembly_, graph_, springs_, unknowns_.per_disc) && !stands_probe(times)) {
-    reason = "a motion resists much less than others";
-    factor_.reset();
-  }
-  times.add("probe", watch.lap());
-  if (!factor_) factorize_in_double(std::move(reason), times);
+  factor_ = factorize(system(), method, mechanisms_, times);
 }
 
 System StiffnessSolver::system() const {
@@ -104,28 +304,8 @@ System StiffnessSolver::system() const {
   return {on_graph_, springs_, unknowns_, symbolic_, automatic ? given_up : most_iterations, options_};
 }
 
-void StiffnessSolver::factorize_in_double(std::string reason, StageTimes& times) const {
-  why_double_ = std::move(reason);
-  factor_.reset();
-  check_memory(estimate(*symbolic_, unknowns_, springs_.may_be_indefinite()), options_.memory_limit);
-  factor_ = factorize(system(), method_, mechanisms_, times);
-}
-
-bool StiffnessSolver::stands_probe(StageTimes& times) const {
-  constexpr double tolerance = 1e-6;  // below the share of one motion in the rough load of 1e11 unknowns
-  const auto b = static_cast<std::size_t>(matrix_.block);
-  Random random(1);
-  RightHandSide rough;
-  rough.force.resize(unknowns_.held.size());
-  for (std::size_t k = 0; k < rough.force.size(); ++k) {
-    rough.force[k] = (random.uniform() - 0.5) * std::sqrt(matrix_.diagonal_block(k / b)[k % b * (b + 1)]);
-  }
-  return refine({&rough, 1}, tolerance, nullptr, times);
-}
-
 std::string StiffnessSolver::solver_name() const {
   std::string name = factor_->report().name;
-  if (!why_double_.empty()) name += " in double precision, since " + why_double_;
   if (!why_method_.empty()) name += fmt::format(" ({})", why_method_);
   return name;
 }
@@ -157,10 +337,9 @@ void StiffnessSolver::evaluate_residual(const RightHandSide& given, const Precis
   residual_force({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, given.force, residual);
 }
 
-bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
+void StiffnessSolver::refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions,
                              StageTimes& times) const {
-  constexpr int steps_for_one = 8;  // of conjugate gradients with a factor in single precision
-  const bool single = factor_->report().single_precision;
+  const double good_enough = entry_of(method_).back_end.good_enough;
   const std::size_t n = unknowns_.held.size();
   LargeVector<double> x(n * cases.size());
   const auto column = [&](std::size_t k) { return std::span(x).subspan(k * n, n); };
@@ -174,13 +353,9 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
     }
     times.add("solve", watch.lap());
   }
-  const int most = options_.max_refinements * (single ? steps_for_one : 1);
-  std::optional<Progress> progress;  // iterative methods show their own
-  if (single) progress.emplace("refining");
-  for (int pass = 0; pass <= most; ++pass) {
+  for (int pass = 0; pass <= options_.max_refinements; ++pass) {
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all[k].failed) return false;
       if (all[k].done) continue;
       if (k != open.size()) std::ranges::copy(column(k), column(open.size()).begin());
       open.push_back(&all[k]);
@@ -201,38 +376,25 @@ bool StiffnessSolver::refine(std::span<const RightHandSide> cases, double good_e
       all[position].correct(column(position), pass);
     }
     times.add(pass == 0 ? "solve" : "refine", watch.lap());
-    if (!progress) continue;
-    double share = 1;
-    for (const Refinement& one : all) {
-      if (!one.done) share = std::min(share, std::log(one.solution.relative_residual()) / std::log(good_enough));
-    }
-    progress->update(std::clamp(share, 0.0, 1.0));
   }
-  if (single && std::any_of(all.begin(), all.end(), [](const Refinement& one) { return !one.done || one.failed; })) {
-    return false;
-  }
-  for (std::size_t k = 0; solutions != nullptr && k < all.size(); ++k) solutions->push_back(all[k].finish());
-  return true;
+  for (Refinement& one : all) solutions.push_back(one.finish());
 }
 
 std::vector<Solution> StiffnessSolver::solve(std::span<const RightHandSide> cases, StageTimes& times) const {
-  const auto attempt = [&](std::vector<Solution>& solutions) {
-    const double good_enough = entry_of(method_).back_end.good_enough;
-    if (!iterative()) return refine(cases, good_enough, &solutions, times);
-    // One after another: vectors of one take as much memory as the grids.
-    for (std::size_t k = 0; k < cases.size(); ++k) refine(cases.subspan(k, 1), good_enough, &solutions, times);
-    return true;
-  };
   std::vector<Solution> solutions;
+  const auto solve_all = [&] {
+    // Iterations one after another: vectors of one case take as much memory as the grids.
+    const std::size_t at_once = iterative() ? 1 : cases.size();
+    for (std::size_t k = 0; k < cases.size(); k += at_once) refine(cases.subspan(k, at_once), solutions, times);
+  };
   try {
-    if (attempt(solutions)) return solutions;
-    factorize_in_double("refinement did not converge", times);
+    solve_all();
   } catch (const Error& error) {
     if (method_ == options_.method || !iterative()) throw;
     eliminate_instead(error, times);
+    solutions.clear();
+    solve_all();
   }
-  solutions.clear();
-  attempt(solutions);
   return solutions;
 }
 
@@ -296,12 +458,10 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
     result.inverse_norm = std::max(result.inverse_norm, make_unit());
   }
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = scale_of(k) > 0 ? x[k] / scale_of(k) : 0;
-  // Round-off of the factor may make the motion stiffer than it is, and in single precision, or where the solutions are
-  // rough, softer, too. The quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth
-  // of the last pass.
+  // Round-off of the factor may make the motion stiffer than it is, and where the solutions are rough, softer, too. The
+  // quotient of Rayleigh does not depend on them; for an exact factor it is at least the growth of the last pass.
   const double stiffness = springs_.may_be_indefinite() ? 0 : twice_energy(x);
-  const bool rough = factor_->report().single_precision || iterative();
-  if (stiffness > 0) result.inverse_norm = std::max(rough ? 0.0 : result.inverse_norm, 1 / stiffness);
+  if (stiffness > 0) result.inverse_norm = std::max(iterative() ? 0.0 : result.inverse_norm, 1 / stiffness);
   result.motion = std::move(x);
   return result;
 }

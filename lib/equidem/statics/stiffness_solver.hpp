@@ -18,9 +18,9 @@
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 
@@ -65,8 +65,7 @@ class StiffnessSolver {
   StiffnessSolver(const StiffnessSolver&) = delete;  // the factorization may refer to members
   StiffnessSolver& operator=(const StiffnessSolver&) = delete;
 
-  /// One thread at a time may call it: where a factor in single precision turns out too rough for these right-hand
-  /// sides, K is factorized in double precision.
+  /// One thread at a time may call it: where iterations that "auto" chose fail, K is factorized.
   /// \param times gets "solve" and "refine"
   /// \throws Error (computation_failed) where the residual shows that K is too near to singular, or numbers overflow
   [[nodiscard]] std::vector<Solution> solve(std::span<const RightHandSide> cases, StageTimes& times) const;
@@ -106,8 +105,7 @@ class StiffnessSolver {
   [[nodiscard]] const Factorization& factor() const { return *factor_; }
   /// The fronts of the factor; null where the method is iterative.
   [[nodiscard]] const std::shared_ptr<const SymbolicFactor>& symbolic() const { return symbolic_; }
-  /// Name of the method, with the reason for double precision where single precision did not serve, and for the choice
-  /// of "auto" between elimination and iterations.
+  /// Name of the method, with the reason where "auto" went from iterations to elimination.
   [[nodiscard]] std::string solver_name() const;
   /// Whether the method is iterative: solutions come with an estimate of their error.
   [[nodiscard]] bool iterative() const { return entry_of(method_).back_end.iterative; }
@@ -116,17 +114,12 @@ class StiffnessSolver {
 
  private:
   struct Refinement;
-  /// Solves with the factor at hand; false where it is too rough.
-  /// \param solutions may be null
-  bool refine(std::span<const RightHandSide> cases, double good_enough, std::vector<Solution>* solutions,
-              StageTimes& times) const;
+  /// Adds the solutions of the cases, with the factor at hand.
+  void refine(std::span<const RightHandSide> cases, std::vector<Solution>& solutions, StageTimes& times) const;
   void iterate(SolverMethod method, StageTimes& times) const;
   void eliminate(SolverMethod method, StageTimes& times) const;
   /// Where iterations that "auto" chose failed. \throws the error itself where it is no failed computation
   void eliminate_instead(const Error& error, StageTimes& times) const;
-  void factorize_in_double(std::string reason, StageTimes& times) const;
-  /// Whether the factor in single precision resists a rough load, which works on every motion, as K does.
-  [[nodiscard]] bool stands_probe(StageTimes& times) const;
   [[nodiscard]] System system() const;
   void judge_inertia();
   /// Inverse iteration for |S K^-1 S|, S = diag(scale), the unit matrix where `scale` is empty: the motion is S^-1 x
@@ -147,9 +140,8 @@ class StiffnessSolver {
   MatrixOnGraph on_graph_;
   mutable std::shared_ptr<const SymbolicFactor> symbolic_;
   mutable SolverMethod method_ = SolverMethod::multifrontal;
-  mutable std::string why_method_;  // where "auto" weighed the methods
+  mutable std::string why_method_;  // why iterations that "auto" chose failed
   mutable std::unique_ptr<Factorization> factor_;
-  mutable std::string why_double_;  // where single precision was tried and did not serve
   std::int64_t unstable_modes_ = 0;
 };
 

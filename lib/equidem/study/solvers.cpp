@@ -112,7 +112,7 @@ class BlockTasks {
 
   void add_direct(const std::string& method, SolverOptions solver) {
     for (const int refinements : {0, 4}) {
-      if (refinements == 0 && (discs_ > large || solver.precision == FactorPrecision::single_precision)) continue;
+      if (refinements == 0 && discs_ > large) continue;
       solver.max_refinements = refinements;
       add(method, {{"refinements", static_cast<double>(refinements)}},
           [solver](const Block& block) { return Solved{.motions = block.solve(solver)}; });
@@ -169,10 +169,7 @@ Study study_of_blocks(const std::vector<int>& rows_of_blocks) {
       const SolverMethod method = solver.value;
       if (method == SolverMethod::automatic || solver.back_end.iterative) continue;
       if (method == SolverMethod::umfpack && static_cast<std::size_t>(rows) * rows > large) continue;
-      tasks.add_direct(solver.name, {.method = method, .precision = FactorPrecision::double_precision});
-      if (method == SolverMethod::multifrontal)
-        tasks.add_direct("multifrontal, single precision",
-                         {.method = method, .precision = FactorPrecision::single_precision});
+      tasks.add_direct(solver.name, {.method = method});
     }
     tasks.add_multigrid();
     if (rows < 400) tasks.add_relaxation(rows < 100 ? 1 : rows < 200 ? 3 : 9);

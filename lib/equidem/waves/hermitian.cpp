@@ -60,7 +60,7 @@ struct Spectrum {
 
   explicit Spectrum(AnyMatrix symmetric, bool with_vectors = true)
       : values(symmetric.rows()), vectors(std::move(symmetric)) {
-    [[maybe_unused]] static const bool one_thread = (dense::use_one_thread_per_call(), true);
+    const dense::OneThreadPerCall one_thread;
     if (dense::find_spectrum(static_cast<std::size_t>(values.size()), vectors.data(), values.data(), with_vectors) !=
         0) {
       computation_failed(fmt::format("the spectrum of a matrix of {} rows is not found", values.size()), "",

@@ -154,7 +154,7 @@ void solve_dense(const Operator& a, std::size_t size, ExtremeEigenvalue& result)
   }
   for (double& entry : matrix) entry /= a.scale;
   result.products = static_cast<std::int64_t>(size);
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   result.converged = dense::find_spectrum(size, matrix.data(), values.data(), false) == 0;
   result.value = values.back();
   result.residual = rounding * static_cast<double>(size) * std::max(std::abs(values.front()), std::abs(values.back()));

@@ -15,7 +15,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 #include "equidem/waves/lowest_eigenvalues.hpp"
 
@@ -205,7 +205,7 @@ LowestEigenvalues lowest_of_all(const VibrationOperator& a, const TallMatrix& nu
   subtract_product(null, {0, null.columns()}, null_rows, y, {0, n});
   std::vector<double> values(n);
   LowestEigenvalues result;
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   if (dense::find_spectrum(n, &y(0, 0), values.data(), true) != 0) return result;
   result.vectors = TallMatrix(n, wanted);
   std::ranges::copy(std::as_const(y).column(0, wanted), result.vectors.column(0, wanted).begin());

@@ -19,7 +19,7 @@ TallMatrix product_transposed(const TallMatrix& a, ColumnRange of_a, const TallM
   const std::size_t rows = a.rows();
   TallMatrix sum(of_a.count, of_b.count);
   if (of_a.count == 0 || of_b.count == 0) return sum;
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   std::vector<TallMatrix> parts((rows + rows_of_piece - 1) / rows_of_piece, sum);
   parallel_ranges(rows, rows_of_piece, [&](std::size_t begin, std::size_t end) {
     dense::subtract_transposed_product(of_a.count, of_b.count, end - begin, &a(begin, of_a.first), rows,
@@ -36,7 +36,7 @@ TallMatrix product_transposed(const TallMatrix& a, ColumnRange of_a, const TallM
 void subtract_product(const TallMatrix& a, ColumnRange of_a, const TallMatrix& c, TallMatrix& b, ColumnRange of_b) {
   if (of_a.count == 0 || of_b.count == 0) return;
   const std::size_t rows = a.rows();
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   parallel_ranges(rows, rows_of_piece, [&](std::size_t begin, std::size_t end) {
     dense::subtract_product(end - begin, of_b.count, of_a.count, &a(begin, of_a.first), rows, &c(0, 0), c.rows(),
                             &b(begin, of_b.first), rows);
@@ -48,7 +48,7 @@ void combine(TallMatrix& a, ColumnRange columns, const TallMatrix& c) {
   const std::size_t rows = a.rows();
   TallMatrix negative(c.rows(), c.columns());
   std::ranges::transform(c.column(0, c.columns()), negative.column(0, c.columns()).begin(), std::negate<>());
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   parallel_ranges(rows, rows_of_piece, [&](std::size_t begin, std::size_t end) {
     TallMatrix piece(end - begin, c.columns());
     dense::subtract_product(end - begin, c.columns(), columns.count, &a(begin, columns.first), rows, &negative(0, 0),

@@ -2,10 +2,7 @@
 #include "module.hpp"
 
 #include <atomic>
-#include <mutex>
 #include <string>
-
-#include <cblas.h>
 
 #include "equidem/core/threads.hpp"
 #include "equidem/output/files/json.hpp"
@@ -25,22 +22,7 @@ void show_progress(bool shown) {
   set_progress_shown(shown);
 }
 
-std::mutex blas_mutex;
-int blas_users = 0, blas_threads_before = 1;
-
 }  // namespace
-
-OneBlasThread::OneBlasThread() {
-  const std::lock_guard lock(blas_mutex);
-  if (blas_users++ > 0) return;
-  blas_threads_before = openblas_get_num_threads();
-  openblas_set_num_threads(1);
-}
-
-OneBlasThread::~OneBlasThread() {
-  const std::lock_guard lock(blas_mutex);
-  if (--blas_users == 0) openblas_set_num_threads(blas_threads_before);
-}
 
 bool progress_wanted() {
   return progress_is_wanted;

@@ -33,23 +33,12 @@ void bind_verbs(py::module_& module);
 using Floats = py::array_t<double, py::array::c_style>;
 using Integers = py::array_t<std::int32_t, py::array::c_style>;
 
-/// OpenBLAS on one thread while one exists: this library calls it from threads of its own. Afterwards it has the
-/// threads that the user of NumPy gave it.
-class OneBlasThread {
- public:
-  OneBlasThread();
-  ~OneBlasThread();
-  OneBlasThread(const OneBlasThread&) = delete;
-  OneBlasThread& operator=(const OneBlasThread&) = delete;
-};
-
 /// Work without the global lock. On Python's main thread Ctrl-C ends it with an Error of kind interrupted.
 class LongWork {
  public:
   LongWork();
 
  private:
-  OneBlasThread blas_;
   std::unique_ptr<InterruptCatcher> catcher_;
   py::gil_scoped_release released_;
 };

@@ -75,11 +75,8 @@ std::string run_again(const std::string& settings, const std::string& arguments)
 Measurement measure_in_fresh_process(const Trial& trial) {
   const double free = static_cast<double>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   run_again("", fmt::format("--warm-up {}", std::min(2e8 + 8e3 * static_cast<double>(trial.discs), 0.5 * free)));
-  // Threads for BLAS and none for OpenMP, which CHOLMOD would otherwise start four of at each supernode. equidem sets
-  // its threads itself.
   const std::string output =
-      run_again(fmt::format("OPENBLAS_NUM_THREADS={} OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1",
-                            is_ours(trial.solver) ? 1 : trial.threads),
+      run_again("OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1",
                 fmt::format("--measure {} {} {} {}", trial.solver, trial.kind, trial.discs, trial.threads));
   Measurement result;
   std::istringstream numbers(output);
@@ -186,8 +183,7 @@ void run(Report& report, const Request& request) {
   report.add(fmt::format(
       "\nkT/kN = 0.5, 3 unknowns per disc, left side fixed, load on the right side. Seconds, "
       "medians (smallest .. largest); total = order + analyze + factorize + solve, one right-hand side, no refinement. "
-      "With a factor in single precision, solve is conjugate gradients in double that it preconditions, down to the "
-      "residual of the others. Multigrid: factorize is the set-up of the grids, solve ends at a residual of the "
+      "Multigrid: factorize is the set-up of the grids, solve ends at a residual of the "
       "contact "
       "law of 1e-12; K is assembled afterwards, for the residual of the table alone. GAMG and BoomerAMG precondition "
       "conjugate gradients "

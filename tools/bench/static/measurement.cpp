@@ -2,11 +2,9 @@
 #include "measurement.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -18,13 +16,11 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/cholmod_factorization.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
-#include "equidem/linear/multigrid/conjugate_gradients.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/internal_force.hpp"
@@ -91,7 +87,6 @@ double count_factor_entries(const ContactGraph& graph, const DegreesOfFreedom& u
   return entries;
 }
 
-template <typename Real>
 std::unique_ptr<Factorization> multifrontal(const Problem& problem, const StiffnessMatrix& matrix,
                                             Measurement& result) {
   Stopwatch watch;
@@ -100,7 +95,7 @@ std::unique_ptr<Factorization> multifrontal(const Problem& problem, const Stiffn
   result.order = watch.lap();
   auto symbolic = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph, matrix.block));
   result.analyze = watch.lap();
-  auto factor = multifrontal_cholesky<Real>(symbolic, {matrix, problem.assembly, graph});
+  auto factor = multifrontal_cholesky(symbolic, {matrix, problem.assembly, graph});
   result.factorize = watch.lap();
   result.nonzeros = count_factor_entries(graph, problem.unknowns, symbolic->tree.order);  // fronts also hold zeros
   return factor;
@@ -115,77 +110,20 @@ std::unique_ptr<Factorization> cholmod(const Problem& problem, const StiffnessMa
     order = dissect(problem.assembly, graph).order;
     result.order = watch.seconds();
   }
-  CholmodTrial trial{.keep_thread_settings = true, .times = {}};
-  auto factor = cholmod_cholesky({matrix, problem.assembly, graph}, problem.unknowns, ordering, order, nullptr, &trial);
-  result.convert = trial.times.of("compression");
-  result.order += trial.times.of("ordering");
-  result.analyze = trial.times.of("analysis");
-  result.factorize = trial.times.of("factorization");
+  const Stopwatch watch;
+  auto factor = cholmod_cholesky({matrix, problem.assembly, graph}, problem.unknowns, ordering, order);
+  result.factorize = watch.seconds();  // with CHOLMOD's ordering and analysis
   return factor;
 }
 
 std::unique_ptr<Factorization> factorize(const std::string& solver, const Problem& problem,
                                          const StiffnessMatrix& matrix, Measurement& result) {
-  if (solver == "equidem") return multifrontal<double>(problem, matrix, result);
-  if (solver == "equidem-single") return multifrontal<float>(problem, matrix, result);
+  if (solver == "equidem") return multifrontal(problem, matrix, result);
   const CholmodOrdering ordering = solver == "cholmod-metis" ? CholmodOrdering::metis
                                    : solver == "cholmod-amd" ? CholmodOrdering::amd
                                                              : CholmodOrdering::equidem;
   return cholmod(problem, matrix, ordering, result);
 }
-
-/// y := A x.
-using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
-
-/// The vectors of conjugate gradients with any K and any preconditioner M.
-class PlainVectors {
-  static constexpr std::size_t numbers_at_once = 1 << 14;
-
- public:
-  PlainVectors(const Product& k, const Product& m, std::span<double> x)
-      : k_(k), m_(m), x_(x), r_(x.begin(), x.end()), p_(x.size(), 0.0), q_(x.size(), 0.0), z_(x.size()) {
-    std::fill(x.begin(), x.end(), 0.0);
-  }
-
-  [[nodiscard]] double size() const { return std::sqrt(dot(r_, r_)); }
-  multigrid::Dots precondition() {
-    m_(r_, z_);
-    return {dot(r_, z_), dot(q_, z_)};
-  }
-  void turn(double factor) {
-    parallel_ranges(p_.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) p_[k] = z_[k] + factor * p_[k];
-    });
-  }
-  double multiply() {
-    k_(p_, q_);
-    return dot(p_, q_);
-  }
-  double advance(double factor) {
-    return std::sqrt(sums_over<1>(x_.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
-      double square = 0;
-      for (std::size_t k = begin; k < end; ++k) {
-        x_[k] += factor * p_[k];
-        r_[k] -= factor * q_[k];
-        square += r_[k] * r_[k];
-      }
-      return std::array{square};
-    })[0]);
-  }
-
- private:
-  static double dot(std::span<const double> x, std::span<const double> y) {
-    return sums_over<1>(x.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t k = begin; k < end; ++k) sum += x[k] * y[k];
-      return std::array{sum};
-    })[0];
-  }
-
-  const Product &k_, &m_;
-  std::span<double> x_;
-  LargeVector<double> r_, p_, q_, z_;
-};
 
 /// As equidem solves: passes until the residual of the contact law is small enough.
 void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, const Factorization& factor,
@@ -203,21 +141,6 @@ void solve_by_multigrid(const Problem& problem, const ContactGraph& graph, const
     residual_force(network, motion, {}, problem.load, x);
   }
   x = motion.high;
-}
-
-/// x := K^-1 x. Rounding of K x in double leaves a residual of 1e-12 to 1e-11 with either precision.
-void solve(const Problem& problem, const StiffnessMatrix& matrix, const Factorization& factor, std::vector<double>& x) {
-  if (!factor.report().single_precision) return factor.solve(x, 1);
-  const ContactGraph graph(problem.assembly);
-  const Product by_k = [&](std::span<const double> v, std::span<double> kv) {
-    multiply(matrix, problem.assembly, graph, v, kv);
-  };
-  const Product by_factor = [&](std::span<const double> v, std::span<double> mv) {
-    std::copy(v.begin(), v.end(), mv.begin());
-    factor.solve(mv, 1);
-  };
-  PlainVectors vectors(by_k, by_factor, x);
-  static_cast<void>(multigrid::iterate(vectors, {.tolerance = 1e-11}));
 }
 
 double relative_residual(const Problem& problem, const StiffnessMatrix& matrix, const std::vector<double>& x) {
@@ -285,11 +208,10 @@ const std::vector<Solver>& solvers() {
   static const std::vector<Solver> list = [] {
     std::vector<Solver> all{
         {"equidem", "equidem multifrontal", "threads"},
-        {"equidem-single", "equidem multifrontal, single precision", "threads"},
         {"equidem-multigrid", "equidem multigrid", "threads"},
-        {"cholmod-metis", "CHOLMOD, METIS on the unknowns", "BLAS threads"},
-        {"cholmod-amd", "CHOLMOD, AMD on the unknowns", "BLAS threads"},
-        {"cholmod-ours", "CHOLMOD, order of equidem", "BLAS threads"},
+        {"cholmod-metis", "CHOLMOD, METIS on the unknowns", "one"},
+        {"cholmod-amd", "CHOLMOD, AMD on the unknowns", "one"},
+        {"cholmod-ours", "CHOLMOD, order of equidem", "one"},
     };
     if (has_petsc()) {
       all.push_back({"petsc-gamg", "GAMG (PETSc), rigid motions", "MPI processes"});
@@ -335,7 +257,7 @@ Measurement measure(const Trial& trial) {
   if (iterates) {
     solve_by_multigrid(problem, graph, *factor, x);
   } else {
-    solve(problem, matrix, *factor, x);
+    factor->solve(x, 1);
   }
   result.solve = watch.seconds();
   if (result.nonzeros == 0) result.nonzeros = factor->report().nonzeros;

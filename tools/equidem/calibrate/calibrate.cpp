@@ -111,13 +111,11 @@ int expected_factorizations(AssemblyKind kind) {
 }
 
 int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
-  constexpr double solutions = 2.5;  // measured: s of a factorization with its derivatives over that of a solution
   const int factorizations = expected_factorizations(problem.resolved.assembly.kind);
   Results results;
   results.line("factorizations", "about ").add("factorizations", "", factorizations, "of this size");
   if (factorizations > 1) results.note(", each with three solutions and their derivatives by kT/kN");
-  deliver(options, "dry_run", dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size),
-          problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 

@@ -10,7 +10,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/strain_system.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/statics/equations/linear_system.hpp"
+#include "equidem/statics/linear_system.hpp"
 
 #include "command.hpp"
 #include "export/formats.hpp"

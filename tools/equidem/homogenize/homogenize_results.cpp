@@ -301,7 +301,6 @@ Results homogenized_results(const Problem& problem, Results out, bool periodic, 
   out.block("\n").line("unknowns").add("unknowns", "", r.unknowns, "", {Shown::count});
   out.add("solver", "solver", r.solver);
   if (r.iterations > 0) out.add("iterations", "", r.iterations, "iteration", {Shown::count});
-  if (r.iterations == 0) out.set("factor_precision", r.single_precision ? "single" : "double");
   return out.add("factor_bytes", r.iterations > 0 ? "grids" : "factor", r.factor_bytes, "", {Shown::bytes});
 }
 

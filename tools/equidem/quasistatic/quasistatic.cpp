@@ -20,8 +20,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/statics/choice/solve_time.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
@@ -182,14 +181,13 @@ struct Sequence {
   }
 };
 
-/// Size and memory of a path, and the time of its first state: how many events follow is not known before.
+/// Size and memory of a path: how many events follow is not known before.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
-  further.line("events", "their number is not known before: the time below is that of the first state alone");
-  deliver(options, "dry_run", dry_run_results(problem, 1, further, AssemblyKeys::all, 0, "of the first state"),
-          problem.times);
+  further.line("events", "their number is not known before");
+  deliver(options, "dry_run", dry_run_results(problem, further), problem.times);
   return 0;
 }
 

@@ -63,7 +63,6 @@ Results solver_results(const Problem& problem, const Equilibrium& e) {
     out.add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
   }
   out.add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
-  if (e.iterations == 0) out.set("factor_precision", e.single_precision ? "single" : "double");
   if (e.mechanisms > 0) {
     out.line("mechanisms")
         .add("mechanisms", "", e.mechanisms, "motion", {Shown::count})

@@ -18,7 +18,6 @@
 #include "equidem/output/page/page.hpp"
 #include "equidem/study/built_in.hpp"
 #include "equidem/study/run_study.hpp"
-#include "equidem/study/study_time.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
@@ -171,18 +170,12 @@ void refuse_unreached(const StudyReport& report) {
 }
 
 int dry_run_study(const StudyVerb& verb, const Study& study) {
-  const StudyEstimate estimate = estimate_study(study, verb.options);
   Results results;
   results.set("study", study.name).set("title", study.title).block(study.title + "\n\n");
-  results.line("settings")
-      .add("number_of_settings", "", study.tasks.size())
-      .note(fmt::format(", of which {} were carried out once for the time below", estimate.timed));
-  results.line("rounds", fmt::format("{} and one to warm up, about {} each; then more, until all medians are trusted "
-                                     "to {:g} % or --budget {:g} s is spent",
-                                     verb.options.least_rounds, readable_seconds(estimate.round),
-                                     100 * verb.options.time_error, verb.options.budget));
-  results.line("time").add("estimated_seconds", "about", estimate.least, "s", {.digits = 2});
-  if (estimate.most > 1.2 * estimate.least) results.note(fmt::format(" to {:.2g} s", estimate.most));
+  results.line("settings").add("number_of_settings", "", study.tasks.size());
+  results.line("rounds", fmt::format("{} and one to warm up; then more, until all medians are trusted to {:g} % or "
+                                     "--budget {:g} s is spent",
+                                     verb.options.least_rounds, 100 * verb.options.time_error, verb.options.budget));
   deliver(verb.common, "dry_run", results, {});
   return 0;
 }

@@ -13,7 +13,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {

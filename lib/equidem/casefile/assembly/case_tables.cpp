@@ -275,8 +275,7 @@ void bind_tasks(File<CaseTables>& file) {
              key("ordering", &SolverOptions::ordering, when("method", {to_string(SolverMethod::cholmod)}),
                  "order of elimination: " + help_of(EnumNames<CholmodOrdering>::list)),
              key("max_refinements", &SolverOptions::max_refinements, from(0, 100),
-                 "steps of iterative refinement; with a factor in single precision up to eight times as many; 0: the "
-                 "factor is in double precision"),
+                 "steps of iterative refinement"),
              key("memory_limit", &SolverOptions::memory_limit, bytes, not_negative,
                  "largest memory of the factor, also as \"4 GB\"; 0: what the machine has free")});
   file.table("output", &CaseTables::output, completed, "what is written with --out").keys(output_keys());

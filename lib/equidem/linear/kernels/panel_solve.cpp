@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
 
 #define EQUIDEM_INLINE inline __attribute__((always_inline))
 
@@ -12,102 +11,71 @@ namespace equidem {
 namespace {
 
 /// 32 bytes of numbers: two vectors where the processor has only those of 16.
-template <typename Real>
-struct Lanes;
-template <>
-struct Lanes<float> {
-  typedef float Vector __attribute__((vector_size(32)));  // NOLINT(modernize-use-using): attribute of a typedef
-};
-template <>
-struct Lanes<double> {
-  typedef double Vector __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
-};
+typedef double Vector __attribute__((vector_size(32)));  // NOLINT(modernize-use-using): attribute of a typedef
+constexpr std::size_t width = 4;
 
-template <typename Real>
-using Vector = typename Lanes<Real>::Vector;
-template <typename Real>
-constexpr std::size_t width = 32 / sizeof(Real);
-
-template <typename Real>
-EQUIDEM_INLINE Vector<Real> load(const Real* from) {
-  Vector<Real> v;
+EQUIDEM_INLINE Vector load(const double* from) {
+  Vector v;
   std::memcpy(&v, from, sizeof v);
   return v;
 }
 
-template <typename Real>
-EQUIDEM_INLINE void store(Real* to, const Vector<Real>& v) {
+EQUIDEM_INLINE void store(double* to, const Vector& v) {
   std::memcpy(to, &v, sizeof v);
 }
 
 /// Sums over the lanes of each of N vectors.
-template <typename Real, std::size_t N>
+template <std::size_t N>
 struct LaneSums {
-  static constexpr bool transposed = std::is_same_v<Real, double>;
-  Vector<Real> all;  // where transposed
-  Real each[N];
+  Vector all;
 
-  EQUIDEM_INLINE explicit LaneSums(const Vector<Real> (&given)[N]) {
-    if constexpr (transposed) {
-      Vector<Real> v[4] = {};
-      for (std::size_t j = 0; j < N; ++j) v[j] = given[j];
-      const auto low =
-          __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
-      const auto high =
-          __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
-      all = __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
-    } else {
-      for (std::size_t j = 0; j < N; ++j) {
-        each[j] = 0;
-        for (std::size_t e = 0; e < width<Real>; ++e) each[j] += given[j][e];
-      }
-    }
+  EQUIDEM_INLINE explicit LaneSums(const Vector (&given)[N]) {
+    Vector v[4] = {};
+    for (std::size_t j = 0; j < N; ++j) v[j] = given[j];
+    const auto low = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
+    const auto high = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
+    all = __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
   }
-  EQUIDEM_INLINE Real operator[](std::size_t j) const {
-    if constexpr (transposed) return all[j];
-    return each[j];
-  }
+  EQUIDEM_INLINE double operator[](std::size_t j) const { return all[j]; }
 };
 
 /// The last `count` numbers of a vector, < width; 0 before them, whatever stands there.
-template <typename Real>
-EQUIDEM_INLINE Vector<Real> load_last(const Real* end, std::size_t count) {
-  using Bits = std::conditional_t<sizeof(Real) == 8, std::int64_t, std::int32_t>;
-  typedef Bits Mask __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
+EQUIDEM_INLINE Vector load_last(const double* end, std::size_t count) {
+  typedef std::int64_t Mask __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
   static constexpr auto masks = [] {
-    std::array<Bits, 2 * width<Real>> all{};
-    for (std::size_t e = width<Real>; e < all.size(); ++e) all[e] = -1;
+    std::array<std::int64_t, 2 * width> all{};
+    for (std::size_t e = width; e < all.size(); ++e) all[e] = -1;
     return all;
   }();
   Mask mask, bits;
   std::memcpy(&mask, masks.data() + count, sizeof mask);
-  std::memcpy(&bits, end - width<Real>, sizeof bits);
-  return reinterpret_cast<Vector<Real>>(bits & mask);
+  std::memcpy(&bits, end - width, sizeof bits);
+  return reinterpret_cast<Vector>(bits & mask);
 }
 
 /// Pivots [p, p + N) of L y = b for C columns w of `rows` numbers.
-template <typename Real, std::size_t N, std::size_t C>
-EQUIDEM_INLINE void eliminate(const Panel<Real>& panel, std::size_t p, Real* w) {
+template <std::size_t N, std::size_t C>
+EQUIDEM_INLINE void eliminate(const Panel& panel, std::size_t p, double* w) {
   const std::size_t ld = panel.rows;
-  const Real* a = panel.values + p * ld;
-  Real y[C][N];
+  const double* a = panel.values + p * ld;
+  double y[C][N];
   for (std::size_t c = 0; c < C; ++c) {
-    Real* column = w + c * ld + p;
+    double* column = w + c * ld + p;
     for (std::size_t j = 0; j < N; ++j) {
-      Real value = column[j];
+      double value = column[j];
       for (std::size_t i = 0; i < j; ++i) value -= a[i * ld + p + j] * y[c][i];
       column[j] = y[c][j] = value / a[j * ld + p + j];
     }
   }
   std::size_t r = p + N;
-  for (; r + width<Real> <= ld; r += width<Real>) {
-    Vector<Real> l[N];
+  for (; r + width <= ld; r += width) {
+    Vector l[N];
     for (std::size_t j = 0; j < N; ++j) {
       l[j] = load(a + j * ld + r);
       __builtin_prefetch(a + (j + 2 * N) * ld + r);
     }
     for (std::size_t c = 0; c < C; ++c) {
-      Vector<Real> v = load(w + c * ld + r);
+      Vector v = load(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) v -= l[j] * y[c][j];
       store(w + c * ld + r, v);
     }
@@ -121,47 +89,46 @@ EQUIDEM_INLINE void eliminate(const Panel<Real>& panel, std::size_t p, Real* w) 
 
 /// Pivots [p, p + N) of L^T x = y. \param before the solutions of the next `width` rows where they have just been
 /// found: the sums over other rows do not wait for them; null: they are read
-template <typename Real, std::size_t N, std::size_t C>
-EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w, const Vector<Real>* before,
-                               Vector<Real>* found) {
+template <std::size_t N, std::size_t C>
+EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, const Vector* before, Vector* found) {
   const std::size_t ld = panel.rows;
-  const Real* a = panel.values + p * ld;
-  Real inverse[N], triangle[N][N];  // 1/l_jj and l_ij/l_jj: neither they nor divisions wait for solutions
+  const double* a = panel.values + p * ld;
+  double inverse[N], triangle[N][N];  // 1/l_jj and l_ij/l_jj: neither they nor divisions wait for solutions
   for (std::size_t j = 0; j < N; ++j) {
     inverse[j] = 1 / a[j * ld + p + j];
     for (std::size_t i = j + 1; i < N; ++i) triangle[j][i] = a[j * ld + p + i] * inverse[j];
   }
-  Vector<Real> sums[C][N] = {};
+  Vector sums[C][N] = {};
   const std::size_t first = p + N;
-  std::size_t r = before != nullptr ? first + width<Real> : first;
-  for (; r + width<Real> <= ld; r += width<Real>) {
-    Vector<Real> l[N];
+  std::size_t r = before != nullptr ? first + width : first;
+  for (; r + width <= ld; r += width) {
+    Vector l[N];
     for (std::size_t j = 0; j < N; ++j) {
       l[j] = load(a + j * ld + r);
       __builtin_prefetch(a + j * ld + r - 2 * N * ld);
     }
     for (std::size_t c = 0; c < C; ++c) {
-      const Vector<Real> v = load(w + c * ld + r);
+      const Vector v = load(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) sums[c][j] += l[j] * v;
     }
   }
-  if (r < ld && ld >= width<Real>) {
+  if (r < ld && ld >= width) {
     for (std::size_t c = 0; c < C; ++c) {
-      const Vector<Real> v = load_last(w + (c + 1) * ld, ld - r);
+      const Vector v = load_last(w + (c + 1) * ld, ld - r);
       for (std::size_t j = 0; j < N; ++j) sums[c][j] += load_last(a + (j + 1) * ld, ld - r) * v;
     }
     r = ld;
   }
   if (before != nullptr) {
     for (std::size_t j = 0; j < N; ++j) {
-      const Vector<Real> l = load(a + j * ld + first);
+      const Vector l = load(a + j * ld + first);
       for (std::size_t c = 0; c < C; ++c) sums[c][j] += l * before[c];
     }
   }
   for (std::size_t c = 0; c < C; ++c) {
-    Real* column = w + c * ld;
-    const LaneSums<Real, N> below(sums[c]);
-    Real x[N];
+    double* column = w + c * ld;
+    const LaneSums<N> below(sums[c]);
+    double x[N];
     for (std::size_t j = 0; j < N; ++j) {
       x[j] = column[p + j] - below[j];
       for (std::size_t s = r; s < ld; ++s) x[j] -= a[j * ld + s] * column[s];
@@ -170,7 +137,7 @@ EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w,
     for (std::size_t i = N; i-- > 1;) {
       for (std::size_t j = 0; j < i; ++j) x[j] -= triangle[j][i] * x[i];
     }
-    if constexpr (N == width<Real>) {
+    if constexpr (N == width) {
       for (std::size_t j = 0; j < N; ++j) found[c][j] = x[j];
       store(column + p, found[c]);
     } else {
@@ -181,82 +148,67 @@ EQUIDEM_INLINE void substitute(const Panel<Real>& panel, std::size_t p, Real* w,
 
 constexpr std::size_t at_once = 4;  // pivots
 
-template <typename Real, std::size_t C>
-EQUIDEM_INLINE void forward(const Panel<Real>& panel, Real* w) {
+template <std::size_t C>
+EQUIDEM_INLINE void forward(const Panel& panel, double* w) {
   std::size_t p = 0;
-  for (; p + at_once <= panel.pivots; p += at_once) eliminate<Real, at_once, C>(panel, p, w);
-  for (; p < panel.pivots; ++p) eliminate<Real, 1, C>(panel, p, w);
+  for (; p + at_once <= panel.pivots; p += at_once) eliminate<at_once, C>(panel, p, w);
+  for (; p < panel.pivots; ++p) eliminate<1, C>(panel, p, w);
 }
 
-template <typename Real, std::size_t C>
-EQUIDEM_INLINE void backward(const Panel<Real>& panel, Real* w) {
-  Vector<Real> found[C];
-  const Vector<Real>* before = nullptr;
+template <std::size_t C>
+EQUIDEM_INLINE void backward(const Panel& panel, double* w) {
+  Vector found[C];
+  const Vector* before = nullptr;
   std::size_t p = panel.pivots;
   while (p >= at_once) {
     p -= at_once;
-    substitute<Real, at_once, C>(panel, p, w, before, found);
-    if (at_once == width<Real>) before = found;
+    substitute<at_once, C>(panel, p, w, before, found);
+    if (at_once == width) before = found;
   }
   switch (p) {
     case 3:
-      return substitute<Real, 3, C>(panel, 0, w, before, found);
+      return substitute<3, C>(panel, 0, w, before, found);
     case 2:
-      return substitute<Real, 2, C>(panel, 0, w, before, found);
+      return substitute<2, C>(panel, 0, w, before, found);
     case 1:
-      return substitute<Real, 1, C>(panel, 0, w, before, found);
+      return substitute<1, C>(panel, 0, w, before, found);
   }
 }
 
-template <typename Real>
-EQUIDEM_INLINE void solve(bool up, const Panel<Real>& panel, Real* w, std::size_t columns) {
+EQUIDEM_INLINE void solve(bool up, const Panel& panel, double* w, std::size_t columns) {
   switch (columns) {
     case 1:
-      return up ? forward<Real, 1>(panel, w) : backward<Real, 1>(panel, w);
+      return up ? forward<1>(panel, w) : backward<1>(panel, w);
     case 2:
-      return up ? forward<Real, 2>(panel, w) : backward<Real, 2>(panel, w);
+      return up ? forward<2>(panel, w) : backward<2>(panel, w);
     case 3:
-      return up ? forward<Real, 3>(panel, w) : backward<Real, 3>(panel, w);
+      return up ? forward<3>(panel, w) : backward<3>(panel, w);
     case 4:
-      return up ? forward<Real, 4>(panel, w) : backward<Real, 4>(panel, w);
+      return up ? forward<4>(panel, w) : backward<4>(panel, w);
   }
-}
-
-template <typename Real>
-void solve_plain(bool up, const Panel<Real>& panel, Real* w, std::size_t columns) {
-  solve(up, panel, w, columns);
 }
 
 #if defined(__x86_64__)
-template <typename Real>
-__attribute__((target("avx2,fma"))) void solve_wide(bool up, const Panel<Real>& panel, Real* w, std::size_t columns) {
+__attribute__((target("avx2,fma"))) void solve_wide(bool up, const Panel& panel, double* w, std::size_t columns) {
   solve(up, panel, w, columns);
 }
 #endif
 
-template <typename Real>
-void solve_by_processor(bool up, const Panel<Real>& panel, Real* w, std::size_t columns) {
+void solve_by_processor(bool up, const Panel& panel, double* w, std::size_t columns) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return solve_wide(up, panel, w, columns);
 #endif
-  solve_plain(up, panel, w, columns);
+  solve(up, panel, w, columns);
 }
 
 }  // namespace
 
-template <typename Real>
-void solve_forward(const Panel<Real>& panel, Real* w, std::size_t columns) {
+void solve_forward(const Panel& panel, double* w, std::size_t columns) {
   solve_by_processor(true, panel, w, columns);
 }
 
-template <typename Real>
-void solve_backward(const Panel<Real>& panel, Real* w, std::size_t columns) {
+void solve_backward(const Panel& panel, double* w, std::size_t columns) {
   solve_by_processor(false, panel, w, columns);
 }
-
-template void solve_forward<float>(const Panel<float>&, float*, std::size_t);
-template void solve_forward<double>(const Panel<double>&, double*, std::size_t);
-template void solve_backward<float>(const Panel<float>&, float*, std::size_t);
-template void solve_backward<double>(const Panel<double>&, double*, std::size_t);
 
 }  // namespace equidem

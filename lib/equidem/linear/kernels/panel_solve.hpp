@@ -9,9 +9,8 @@
 namespace equidem {
 
 /// The columns of L that a front eliminates, column-major: a triangle of `pivots` rows above `rows - pivots` others.
-template <typename Real>
 struct Panel {
-  const Real* values;
+  const double* values;
   std::size_t pivots;
   std::size_t rows;  ///< also the leading dimension
 };
@@ -19,14 +18,11 @@ struct Panel {
 /// Right-hand sides that are solved at once.
 constexpr std::size_t most_columns = 4;
 
-/// For each column w of `rows` numbers, pivots first: w_1 := L_11^-1 w_1, w_2 := w_2 - L_21 w_1. There for float and
-/// double.
+/// For each column w of `rows` numbers, pivots first: w_1 := L_11^-1 w_1, w_2 := w_2 - L_21 w_1.
 /// \param columns <= most_columns
-template <typename Real>
-void solve_forward(const Panel<Real>& panel, Real* w, std::size_t columns);
+void solve_forward(const Panel& panel, double* w, std::size_t columns);
 
 /// For each column: w_1 := L_11^-T (w_1 - L_21^T w_2).
-template <typename Real>
-void solve_backward(const Panel<Real>& panel, Real* w, std::size_t columns);
+void solve_backward(const Panel& panel, double* w, std::size_t columns);
 
 }  // namespace equidem

@@ -13,7 +13,6 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/kernels/panel_solve.hpp"
 #include "equidem/linear/large_buffer.hpp"
-#include "equidem/linear/multifrontal/cholesky_factor.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/multifrontal/tree_sweep.hpp"
 
@@ -39,21 +38,19 @@ using cholesky_factor::PivotWatch;
 namespace {
 
 /// Zeros on and below the diagonal of the first columns of a matrix; nothing reads the others.
-template <typename Real>
-void clear_lower(std::size_t columns, std::size_t rows, Real* values) {
-  for (std::size_t c = 0; c < columns; ++c) std::fill_n(values + c * rows + c, rows - c, Real{0});
+void clear_lower(std::size_t columns, std::size_t rows, double* values) {
+  for (std::size_t c = 0; c < columns; ++c) std::fill_n(values + c * rows + c, rows - c, 0.0);
 }
 
 /// The smallest pivot of front t. \param bad 1-based index of the first that is not positive, or 0
-template <typename Real>
-PivotWatch watch_front(const CholeskyFactor<Real>& factor, const MatrixOnGraph& k, std::size_t t, int bad) {
+PivotWatch watch_front(const CholeskyFactor& factor, const MatrixOnGraph& k, std::size_t t, int bad) {
   const SymbolicFactor& symbolic = factor.symbolic();
   const auto b = static_cast<std::size_t>(symbolic.block);
-  const Panel<Real> panel = factor.panel(t);
+  const Panel panel = factor.panel(t);
   PivotWatch watch;
   for (std::size_t p = 0; p < (bad != 0 ? static_cast<std::size_t>(bad) : panel.pivots); ++p) {
     const std::int32_t disc = symbolic.tree.order[symbolic.tree.nodes[t].begin + p / b];
-    const double entry = std::is_same_v<Real, float> ? 1.0 : k.matrix.diagonal_block(disc)[(p % b) * (b + 1)];
+    const double entry = k.matrix.diagonal_block(disc)[(p % b) * (b + 1)];
     const double l = panel.values[p * (panel.rows + 1)];
     const double share = bad != 0 && p + 1 == static_cast<std::size_t>(bad) ? std::min(0.0, l / entry) : l * l / entry;
     watch.merge({share, static_cast<std::int64_t>(disc * b + p % b)});
@@ -62,17 +59,15 @@ PivotWatch watch_front(const CholeskyFactor<Real>& factor, const MatrixOnGraph& 
 }
 
 /// Columns of a front: own unknowns, then those that it updates.
-template <typename Real>
-std::vector<Real>& work(std::size_t numbers) {
-  thread_local std::vector<Real> values;
+std::vector<double>& work(std::size_t numbers) {
+  thread_local std::vector<double> values;
   if (values.size() < numbers) values.resize(numbers);
   return values;
 }
 
 }  // namespace
 
-template <typename Real>
-CholeskyFactor<Real>::CholeskyFactor(std::shared_ptr<const SymbolicFactor> symbolic)
+CholeskyFactor::CholeskyFactor(std::shared_ptr<const SymbolicFactor> symbolic)
     : symbolic_(std::move(symbolic)),
       solve_sweep_(
           *symbolic_,
@@ -80,24 +75,21 @@ CholeskyFactor<Real>::CholeskyFactor(std::shared_ptr<const SymbolicFactor> symbo
             return static_cast<double>(symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t)) + 100);
           }),
       forward_sweep_(*symbolic_) {
-  dense::use_one_thread_per_call();
   offset_.resize(symbolic_->fronts());
   std::size_t size = 0;
   for (std::size_t t = 0; t < offset_.size(); ++t) {
     offset_[t] = size;
     size += symbolic_->pivots(t) * (symbolic_->pivots(t) + symbolic_->updates(t));
   }
-  panels_ = LargeVector<Real>(size);
-  report_.name = single ? "multifrontal Cholesky in single precision" : "multifrontal Cholesky";
-  report_.single_precision = single;
+  panels_ = LargeVector<double>(size);
+  report_.name = "multifrontal Cholesky";
   report_.nonzeros = symbolic_->nonzeros;
-  report_.bytes = static_cast<double>(size) * sizeof(Real);
+  report_.bytes = static_cast<double>(size) * sizeof(double);
   report_.negative_pivots = 0;
 }
 
-template <typename Real>
-bool CholeskyFactor<Real>::factorize(const MatrixOnGraph& k) {
-  if constexpr (single) choose_scale(k.matrix);
+bool CholeskyFactor::factorize(const MatrixOnGraph& k) {
+  const dense::OneThreadPerCall one_thread;
   bool positive = true;
   std::vector<std::uint8_t> failed(symbolic_->fronts(), 0);  // here or below: what stands above is not tried
   std::mutex watch_mutex;
@@ -106,17 +98,17 @@ bool CholeskyFactor<Real>::factorize(const MatrixOnGraph& k) {
   Progress progress("factorizing");
   double done = 0;
   sweep.up([&](std::size_t t) { return symbolic_->updates(t) * symbolic_->updates(t); },
-           [&](std::size_t t, Real* update, const std::vector<typename Sweep::Child>& children) {
+           [&](std::size_t t, double* update, const std::vector<Sweep::Child>& children) {
              const std::size_t pivots = symbolic_->pivots(t), updates = symbolic_->updates(t), ld = pivots + updates;
-             Real* const panel = this->panel(t);
+             double* const panel = this->panel(t);
              clear_lower(pivots, ld, panel);
              clear_lower(updates, updates, update);
-             add_matrix_columns<Real>(*symbolic_, k, t, scale_, panel, ld);
+             add_matrix_columns(*symbolic_, k, t, panel, ld);
              thread_local std::vector<RowRun> runs;
              for (const auto& child : children) {
                match_rows(*symbolic_, child.node, runs);
-               extend_add<Real>(runs, symbolic_->block, child.values, symbolic_->updates(child.node),
-                                {panel, ld, update, pivots / symbolic_->block});
+               extend_add(runs, symbolic_->block, child.values, symbolic_->updates(child.node),
+                          {panel, ld, update, pivots / symbolic_->block});
              }
              if (std::any_of(children.begin(), children.end(), [&](const auto& c) { return failed[c.node] != 0; })) {
                failed[t] = 1;
@@ -138,17 +130,14 @@ bool CholeskyFactor<Real>::factorize(const MatrixOnGraph& k) {
   return positive;
 }
 
-template <typename Real>
-void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) const {
+void CholeskyFactor::solve(std::span<double> x, int right_hand_sides) const {
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const auto columns = static_cast<std::size_t>(right_hand_sides);
   const std::size_t n = symbolic_->position.size() * b;
-  LargeVector<Real> y(n * columns);
-  std::vector<double> size(columns, 1.0);
+  LargeVector<double> y(n * columns);
   for (std::size_t c = 0; c < columns; ++c) {
     const std::span<double> column = x.subspan(c * n, n);
-    if constexpr (single) size[c] = scale_to_one(column);
-    permute_to_elimination<Real>(*symbolic_, column, std::span(y).subspan(c * n, n));
+    permute_to_elimination(*symbolic_, column, std::span(y).subspan(c * n, n));
   }
   for (std::size_t c = 0; c < columns; c += most_columns) {
     const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
@@ -157,63 +146,34 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
   }
   for (std::size_t c = 0; c < columns; ++c) {
     const std::span<double> column = x.subspan(c * n, n);
-    permute_from_elimination<Real>(*symbolic_, std::span(y).subspan(c * n, n), column);
-    if constexpr (single) multiply_by_scale(column, size[c]);
+    permute_from_elimination(*symbolic_, std::span(y).subspan(c * n, n), column);
   }
 }
 
-template <typename Real>
-void CholeskyFactor<Real>::forward(const Columns& y) const {
+void CholeskyFactor::forward(const Columns& y) const {
   forward_sweep_.run([this](std::size_t t) { return panel(t); }, y.data, y.size, y.count);
 }
 
-template <typename Real>
-std::vector<double> CholeskyFactor<Real>::softest_motion() const {
+std::vector<double> CholeskyFactor::softest_motion() const {
   const auto b = static_cast<std::size_t>(symbolic_->block);
   const std::size_t n = symbolic_->position.size() * b;
-  LargeVector<Real> y(n);
-  std::fill(y.begin(), y.end(), Real{0});
+  LargeVector<double> y(n);
+  std::fill(y.begin(), y.end(), 0.0);
   std::vector<double> x(n);
   const auto component = static_cast<std::size_t>(report_.smallest_component);
   y[symbolic_->position[component / b] * b + component % b] = 1;
   for (std::size_t t = symbolic_->fronts(); t-- > 0;) backward(t, {y.data(), n, 1});
-  permute_from_elimination<Real>(*symbolic_, y, x);
-  if constexpr (single) multiply_by_scale(x, 1);
+  permute_from_elimination(*symbolic_, y, x);
   return x;
 }
 
-template <typename Real>
-void CholeskyFactor<Real>::choose_scale(const StiffnessMatrix& matrix) {
+void CholeskyFactor::backward(std::size_t t, const Columns& y) const {
   const auto b = static_cast<std::size_t>(symbolic_->block);
-  scale_.resize(symbolic_->position.size() * b);
-  for (std::size_t k = 0; k < scale_.size(); ++k) {
-    const double entry = matrix.diagonal_block(k / b)[k % b * (b + 1)];
-    scale_[k] = entry > 0 ? 1 / std::sqrt(entry) : 1;
-  }
-}
-
-template <typename Real>
-void CholeskyFactor<Real>::multiply_by_scale(std::span<double> x, double factor) const {
-  for (std::size_t k = 0; k < x.size(); ++k) x[k] *= factor * scale_[k];
-}
-
-template <typename Real>
-double CholeskyFactor<Real>::scale_to_one(std::span<double> x) const {
-  double largest = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) largest = std::max(largest, std::abs(scale_[k] * x[k]));
-  if (!(largest > 0)) return 1;
-  multiply_by_scale(x, 1 / largest);
-  return largest;
-}
-
-template <typename Real>
-void CholeskyFactor<Real>::backward(std::size_t t, const Columns& y) const {
-  const auto b = static_cast<std::size_t>(symbolic_->block);
-  const Panel<Real> panel = this->panel(t);
-  Real* own = y.data + symbolic_->tree.nodes[t].begin * b;
-  Real* w = work<Real>(panel.rows * y.count).data();
+  const Panel panel = this->panel(t);
+  double* own = y.data + symbolic_->tree.nodes[t].begin * b;
+  double* w = work(panel.rows * y.count).data();
   for (std::size_t c = 0; c < y.count; ++c) {
-    Real* to = std::copy_n(own + c * y.size, panel.pivots, w + c * panel.rows);
+    double* to = std::copy_n(own + c * y.size, panel.pivots, w + c * panel.rows);
     for (const std::int32_t row : symbolic_->rows[t]) {
       for (std::size_t r = 0; r < b; ++r) *to++ = y.data[c * y.size + row * b + r];
     }
@@ -222,21 +182,13 @@ void CholeskyFactor<Real>::backward(std::size_t t, const Columns& y) const {
   for (std::size_t c = 0; c < y.count; ++c) std::copy_n(w + c * panel.rows, panel.pivots, own + c * y.size);
 }
 
-template <typename Real>
 std::unique_ptr<Factorization> multifrontal_cholesky(std::shared_ptr<const SymbolicFactor> symbolic,
                                                      const MatrixOnGraph& matrix, FactorReport* report) {
-  auto factor = std::make_unique<CholeskyFactor<Real>>(std::move(symbolic));
+  auto factor = std::make_unique<CholeskyFactor>(std::move(symbolic));
   const bool positive = factor->factorize(matrix);
   if (report != nullptr) *report = factor->report();
   if (!positive) return nullptr;
   return factor;
 }
-
-template class CholeskyFactor<float>;
-template class CholeskyFactor<double>;
-template std::unique_ptr<Factorization> multifrontal_cholesky<float>(std::shared_ptr<const SymbolicFactor>,
-                                                                     const MatrixOnGraph&, FactorReport*);
-template std::unique_ptr<Factorization> multifrontal_cholesky<double>(std::shared_ptr<const SymbolicFactor>,
-                                                                      const MatrixOnGraph&, FactorReport*);
 
 }  // namespace equidem

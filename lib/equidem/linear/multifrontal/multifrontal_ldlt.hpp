@@ -6,11 +6,18 @@
 #include <memory>
 
 #include "equidem/linear/factorization.hpp"
-#include "equidem/linear/multifrontal/ldlt_factor.hpp"
+#include "equidem/linear/ordering/symbolic_factor.hpp"
+#include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem {
 
-/// P K P^T = L D L^T by LdltFactor, for kT < 0 with free edges too; the signs of D are the inertia of K.
+struct IndefiniteOptions {
+  double threshold = 0.01;  ///< u: |L_ij| <= 1/u; larger is safer and delays more pivots
+};
+
+/// P K P^T = L D L^T with 1 x 1 and 2 x 2 pivots. Pivots that would grow
+/// are delayed to the parent front, so that the factorization is as stable as a dense one with threshold pivoting.
+/// The signs of D are the inertia of K. Unknowns that no front could eliminate count as zero_pivots: K is singular.
 std::unique_ptr<Factorization> multifrontal_ldlt(std::shared_ptr<const SymbolicFactor> symbolic,
                                                  const MatrixOnGraph& matrix, const IndefiniteOptions& options = {});
 

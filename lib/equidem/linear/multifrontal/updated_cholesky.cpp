@@ -130,18 +130,4 @@ FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::
   return path;
 }
 
-bool UpdatedCholesky::change(std::span<const RankOneChange> changes) {
-  bool kept = true;
-  while (!changes.empty()) {
-    std::size_t count = 1;
-    while (count < std::min(changes.size(), most_changes) && changes[count].i == changes[0].i &&
-           changes[count].j == changes[0].j) {
-      ++count;
-    }
-    kept = change(changes.first(count), {}).held.empty() && kept;
-    changes = changes.subspan(count);
-  }
-  return kept;
-}
-
 }  // namespace equidem

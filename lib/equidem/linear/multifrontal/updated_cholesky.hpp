@@ -9,11 +9,19 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/breakable_factor.hpp"
+#include "equidem/linear/factorization.hpp"
 #include "equidem/linear/kernels/panel_change.hpp"
-#include "equidem/linear/multifrontal/cholesky_factor.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 
 namespace equidem {
+
+/// K += c v v^T, with v over the components (u_x, u_y[, a theta]) of two discs: one spring of a contact, or, with
+/// j = i, the support of a single disc.
+struct RankOneChange {
+  double stiffness = 0;  ///< c, Pa; negative: a spring is taken out
+  std::int32_t i = 0, j = 0;
+  std::array<double, 3> at_i{}, at_j{};  ///< v; at_j is added to at_i where j = i
+};
 
 /// The fronts from that of a contact up to its root, with what a change found and solved on them.
 struct FactorPath {
@@ -29,7 +37,7 @@ struct FactorPath {
 /// K = L L^T with vectors and factors in double precision. A rank-one change K + c v v^T of one contact alters the
 /// columns of the fronts from that which eliminates its first disc up to the root, and no others (Davis & Hager 1999);
 /// panels stay dense.
-class UpdatedCholesky final : public BreakableFactor {
+class UpdatedCholesky final : public Factorization {
  public:
   explicit UpdatedCholesky(std::shared_ptr<const SymbolicFactor> symbolic);
 
@@ -49,12 +57,11 @@ class UpdatedCholesky final : public BreakableFactor {
   /// Changes of one contact, at most most_changes, and loads on its discs, at most most_right_sides, for which L y = f
   /// is solved with the new factor. Stiffness that is added is added first.
   FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads, const Followed& followed = {});
-  [[nodiscard]] bool change(std::span<const RankOneChange> changes) override;
 
   void solve(std::span<double> x, int right_hand_sides) const override { factor_.solve(x, right_hand_sides); }
   [[nodiscard]] const FactorReport& report() const override { return factor_.report(); }
   /// L^T x = y on one front (CholeskyFactor::backward).
-  using Columns = CholeskyFactor<double>::Columns;
+  using Columns = CholeskyFactor::Columns;
   void forward(const Columns& y) const { factor_.forward(y); }
   void backward(std::size_t t, const Columns& y) const { factor_.backward(t, y); }
   /// The front that eliminates a disc, and those above it.
@@ -71,7 +78,7 @@ class UpdatedCholesky final : public BreakableFactor {
  private:
   [[nodiscard]] const SymbolicFactor& symbolic() const { return factor_.symbolic(); }
 
-  CholeskyFactor<double> factor_;
+  CholeskyFactor factor_;
   std::vector<std::int32_t> front_of_;  // of each disc, by its position in the order of elimination
   std::vector<double> stiffness_;       // diagonal of the first K, in the order of elimination
 };

@@ -3,9 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace equidem::multigrid {
+
+std::vector<ChebyshevStep> chebyshev_steps(int degree, double largest, double range, bool from_zero) {
+  const double middle = 0.5 * (largest + largest / range), half = 0.5 * (largest - largest / range);
+  double rho = half / middle;
+  std::vector<ChebyshevStep> steps{{.keep = 0, .add = static_cast<float>(1 / middle), .from_zero = from_zero}};
+  for (int k = 1; k < degree; ++k) {
+    const double following = 1 / (2 * middle / half - rho);
+    steps.push_back({.keep = static_cast<float>(following * rho),
+                     .add = static_cast<float>(2 * following / half),
+                     .from_zero = from_zero && k == 1});
+    rho = following;
+  }
+  return steps;
+}
+
 namespace {
 
 constexpr double nothing = 1e-6;  // share of a diagonal entry that rounding of the entries in float may leave
@@ -79,6 +95,59 @@ void BlockMatrix::set(std::int64_t entry, std::size_t column, const Block& block
 void BlockMatrix::set_inverse(std::size_t row, const Block& diagonal) {
   const Block value = inverse_or_zero(diagonal);
   std::copy(value.begin(), value.end(), &inverse[9 * row]);  // symmetric
+}
+
+EnvelopeCholesky::EnvelopeCholesky(const BlockMatrix& matrix) {
+  const std::size_t n = 3 * matrix.rows();
+  first_.resize(n);
+  start_.resize(n);
+  std::size_t total = 0;
+  for (std::size_t r = 0; r < n; ++r) {
+    std::size_t least = r / 3;
+    for (std::int64_t e = matrix.first[r / 3]; e < matrix.first[r / 3 + 1]; ++e) {
+      least = std::min(least, static_cast<std::size_t>(matrix.columns[e]));
+    }
+    first_[r] = 3 * least;
+    start_[r] = total;
+    total += r + 1 - first_[r];
+  }
+  values_.assign(total, 0.0);
+  for (std::size_t r = 0; r < n; ++r) {
+    double* to = &values_[start_[r]] - first_[r];
+    for (std::int64_t e = matrix.first[r / 3]; e < matrix.first[r / 3 + 1]; ++e) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t column = 3 * static_cast<std::size_t>(matrix.columns[e]) + c;
+        if (column <= r) to[column] += matrix.blocks[9 * e + 3 * c + r % 3];
+      }
+    }
+  }
+  constexpr double nothing = 1e-6;  // share of a diagonal entry: rounding of the entries in float
+  for (std::size_t r = 0; r < n; ++r) {
+    double* to = &values_[start_[r]] - first_[r];
+    double pivot = to[r];
+    for (std::size_t c = first_[r]; c < r; ++c) {
+      const double* other = row(c);
+      const std::size_t begin = std::max(first_[r], first_[c]);
+      to[c] = (to[c] - std::inner_product(to + begin, to + c, other + begin, 0.0)) * other[c];
+      pivot -= to[c] * to[c];
+    }
+    to[r] = pivot > nothing * to[r] ? 1 / std::sqrt(pivot) : 0;
+  }
+}
+
+void EnvelopeCholesky::solve(const QuadVector& b, QuadVector& x) const {
+  const std::size_t n = first_.size();
+  std::vector<double> y(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    const double* l = row(r);
+    y[r] = (b[r / 3][r % 3] - std::inner_product(l + first_[r], l + r, y.begin() + first_[r], 0.0)) * l[r];
+  }
+  for (std::size_t r = n; r-- > 0;) {
+    const double* l = row(r);
+    y[r] *= l[r];
+    for (std::size_t c = first_[r]; c < r; ++c) y[c] -= l[c] * y[r];
+  }
+  for (std::size_t r = 0; r < n; ++r) x[r / 3][r % 3] = static_cast<float>(y[r]);
 }
 
 }  // namespace equidem::multigrid

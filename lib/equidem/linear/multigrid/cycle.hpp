@@ -3,27 +3,56 @@
 /// The multigrid cycle in single precision, an approximate inverse of the stiffness matrix of an assembly.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "equidem/linear/multigrid/envelope_cholesky.hpp"
+#include "equidem/linear/contact_graph.hpp"
+#include "equidem/linear/multigrid/block_matrix.hpp"
 #include "equidem/linear/multigrid/grid.hpp"
 #include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
-#include "equidem/linear/multigrid/wavefront.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem::multigrid {
+
+/// Rows in chunks, each of which takes a number of steps in turn. A chunk follows as soon as the chunks that it reads
+/// have taken the step before, while its rows are still in the cache (Wellein et al. 2009). The structure of the matrix
+/// must be symmetric: then two vectors serve all steps, of which step s reads the one and writes the other.
+class Wavefront {
+ public:
+  Wavefront() = default;
+  /// \param first_row of each chunk, and their number at the end
+  Wavefront(std::vector<std::int32_t> first_row, const GroupedRows& matrix);
+
+  [[nodiscard]] std::size_t chunks() const { return neighbours_.size(); }
+  [[nodiscard]] RowRange rows(std::size_t chunk) const {
+    return {static_cast<std::size_t>(first_row_[chunk]), static_cast<std::size_t>(first_row_[chunk + 1])};
+  }
+  /// Call body(step, chunk) for every chunk and 0 <= step < steps, each once: after step 0 only once the chunks that it
+  /// reads, itself included, have taken the step before. Which rows are written together does not depend on the number
+  /// of threads.
+  void run(int steps, const std::function<void(int step, std::size_t chunk)>& body) const;
+
+ private:
+  class Run;
+  /// Chunks [first, last) that a chunk reads.
+  struct Neighbours {
+    std::int32_t first, last;
+  };
+
+  std::vector<std::int32_t> first_row_;
+  std::vector<Neighbours> neighbours_;
+  std::size_t farthest_ = 0;  ///< chunks from one to another that it reads
+};
 
 struct CycleOptions {
   double spacing = 3;      ///< of the nodes of the first grid, mean distances of discs in contact, > 0
   int degree = 5;          ///< products with the matrix before and after each coarse correction, >= 1
   double range = 15;       ///< largest over smallest eigenvalue that smoothing covers, > 1
   int direct_below = 200;  ///< discs that are solved for without a grid
-  double coarse_factor =
-      1;  ///< by which the matrix of the first grid is multiplied: only tests of a wrong one change it
 };
 
 /// V-cycle: smoothing, correction from the next coarser grid, smoothing (Brandt 1977). Symmetric and positive definite

@@ -15,10 +15,9 @@
 #include <vector>
 
 #include "equidem/contact/frame.hpp"
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multigrid/block_matrix.hpp"
-#include "equidem/linear/multigrid/smoother.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem::multigrid {
 

@@ -6,10 +6,10 @@
 
 #include <memory>
 
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multigrid/cycle.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 

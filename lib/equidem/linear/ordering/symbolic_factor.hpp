@@ -1,17 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The structure of the factor: the discs of each front.
+/// The structure of the factor: the discs of each front, and the division of work on the fronts by several threads.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
 
 namespace equidem {
+
+/// A division of the tree into waves, worked off one after another. What each node computes does not depend on it.
+struct TreeSchedule {
+  struct Wave {
+    std::vector<std::int32_t> subtrees;  ///< their roots, independent of each other, the most work first
+    std::vector<std::int32_t> above;  ///< nodes that only wait for subtrees of this and earlier waves, children first
+  };
+  std::vector<Wave> waves;
+};
+
+/// Waves take a fifth of the work each: what waits for its parent is then the update matrices of a few small
+/// subtrees and of some finished waves, not of all subtrees at once.
+/// \param work of each node, in any unit
+TreeSchedule schedule_tree(const DissectionTree& tree, std::span<const double> work);
 
 /// Fronts of a multifrontal factorization (Duff & Reid 1983), one for each node of the dissection tree. Discs are
 /// named by their position in the elimination order.
@@ -50,20 +63,13 @@ struct RowRun {
 void match_rows(const SymbolicFactor& symbolic, std::size_t child, std::vector<RowRun>& runs);
 
 /// A vector of discs x block components, from the order of discs to the order of elimination and back.
-/// The order of elimination may have floats where that of discs has doubles.
-template <typename Real, typename Given = double>
-void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const std::type_identity_t<Given>> x,
-                            std::span<Real> y) {
+inline void permute_to_elimination(const SymbolicFactor& symbolic, std::span<const double> x, std::span<double> y) {
   const int b = symbolic.block;
   for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
-    for (int r = 0; r < b; ++r) {
-      y[p * b + r] = static_cast<Real>(x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r]);
-    }
+    for (int r = 0; r < b; ++r) y[p * b + r] = x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r];
   }
 }
-template <typename Real, typename Given = double>
-void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const Real> y,
-                              std::span<std::type_identity_t<Given>> x) {
+inline void permute_from_elimination(const SymbolicFactor& symbolic, std::span<const double> y, std::span<double> x) {
   const int b = symbolic.block;
   for (std::size_t p = 0; p < symbolic.position.size(); ++p) {
     for (int r = 0; r < b; ++r) x[static_cast<std::size_t>(symbolic.tree.order[p]) * b + r] = y[p * b + r];

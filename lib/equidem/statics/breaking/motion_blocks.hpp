@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
-#include "equidem/linear/spring_network.hpp"
 
 namespace equidem {
 

@@ -12,7 +12,6 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/statics/breaking/least_load_factor.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 

@@ -197,10 +197,10 @@ PreciseMotion UpdatedState::motion(std::size_t of_case) {
   PreciseMotion now = base_[of_case], motion(components());
   if (more_[of_case] != 0) grow(now, more_[of_case]);
   now.add(column(moved_, of_case));
-  permute_from_elimination<double>(*symbolic_, now.high, motion.high);
+  permute_from_elimination(*symbolic_, now.high, motion.high);
   if (!now.low.empty()) {
     motion.low.resize(components());
-    permute_from_elimination<double>(*symbolic_, now.low, motion.low);
+    permute_from_elimination(*symbolic_, now.low, motion.low);
   }
   return motion;
 }

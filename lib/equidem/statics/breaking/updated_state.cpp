@@ -10,7 +10,7 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 
@@ -60,7 +60,7 @@ UpdatedState::UpdatedState(const Assembly& assembly_in, const ContactSprings& sp
   for (std::size_t p = 0; p < cases.size(); ++p) {
     const RightHandSide& given = cases[p];
     base_.emplace_back(components());
-    permute_to_elimination<double>(*symbolic_, driving_motion(p).high, base_.back().high);
+    permute_to_elimination(*symbolic_, driving_motion(p).high, base_.back().high);
     double affine = 0;
     for (std::size_t c = 0; given.gradient && c < assembly.contacts.size(); ++c) {
       const ContactForce f = linear_spring_force(springs[c], affine_deformation_of(c, p));

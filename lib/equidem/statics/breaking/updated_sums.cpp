@@ -40,7 +40,7 @@ void UpdatedState::solve_followed() {
     for (std::size_t k = 0; k < n; ++k) {
       if (unknowns.held[k] != DegreesOfFreedom::free) q[k] = 0;
     }
-    permute_to_elimination<double>(*symbolic_, q, std::span(followed_).subspan(number * n, n));
+    permute_to_elimination(*symbolic_, q, std::span(followed_).subspan(number * n, n));
   };
   for (std::size_t g = 0; g < moments; ++g) {
     for (std::size_t c = 0; c < forces.size(); ++c) {

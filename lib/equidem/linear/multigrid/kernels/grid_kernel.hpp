@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-#include "equidem/linear/multigrid/smoother.hpp"
+#include "equidem/linear/multigrid/block_matrix.hpp"
 
 namespace equidem::multigrid {
 

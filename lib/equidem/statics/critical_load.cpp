@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/prestress/critical_load.hpp"
+#include "equidem/statics/critical_load.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/hold_free_motions.hpp"
+#include "equidem/statics/critical_ratio.hpp"
+#include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/number_unknowns.hpp"
-#include "equidem/statics/pencil/matrix_pencil.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/statics/equations/linear_system.hpp"
+#include "equidem/statics/linear_system.hpp"
 
 #include <cassert>
 #include <utility>
