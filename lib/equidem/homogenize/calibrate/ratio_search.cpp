@@ -191,12 +191,12 @@ FoundRatio find_ratio(const RatioSampler& sample, const RatioRange& range, doubl
   } else {
     constexpr double farthest = 1e15;
     RatioSample from = counted(1), to = from;
-    const bool up = from.shear_to_bulk < wanted;
-    while (to.stable && (to.shear_to_bulk < wanted) == up && to.ratio < farthest && to.ratio > 1 / farthest) {
+    const bool up = from.shear_to_bulk <= wanted;
+    while (to.stable && (to.shear_to_bulk <= wanted) == up && to.ratio < farthest && to.ratio > 1 / farthest) {
       from = to;
       to = counted(up ? 10 * from.ratio : 0.1 * from.ratio);
     }
-    if (to.stable && (to.shear_to_bulk < wanted) != up)
+    if (to.stable && (to.shear_to_bulk <= wanted) != up)
       found = find_in_pieces(counted, up ? std::vector{from, to} : std::vector{to, from}, wanted, tolerance);
   }
   found.steps = count;
