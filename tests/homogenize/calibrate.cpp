@@ -48,8 +48,8 @@ std::vector<Kind> kinds() {
   const LatticeOptions lattice{.columns = 6, .rows = 6, .periodic = true};
   std::vector<Kind> all{
       {"hexagonal, closed form", hexagonal_lattice(lattice), {.lattice = &lattices::hexagonal}},
-      {"hexagonal, Newton", hexagonal_lattice(lattice), {}},
-      {"square, Newton on its mean over all directions", square_lattice(lattice), {}},
+      {"hexagonal, by a search", hexagonal_lattice(lattice), {}},
+      {"square, by a search on its mean over all directions", square_lattice(lattice), {}},
       {"Poisson disc", random_cell(PointProcess::poisson_disc, 300), {}},
       {"perturbed hexagonal", random_cell(PointProcess::perturbed_hexagonal, 300), {}},
       {"uniform points", random_cell(PointProcess::uniform, 300), {}},
@@ -93,12 +93,12 @@ TEST_CASE("springs_come_back_from_their_moduli") {
       CAPTURE(kind.name, ratio, found.springs.ratio(), found.factorizations, found.relative_error, found.method);
       CHECK(found.springs.kN == Approx(springs.kN).epsilon(1e-9));
       CHECK(found.springs.kT == Approx(springs.kT).epsilon(1e-9));
-      CHECK(found.factorizations <= (closed_form ? 1 : 6));
+      CHECK(found.factorizations <= (closed_form ? 1 : 12));
     }
   }
 }
 
-TEST_CASE("moduli_are_reached_to_1e_10_within_6_factorizations") {
+TEST_CASE("moduli_are_reached_to_1e_10_within_12_factorizations") {
   for (const PointProcess points :
        {PointProcess::poisson_disc, PointProcess::perturbed_hexagonal, PointProcess::uniform}) {
     const Kind kind{to_string(points), random_cell(points, points == PointProcess::poisson_disc ? 10000 : 2000), {}};
@@ -106,7 +106,7 @@ TEST_CASE("moduli_are_reached_to_1e_10_within_6_factorizations") {
       const ElasticModuli target{2.5e7, nu, Plane::strain};
       const Calibration found = calibrate(kind.assembly, target, kind.options);
       CAPTURE(kind.name, kind.assembly.size(), nu, found.factorizations, found.iterations, found.relative_error);
-      CHECK(found.factorizations <= 6);
+      CHECK(found.factorizations <= 12);
       CHECK(found.factorizations == found.iterations + 2);
       CHECK(found.rising);
       // Homogenized anew.

@@ -14,10 +14,9 @@
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
-#include "equidem/waves/lowest_eigenvalues.hpp"
+#include "equidem/waves/extreme_eigenvalues.hpp"
 
 namespace equidem {
 namespace {
@@ -42,10 +41,11 @@ class VibrationOperator {
   [[nodiscard]] double over_root_mass(std::size_t k) const { return over_root_mass_[k]; }
 
   /// Forces come from stretch and slip of contacts, whose differences of motions keep the digits of soft motions.
-  void multiply(const TallMatrix& x, ColumnRange columns, TallMatrix& y) const {
+  /// \param x vectors, one after another
+  void multiply(std::span<const double> x, std::span<double> y) const {
     constexpr std::size_t discs_at_once = 1 << 10;
     parallel_ranges(network_.assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t d = begin; d < end; ++d) multiply_disc(d, x, columns, y);
+      for (std::size_t d = begin; d < end; ++d) multiply_disc(d, x, y);
     });
   }
 
@@ -54,19 +54,17 @@ class VibrationOperator {
     return over_root_mass_[component] * x[component];
   }
 
-  void multiply_disc(std::size_t d, const TallMatrix& x, ColumnRange columns, TallMatrix& y) const {
+  void multiply_disc(std::size_t d, std::span<const double> x, std::span<double> y) const {
     const auto& [assembly, graph, springs, unknowns] = network_;
     const double over_scale = 1 / unknowns.rotation_scale;
-    for (std::size_t c = columns.first; c < columns.first + columns.count; ++c) {
-      for (std::size_t e = 0; e < b_; ++e) y(d * b_ + e, c) = 0;
-    }
+    for (std::size_t first = 0; first < x.size(); first += size()) std::fill_n(&y[first + d * b_], b_, 0.0);
     for (const auto& edge : graph.of(d)) {
       const auto contact = static_cast<std::size_t>(edge.contact);
       const Contact& ends = assembly.contacts[contact];
       const std::size_t i = static_cast<std::size_t>(ends.i) * b_, j = static_cast<std::size_t>(ends.j) * b_;
       const ContactFrame frame = frame_of(assembly, contact);
-      for (std::size_t c = columns.first; c < columns.first + columns.count; ++c) {
-        const auto u = x.column(c);
+      for (std::size_t first = 0; first < x.size(); first += size()) {
+        const auto u = x.subspan(first, size());
         double turn = 0, opening = 0, bending = 0;
         if (b_ == 3) {
           const double of_i = motion(u, i + 2) * over_scale, of_j = motion(u, j + 2) * over_scale;
@@ -79,7 +77,7 @@ class VibrationOperator {
         const ContactForce force = linear_spring_force(springs[contact], stretch);
         const Vec2 on_i = force_on_i(frame, force);
         const auto add = [&](double sign, double moment) {
-          double* const row = &y(d * b_, c);
+          double* const row = &y[first + d * b_];
           row[0] -= sign * on_i.x * over_root_mass_[d * b_];
           row[1] -= sign * on_i.y * over_root_mass_[d * b_ + 1];
           if (b_ == 3) row[2] -= moment * over_scale * over_root_mass_[d * b_ + 2];
@@ -124,47 +122,43 @@ class Vibration {
   }
   [[nodiscard]] const StiffnessSolver& solver() const { return *solver_; }
 
-  /// Orthonormal in the product with M.
-  [[nodiscard]] TallMatrix zero_energy_modes_of(const VibrationOperator& a) const {
-    const auto pivots = static_cast<std::size_t>(solver_->factor().report().zero_pivots);
-    TallMatrix null(a.size(), held_.size() + pivots);
-    for (std::size_t k = 0; k < null.columns(); ++k) {
+  [[nodiscard]] std::size_t zero_energy_modes() const {
+    return held_.size() + static_cast<std::size_t>(solver_->factor().report().zero_pivots);
+  }
+  /// Orthonormal in the product with M, one after another.
+  [[nodiscard]] std::vector<double> zero_energy_modes_of(const VibrationOperator& a) const {
+    std::vector<double> null(a.size() * zero_energy_modes());
+    for (std::size_t k = 0; k < zero_energy_modes(); ++k) {
       const std::vector<double> motion =
           k < held_.size() ? freed(held_[k])
                            : solver_->factor().null_motion(static_cast<std::int64_t>(k - held_.size()));
-      const auto column = null.column(k);
-      for (std::size_t c = 0; c < column.size(); ++c) {
-        column[c] = a.over_root_mass(c) > 0 ? motion[c] / a.over_root_mass(c) : 0;
+      for (std::size_t c = 0; c < a.size(); ++c) {
+        null[k * a.size() + c] = a.over_root_mass(c) > 0 ? motion[c] / a.over_root_mass(c) : 0;
       }
     }
-    if (make_orthonormal(null, {0, null.columns()}) < null.columns()) {
+    if (!make_orthonormal(a.size(), null)) {
       computation_failed("zero-energy modes are alike to working precision", "they cannot be left out one by one",
                          "Hold what moves freely");
     }
     return null;
   }
 
-  /// x := M^1/2 K^-1 M^1/2 x, roughly, with what was held as it is.
-  void precondition(const VibrationOperator& a, TallMatrix& x, ColumnRange columns) const {
-    const auto all = x.column(columns.first, columns.count);
+  /// x := M^1/2 K^-1 M^1/2 x of vectors one after another, with what was held as it is.
+  void solve(const VibrationOperator& a, std::span<double> x) const {
     constexpr std::size_t at_once = 1 << 13;
     const auto scale = [&] {
       parallel_ranges(a.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const double over = held_unknowns_.held[k] != 0 ? 0 : a.over_root_mass(k);
-          for (std::size_t c = 0; c < columns.count; ++c) {
-            double& value = all[c * a.size() + k];
+          for (std::size_t first = 0; first < x.size(); first += a.size()) {
+            double& value = x[first + k];
             value = over > 0 ? value / over : 0;
           }
         }
       });
     };
     scale();
-    if (solver_->factor().report().nonzeros > 0) {
-      solver_->factor().solve(all, static_cast<int>(columns.count));
-    } else {
-      for (std::size_t k = 0; k < columns.count; ++k) solver_->factor().solve_roughly(x.column(columns.first + k));
-    }
+    solver_->factor().solve(x, static_cast<int>(x.size() / a.size()));
     scale();
   }
 
@@ -187,41 +181,6 @@ class Vibration {
   std::optional<StiffnessSolver> solver_;
 };
 
-/// The lowest part of the whole spectrum of few components.
-LowestEigenvalues lowest_of_all(const VibrationOperator& a, const TallMatrix& null, std::size_t wanted) {
-  const std::size_t n = a.size();
-  TallMatrix x(n, n), y(n, n);
-  for (std::size_t k = 0; k < n; ++k) x(k, k) = 1;
-  a.multiply(x, {0, n}, y);
-  double largest = 0;
-  for (std::size_t k = 0; k < n; ++k) largest = std::max(largest, y(k, k));
-  // Zero-energy modes, and components that are held, go to the far end of the spectrum.
-  const double far = 10 * static_cast<double>(n) * largest;
-  TallMatrix null_rows(null.columns(), n);
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t m = 0; m < null.columns(); ++m) null_rows(m, k) = -far * null(k, m);
-    if (!(a.over_root_mass(k) > 0)) y(k, k) = far;
-  }
-  subtract_product(null, {0, null.columns()}, null_rows, y, {0, n});
-  std::vector<double> values(n);
-  LowestEigenvalues result;
-  const dense::OneThreadPerCall one_thread;
-  if (dense::find_spectrum(n, &y(0, 0), values.data(), true) != 0) return result;
-  result.vectors = TallMatrix(n, wanted);
-  std::ranges::copy(std::as_const(y).column(0, wanted), result.vectors.column(0, wanted).begin());
-  TallMatrix product(n, wanted);
-  a.multiply(result.vectors, {0, wanted}, product);
-  for (std::size_t k = 0; k < wanted; ++k) {
-    double value = 0, square = 0;
-    for (std::size_t c = 0; c < n; ++c) value += result.vectors(c, k) * product(c, k);
-    for (std::size_t c = 0; c < n; ++c) square += std::pow(product(c, k) - value * result.vectors(c, k), 2);
-    result.values.push_back(value);
-    result.error_bounds.push_back(std::sqrt(square));
-  }
-  result.converged = true;
-  return result;
-}
-
 std::string too_many(std::size_t modes) {
   return fmt::format("{} zero-energy modes would have to be told apart from the lowest frequencies", modes);
 }
@@ -229,29 +188,30 @@ std::string too_many(std::size_t modes) {
 LowestEigenvalues find_lowest(Vibration& vibration, const VibrationOperator& a, const NaturalFrequencyOptions& options,
                               NaturalFrequencies& result) {
   const std::int64_t unknowns = vibration.network().unknowns.unknowns;
-  LowestOptions iterations{.tolerance = options.tolerance};
-  const TallMatrix null = vibration.zero_energy_modes_of(a);
-  result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(null.columns());
-  if (null.columns() > most_null) {
-    result.why_none = too_many(null.columns());
+  LowestOptions iterations{.tolerance = options.tolerance, .dense_limit = options.dense_limit};
+  const std::size_t modes = vibration.zero_energy_modes();
+  result.zero_energy_modes = vibration.alone() + static_cast<std::int64_t>(modes);
+  if (modes > most_null) {
+    result.why_none = too_many(modes);
     return {};
   }
-  const std::int64_t others = unknowns - static_cast<std::int64_t>(null.columns());
+  const std::int64_t others = unknowns - static_cast<std::int64_t>(modes);
   iterations.wanted = static_cast<std::size_t>(std::min<std::int64_t>(options.count, others));
   result.solver = vibration.solver().solver_name();
   if (iterations.wanted == 0) {
     result.why_none = "every motion that is free is a zero-energy mode";
     return {};
   }
-  if (a.size() <= options.dense_limit) return lowest_of_all(a, null, iterations.wanted);
-  const double columns_kept = vectors_of_frequencies(static_cast<double>(iterations.wanted + iterations.guards));
-  require_memory(sizeof(double) * columns_kept * static_cast<double>(a.size()), "natural frequencies need about",
-                 "Ask for fewer frequencies, or take a machine with more memory");
-  const SymmetricOperator k{
-      .size = a.size(),
-      .multiply = [&](const TallMatrix& x, ColumnRange columns, TallMatrix& y) { a.multiply(x, columns, y); },
-      .precondition = [&](TallMatrix& x, ColumnRange columns) { vibration.precondition(a, x, columns); }};
-  return lowest_eigenvalues(k, null, iterations);
+  if (a.size() > options.dense_limit) {
+    require_memory(
+        sizeof(double) * vectors_of_frequencies(static_cast<double>(iterations.wanted)) * static_cast<double>(a.size()),
+        "natural frequencies need about", "Ask for fewer frequencies, or take a machine with more memory");
+  }
+  const SymmetricOperator k{.size = a.size(),
+                            .dimension = static_cast<std::size_t>(others),
+                            .multiply = [&](std::span<const double> x, std::span<double> y) { a.multiply(x, y); },
+                            .solve = [&](std::span<double> x) { vibration.solve(a, x); }};
+  return lowest_eigenvalues(k, vibration.zero_energy_modes_of(a), iterations);
 }
 
 }  // namespace
@@ -270,8 +230,7 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
   }
   const VibrationOperator a(network, inertia);
   SolverOptions solver = options.solver;
-  constexpr int of_iterations = 20;  // solutions that those to a few per cent take as much time as
-  solver.right_hand_sides = of_iterations;
+  solver.right_hand_sides = static_cast<int>(3 * lanczos_vectors(static_cast<std::size_t>(options.count)));
   LowestEigenvalues found;
   const auto attempt = [&] {
     vibration.factorize(solver);
@@ -282,11 +241,11 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
       attempt();
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::computation_failed || solver.method != SolverMethod::automatic) throw;
-      solver.method = SolverMethod::multifrontal;  // the rough solutions of iterations may fail
+      solver.method = SolverMethod::multifrontal;
       attempt();
     }
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
+    if (error.kind() != ErrorKind::computation_failed) throw;
     result.why_none = error.problem();
     return result;
   }
@@ -296,8 +255,8 @@ NaturalFrequencies natural_frequencies(const Assembly& assembly, const ContactSp
   result.converged = found.converged;
   result.iterations = found.iterations;
   for (std::size_t k = 0; k < found.values.size(); ++k) {
-    std::vector<double> x(found.vectors.column(k).begin(), found.vectors.column(k).end());
-    for (std::size_t c = 0; c < x.size(); ++c) x[c] *= a.over_root_mass(c);
+    std::vector<double> x(a.size());
+    for (std::size_t c = 0; c < x.size(); ++c) x[c] = found.vectors[k * a.size() + c] * a.over_root_mass(c);
     result.motions.push_back(disc_motions(unknowns, x));
   }
   return result;

@@ -20,7 +20,7 @@ struct NaturalFrequencyOptions {
   int count = 4;            ///< lowest frequencies, >= 1
   double tolerance = 1e-6;  ///< of the error bound of omega², relative, > 0
   SolverOptions solver = {};
-  /// Components of motion, held ones included, up to which the whole spectrum is computed.
+  /// Components of motion, held ones included, up to which the whole spectrum is computed; that of few more is, too.
   std::size_t dense_limit = 150;
 };
 
@@ -41,7 +41,7 @@ struct NaturalFrequencies {
 
 /// Vectors that the search for the lowest eigenvalues keeps, those of zero-energy modes aside.
 constexpr double vectors_of_frequencies(double sought) {
-  return 7 * sought;
+  return 5 * sought + 40;
 }
 
 /// Expects no negative spring. Zero-energy modes are those that hold_free_motions finds and those of zero pivots.

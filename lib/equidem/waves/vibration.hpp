@@ -9,7 +9,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/statics/number_unknowns.hpp"
-#include "equidem/waves/lanczos.hpp"
+#include "equidem/waves/extreme_eigenvalues.hpp"
 
 namespace equidem {
 

@@ -13,7 +13,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/waves/lowest_eigenvalues.hpp"
+#include "equidem/waves/extreme_eigenvalues.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 
 #include "command.hpp"
@@ -131,7 +131,7 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
   results.set("density_assumed", assumed);
   deliver(options, "dry_run",
           dry_run_results(problem, results, AssemblyKeys::size, false,
-                          vectors_of_frequencies(options.frequencies + LowestOptions{}.guards)),
+                          vectors_of_frequencies(options.frequencies)),
           problem.times);
   return 0;
 }

@@ -205,7 +205,7 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
   homogenizer.deliver(target.shear_modulus / shear_part(homogenizer.last().stiffness), result);
   result.smallest_shear_to_bulk = range.least;
   result.largest_shear_to_bulk = range.greatest;
-  result.method = "Newton on kT/kN";
+  result.method = "search on kT/kN";
   result.iterations = found.steps;
   result.rising = found.rising;
   judge(target, result);

@@ -49,7 +49,7 @@ struct Calibration {
   double largest_shear_to_bulk = std::numeric_limits<double>::infinity();
   bool scanned = false;  ///< all ratios were searched for the extremes of G/K, as find_by_scan
   bool rising = true;    ///< G/K rose with kT/kN at every ratio tried, as FoundRatio
-  std::string method;    ///< "closed form, Abe 1996, eq. 34", "Newton on kT/kN"
+  std::string method;    ///< "closed form, Abe 1996, eq. 34", "search on kT/kN"
   StageTimes times;      ///< of all factorizations
 
   /// Poisson's ratios without negative springs: (K - G)/(2K) or (K - G)/(K + G) at the ends, and at least -1, which
@@ -72,9 +72,9 @@ class InfeasibleModuli : public Error {
   std::shared_ptr<const Calibration> range_;
 };
 
-/// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Newton on r
-/// with the exact derivative dC/dr = C_T/r from the tangential strain energies C_T of EffectiveStiffness; two
-/// factorizations at the ends of the range of r, then few more (ratio_search.hpp). Where q(r) does not rise at both
+/// The stiffness is C = kN c(r), r = kT/kN: Poisson's ratio, that is q = G/K, fixes r, then G fixes kN. Two
+/// factorizations at the ends of the range of r, then about ten more (ratio_search.hpp); slopes dC/dr = C_T/r come from
+/// the tangential strain energies C_T of EffectiveStiffness. Where q(r) does not rise at both
 /// ends, and before nu is refused, the whole range is scanned, some twenty factorizations. G and K are those of the
 /// nearest isotropic tensor.
 ///

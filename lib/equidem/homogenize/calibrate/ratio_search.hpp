@@ -42,34 +42,28 @@ struct FoundRatio {
   bool reached = false;  ///< q is the wanted one, to the tolerance
   int steps = 0;         ///< samples taken, those of the range not counted
   bool rising = true;    ///< q rose with r at every sample; else more than one ratio may give the same q
-  double limit = 0;      ///< of find_negative_ratio, where known: within a thousandth of the limit of stability
+  double limit = 0;      ///< of find_negative_ratio, where known: within 5e-5 of the limit of stability
 };
 
-/// q(r) = wanted for r >= 0, by Newton's method with memory: inverse Hermite interpolation of the samples nearest to
-/// the wanted value, x(y) with x = ln r and
-///
-///   y = ln((q - q_0) / (1 - q/q_inf)).
-///
-/// Near both ends y - x is constant, on the hexagonal lattice and for the uniform-stress estimate q = 2r/(1 + r) it is
-/// constant throughout, so that the range gives a first guess that is good to a few per cent. A bracket guards it.
+/// q(r) = wanted for r >= 0: decades from r = 1 towards `wanted` until it is passed, then the zero of q - wanted over
+/// ln r by the method of Alefeld, Potra & Shi (1995), which is TOMS 748.
 /// \param range rising
 /// \param wanted from range.at_zero to range.greatest
 /// \param tolerance of q, relative
-/// \return not reached where `wanted` is that of r = 0 and the assembly is unstable there
+/// \return not reached where the assembly is unstable on the way, or at r = 0 where that is wanted
 /// \throws Error (computation_failed) where q(r) cannot be followed: it jumps
 FoundRatio find_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
-/// As find_ratio, for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then the piece with
-/// `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are sums of r/(r + t)
+/// As find_ratio, for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then as find_ratio
+/// in the piece with `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are sums of r/(r + t)
 /// with positive weights: they, and q, bend over no less than a decade.
 /// \param range its extremes are set
 /// \return not reached where `wanted` lies outside of them
 FoundRatio find_by_scan(const RatioSampler& sample, RatioRange& range, double wanted, double tolerance);
 
-/// As find_ratio, for r < 0, wanted < at_zero: Newton's method with memory on r(q), which starts at r = 0 and turns
-/// back where the assembly is not stable; then, as find_by_scan, from r = 0 to the limit of stability. Not reached:
-/// `at` is the sample with the smallest q of all between the limit and r = 0, the same for every `wanted`; at.ratio > 0
-/// where nothing negative is stable. \param range closed
+/// As find_ratio, for r < 0, wanted < at_zero: down from r = 0 by bisection to the limit of stability or the first q
+/// below `wanted`, then as find_by_scan. Not reached: `at` is the sample with the smallest q of all between the limit
+/// and r = 0, the same for every `wanted`; at.ratio > 0 where nothing negative is stable. \param range closed
 FoundRatio find_negative_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
 }  // namespace equidem
