@@ -153,7 +153,7 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
   for (std::size_t c = 0; c < columns; c += most_columns) {
     const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
     forward(some);
-    solve_sweep_.down([&](std::size_t t) { backward(t, some); });
+    backward(some);
   }
   for (std::size_t c = 0; c < columns; ++c) {
     const std::span<double> column = x.subspan(c * n, n);
@@ -165,6 +165,11 @@ void CholeskyFactor<Real>::solve(std::span<double> x, int right_hand_sides) cons
 template <typename Real>
 void CholeskyFactor<Real>::forward(const Columns& y) const {
   forward_sweep_.run([this](std::size_t t) { return panel(t); }, y.data, y.size, y.count);
+}
+
+template <typename Real>
+void CholeskyFactor<Real>::backward(const Columns& y) const {
+  solve_sweep_.down([&](std::size_t t) { backward(t, y); });
 }
 
 template <typename Real>
