@@ -15,7 +15,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/contact_sums.hpp"
-#include "equidem/statics/breaking/updated_equilibrium.hpp"
+#include "equidem/statics/breaking/updated_network.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/mechanisms.hpp"
@@ -28,13 +28,6 @@ DegreesOfFreedom unknowns_of(const BreakableNetwork& network, std::vector<std::s
   DegreesOfFreedom unknowns = number_unknowns(network.assembly, network.springs, network.effects, network.supports);
   held_free = hold_free_motions(network.assembly, ContactGraph(network.assembly), network.springs, unknowns).components;
   return unknowns;
-}
-
-std::vector<ContactStrength> strengths_of(const BreakableNetwork& network) {
-  std::vector<ContactStrength> strengths(network.assembly.contacts.size());
-  for (std::size_t c = 0; network.strengths != nullptr && c < strengths.size(); ++c)
-    strengths[c] = {network.strengths->tension[c], network.strengths->shear[c]};
-  return strengths;
 }
 
 /// Share of lambda, which is to have nine digits: an estimate needs one more.
@@ -50,18 +43,15 @@ class UpdatedSystem final : public SolvedStates {
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
         ways_(network_.assembly, graph_, network_.springs, broken_, left_),
-        equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases, strengths_of(network_),
-                     {.friction = network_.strengths != nullptr ? network_.strengths->friction : 0,
-                      .memory_limit = network_.solver.memory_limit,
+        equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases,
+                     {.memory_limit = network_.solver.memory_limit,
                       .force_moments = area_of_stress(network_.assembly) > 0}) {
     check_held_free();
-    for (const RightHandSide& given : network_.cases) {
-      moved_.push_back(std::ranges::all_of(given.force, [](double f) { return f == 0; }) ? 1 : 0);
-      energies_.push_back({.of_driving = energy_of_driving(given)});
-    }
-    sum_energies();
+    for (const RightHandSide& given : network_.cases) energies_.push_back({.of_driving = energy_of_driving(given)});
+    moved_ = std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; });
+    sum_up();
     for (Energies& energies : energies_) energies.first = energies.now;
-    measured(equilibrium_.estimated_residual());
+    measured(equilibrium_.residual());
   }
 
   /// One after another, as where a computation is resumed.
@@ -82,7 +72,6 @@ class UpdatedSystem final : public SolvedStates {
       const std::vector<std::int32_t> loosened = remove(contact);
       gone.insert(gone.end(), loosened.begin(), loosened.end());
     }
-    if (contacts.size() != 1) opened_ = nullptr;
     std::ranges::sort(gone);
     return gone;
   }
@@ -91,26 +80,22 @@ class UpdatedSystem final : public SolvedStates {
                                                     const LoadFactorSearch& search) override {
     if (!alone_ && !states_[0].carried) solve_alone();
     if (alone_) return alone_->next_break(strengths, search);
-    if (&strengths != network_.strengths) return SolvedStates::next_break(strengths, search);
-    CriticalContact found = sought(search);
-    if (!alone_ && found.contact >= 0 && lambda_error(found, search) > allowed_error) {
-      static_cast<void>(equilibrium_.refine());
-      taken_ = false;
-      found = sought(search);
+    std::optional<NextBreak> found = SolvedStates::next_break(strengths, search);
+    if (found && lambda_error(*found, strengths.friction) > allowed_error) {
+      refine();
+      found = SolvedStates::next_break(strengths, search);
     }
     static_cast<void>(judge_residual());
     if (!states_[0].carried) return {};
-    return alone_ ? alone_->next_break(strengths, search) : next_break_of(found, search);
+    return alone_ ? alone_->next_break(strengths, search) : found;
   }
-  [[nodiscard]] const OpenedContact* opened() const override { return opened_; }
   [[nodiscard]] const EquilibriumSums* sums() const override {
-    return alone_ || !states_[0].carried ? nullptr : equilibrium_.sums();
+    return alone_ || !states_[0].carried ? nullptr : &sums_;
   }
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
     if (alone_) return alone_->forces(k);
-    take();
-    return SolvedStates::forces(k);
+    return states_[k].carried ? equilibrium_.forces(k) : SolvedStates::forces(k);
   }
   [[nodiscard]] std::span<const double> motion(std::size_t k) const override {
     if (alone_) return alone_->motion(k);
@@ -127,9 +112,7 @@ class UpdatedSystem final : public SolvedStates {
   [[nodiscard]] BreakableCounters counters() const override {
     const UpdateCounters& c = equilibrium_.counters();
     const std::int64_t more = alone_ ? alone_->counters().factorizations : 0;
-    const auto searched = static_cast<double>(std::max<std::int64_t>(c.all_fronts, 1));
-    return {c.factorizations + more, c.updates,          c.mended + more,
-            c.refinements,           largest_residual(), static_cast<double>(c.fronts) / searched};
+    return {c.factorizations + more, c.updates, c.mended + more, c.refinements, largest_residual()};
   }
   [[nodiscard]] std::string solver_name() const override {
     const std::string updated = "multifrontal Cholesky, updated";
@@ -149,35 +132,29 @@ class UpdatedSystem final : public SolvedStates {
     if (driven_ >= 0) return give_up(loose);
     std::vector<std::int32_t> gone;
     if (loose) gone = leave();
-    opened_ = equilibrium_.opened();
-    for (std::size_t p = 0; opened_ != nullptr && p < states_.size(); ++p)
-      energies_[p].now += (moved_[p] ? -0.5 : 0.5) * work_of(opened_->force[p], opened_->opening[p]);
-    if (opened_ == nullptr) sum_energies();
-    if (digits_lost()) {
-      static_cast<void>(equilibrium_.refine());
-      taken_ = false;
-      opened_ = nullptr;
-      sum_energies();
-    }
+    sum_up();
+    if (digits_lost()) refine();
     const std::vector<std::int32_t> others = judge_residual();
     gone.insert(gone.end(), others.begin(), others.end());
     return gone;
   }
 
-  CriticalContact sought(const LoadFactorSearch& search) {
-    CriticalContact found = equilibrium_.critical(search);
-    for (const HeldMechanism& mechanism : found.mechanisms) judge(mechanism);
-    found_late_ = found_late_ || !found.mechanisms.empty();
-    return found;
+  void refine() {
+    for (const HeldMechanism& mechanism : equilibrium_.refine()) {
+      found_late_ = true;
+      judge(mechanism);
+    }
+    taken_ = false;
+    sum_up();
   }
 
   /// Where motions drive, forces and energies fall as the network gets softer, while residuals are relative to those of
   /// the unbroken one: sums of changes lose as many digits, and products of two forces twice as many.
   [[nodiscard]] bool digits_lost() const {
     constexpr double allowed = 1e-12, very_soft = 100;
-    if (!moved_[0]) return false;
+    if (!moved_) return false;
     const double softer = energies_[0].first / energies_[0].now;
-    return !(softer < very_soft && softer * softer * equilibrium_.estimated_residual() < allowed);
+    return !(softer < very_soft && softer * softer * equilibrium_.residual() < allowed);
   }
 
   /// The share of lambda by which that of the critical contact may be wrong. A residual r leaves the motion K^-1 r of
@@ -188,16 +165,17 @@ class UpdatedSystem final : public SolvedStates {
   /// that the rest at its first place would take and that which is left. With E that energy, the criterion g.F = N, or
   /// sign(T) T + mu N, is then wrong by rho sqrt(E) sqrt(2 (kN gN² + kT gT²)) at most, and lambda by that over its
   /// rate.
-  [[nodiscard]] double lambda_error(const CriticalContact& found, const LoadFactorSearch& search) const {
-    const double lambda = search.from + search.direction * found.moment.t;
-    const ContactForce &live = found.force.live, &dead = found.force.dead;
-    const bool sheared = found.moment.in_shear;
+  [[nodiscard]] double lambda_error(const NextBreak& found, double friction) const {
+    const double lambda = found.lambda;
+    const ContactForce live = forces(0)[found.contact];
+    const ContactForce dead = states_.size() > 1 ? forces(1)[found.contact] : ContactForce{};
+    const bool sheared = found.mode == BreakMode::shear;
     const double sign = dead.tangential + lambda * live.tangential < 0 ? -1 : 1;
-    const double normal = sheared ? network_.strengths->friction : 1, tangential = sheared ? sign : 0;
-    const SpringConstants k = network_.springs[static_cast<std::size_t>(found.contact)];
+    const double normal = sheared ? friction : 1, tangential = sheared ? sign : 0;
+    const SpringConstants k = network_.springs[found.contact];
     double driving = std::abs(lambda) * std::sqrt(energies_[0].now + energies_[0].of_driving);
     if (energies_.size() > 1) driving += std::sqrt(energies_[1].now + energies_[1].of_driving);
-    const double wrong = equilibrium_.estimated_residual() * driving *
+    const double wrong = equilibrium_.residual() * driving *
                          std::sqrt(2 * (k.kN * normal * normal + k.kT * tangential * tangential));
     const double grows = std::abs(lambda * (normal * live.normal + tangential * live.tangential));
     return wrong > 0 ? wrong / grows : 0;
@@ -208,7 +186,7 @@ class UpdatedSystem final : public SolvedStates {
     take();
     constexpr double in_balance = 1e-8;  // over the largest force: what rounding leaves where loads balance
     for (std::size_t p = 0; p < states_.size(); ++p) {
-      double largest = largest_force(states_[p].forces);
+      double largest = largest_force(forces(p));
       for (const double f : network_.cases[p].force) largest = std::max(largest, std::abs(f));
       for (const std::size_t k : held_free_) {
         if (std::abs(states_[p].reactions[k]) <= in_balance * largest) continue;
@@ -220,9 +198,9 @@ class UpdatedSystem final : public SolvedStates {
   /// Refinement with a new factor may not serve where hardly anything is left, and round-off of many changes may look
   /// like a mechanism that a load drives. \return discs that leave the network
   std::vector<std::int32_t> judge_residual() {
-    if (driven_ >= 0 || !(equilibrium_.estimated_residual() <= UpdatedEquilibriumOptions{}.watched_residual))
+    if (driven_ >= 0 || !(equilibrium_.residual() <= UpdatedNetworkOptions{}.claimed_residual))
       return give_up(false);
-    measured(equilibrium_.estimated_residual());
+    measured(equilibrium_.residual());
     return {};
   }
   /// Where a mechanism is driven for certain, nothing is left to solve for.
@@ -230,7 +208,6 @@ class UpdatedSystem final : public SolvedStates {
   std::vector<std::int32_t> give_up(bool loose) {
     std::vector<DiscMotion> motion = equilibrium_.driven_mechanism(driven_);
     if (motion.empty()) return solve_alone();
-    opened_ = nullptr;
     taken_ = false;
     for (State& state : states_) state.carried = false;
     why_not_ = describe_driven(network_, load_bearing_rest(network_, broken_, held_), std::move(motion));
@@ -244,7 +221,6 @@ class UpdatedSystem final : public SolvedStates {
       if (broken_[c] != 0) contacts.push_back(c);
     }
     alone_ = make_refactorized_rest(network_, contacts);
-    opened_ = nullptr;
     const std::vector<std::uint8_t> before = left_;
     copy_alone();
     std::vector<std::int32_t> gone;
@@ -266,19 +242,11 @@ class UpdatedSystem final : public SolvedStates {
       driven_ = mechanism.component;
   }
 
-  /// The elastic energy under each right-hand side.
-  void sum_energies() {
-    if (const EquilibriumSums* all = equilibrium_.sums()) {
-      energies_[0].now = 0.5 * (all->load_work[0][0] + all->imposed[0]);
-      if (energies_.size() > 1) energies_[1].now = 0.5 * all->load_work[1][1];
-      return;
-    }
-    for (std::size_t p = 0; p < states_.size(); ++p) {
-      const std::span<const ContactForce> all = forces(p);
-      energies_[p].now = contact_sums<1>(all.size(), [&](std::size_t c, std::array<double, 1>& s) {
-        s[0] += linear_spring_energy_of(network_.springs[c], all[c]);
-      })[0];
-    }
+  /// The elastic energy under each right-hand side, from the sums.
+  void sum_up() {
+    sums_ = equilibrium_.sums();
+    energies_[0].now = 0.5 * (sums_.load_work[0][0] + sums_.imposed[0]);
+    if (energies_.size() > 1) energies_[1].now = 0.5 * sums_.load_work[1][1];
   }
 
   /// The energy of the contacts where prescribed motions and a mean strain act and no free disc moves, N.
@@ -318,22 +286,17 @@ class UpdatedSystem final : public SolvedStates {
     const auto b = static_cast<std::size_t>(unknowns_.per_disc);
     for (std::size_t p = 0; p < states_.size(); ++p) {
       State& state = states_[p];
-      state.forces = equilibrium_.forces(p);
-      state.motion = equilibrium_.motion(p).high;
-      state.reactions.assign(state.motion.size(), 0.0);
+      state.reactions.assign(unknowns_.held.size(), 0.0);
       if (!state.carried) {
-        std::fill(state.forces.begin(), state.forces.end(), ContactForce{});
-        std::fill(state.motion.begin(), state.motion.end(), 0.0);
+        state.forces.assign(network_.assembly.contacts.size(), {});
+        state.motion = state.reactions;
         continue;
       }
-      for (std::size_t c = 0; c < state.forces.size(); ++c) {
-        const Contact& contact = network_.assembly.contacts[c];
-        if (left_[contact.i] != 0 || left_[contact.j] != 0) state.forces[c] = {};
-      }
+      state.motion = equilibrium_.motion(p).high;
       for (std::size_t k = 0; k < state.motion.size(); ++k) {
         if (left_[k / b] != 0) state.motion[k] = 0;
       }
-      internal_force(network_.assembly, graph_, unknowns_, state.forces, state.reactions);
+      internal_force(network_.assembly, graph_, unknowns_, equilibrium_.forces(p), state.reactions);
       const std::vector<double>& load = network_.cases[p].force;
       for (std::size_t k = 0; k < state.reactions.size(); ++k) {
         if (unknowns_.held[k] == DegreesOfFreedom::free) {
@@ -351,11 +314,11 @@ class UpdatedSystem final : public SolvedStates {
   ContactGraph graph_;
   std::vector<std::uint8_t> held_, broken_;
   DisjointWays ways_;
-  std::vector<std::uint8_t> moved_;  // per right-hand side, 1: by imposed motions or a mean strain alone
-  mutable UpdatedEquilibrium equilibrium_;
+  bool moved_ = false;  // the first right-hand side, by imposed motions or a mean strain alone
+  UpdatedNetwork equilibrium_;
+  EquilibriumSums sums_;
   mutable bool taken_ = false;                // whether states_ are those of the network as it is
   std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
-  const OpenedContact* opened_ = nullptr;
   bool found_late_ = false;   // mechanisms by the last search
   std::int64_t driven_ = -1;  // component held in place of a mechanism on which a load seems to work
   struct Energies {

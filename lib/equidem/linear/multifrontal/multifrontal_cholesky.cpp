@@ -142,7 +142,7 @@ void CholeskyFactor::solve(std::span<double> x, int right_hand_sides) const {
   for (std::size_t c = 0; c < columns; c += most_columns) {
     const Columns some{y.data() + c * n, n, std::min(most_columns, columns - c)};
     forward(some);
-    solve_sweep_.down([&](std::size_t t) { backward(t, some); });
+    backward(some);
   }
   for (std::size_t c = 0; c < columns; ++c) {
     const std::span<double> column = x.subspan(c * n, n);
@@ -152,6 +152,10 @@ void CholeskyFactor::solve(std::span<double> x, int right_hand_sides) const {
 
 void CholeskyFactor::forward(const Columns& y) const {
   forward_sweep_.run([this](std::size_t t) { return panel(t); }, y.data, y.size, y.count);
+}
+
+void CholeskyFactor::backward(const Columns& y) const {
+  solve_sweep_.down([&](std::size_t t) { backward(t, y); });
 }
 
 std::vector<double> CholeskyFactor::softest_motion() const {

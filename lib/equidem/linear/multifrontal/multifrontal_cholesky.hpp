@@ -40,6 +40,8 @@ class CholeskyFactor final : public Factorization {
   void forward(const Columns& y) const;
   /// L^T x = y on front t, where what stands above it is done: x_own := L_11^-T (y_own - L_21^T x_rows).
   void backward(std::size_t t, const Columns& y) const;
+  /// Likewise on all fronts.
+  void backward(const Columns& y) const;
   /// The columns of front t, column-major: rows of its own unknowns, then those that it updates.
   [[nodiscard]] double* panel(std::size_t t) { return panels_.data() + offset_[t]; }
   [[nodiscard]] Panel panel(std::size_t t) const {

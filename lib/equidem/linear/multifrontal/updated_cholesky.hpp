@@ -64,6 +64,7 @@ class UpdatedCholesky final : public Factorization {
   using Columns = CholeskyFactor::Columns;
   void forward(const Columns& y) const { factor_.forward(y); }
   void backward(std::size_t t, const Columns& y) const { factor_.backward(t, y); }
+  void backward(const Columns& y) const { factor_.backward(y); }
   /// The front that eliminates a disc, and those above it.
   [[nodiscard]] std::vector<std::int32_t> path_of(std::int32_t i, std::int32_t j) const;
   /// The stiffness that is added to a pivot that vanishes, Pa.
