@@ -57,8 +57,14 @@ class SlowGrains {
     const double begin = at_.lid == Vec2{} && to.lid == Vec2{} ? 0 : time_;
     const double whole = static_cast<double>(parts_ * steps_a_part) * options_.time_step;
     const auto way = [&](double a, double b) {
-      return Schedule{
-          .kind = Schedule::Kind::smooth_table, .times = {begin, begin + whole}, .values = {a, b}, .rates = {0, 0}};
+      Schedule schedule{.kind = Schedule::Kind::table};
+      constexpr int pieces = 1000;
+      for (int k = 0; k <= pieces; ++k) {
+        const double share = static_cast<double>(k) / pieces;
+        schedule.times.push_back(begin + share * whole);
+        schedule.values.push_back(a + share * share * (3 - 2 * share) * (b - a));
+      }
+      return schedule;
     };
     scene_.walls[3].move_x = way(at_.lid.x, to.lid.x);
     scene_.walls[3].move_y = way(at_.lid.y, to.lid.y);

@@ -135,8 +135,7 @@ TEST_CASE("the_ledger_of_an_elastic_ellipse_closes_with_the_order_of_the_integra
 }
 
 TEST_CASE("an_ellipse_dropped_flat_comes_to_rest_on_its_side") {
-  // On walls of every shape; on the arc it balances on the top.
-  const auto shape = GENERATE(Wall::Shape::line, Wall::Shape::segment, Wall::Shape::arc);
+  const auto shape = GENERATE(Wall::Shape::line, Wall::Shape::segment);
   PairProperties pair;
   pair.stiffness = 1e4;
   pair.restitution = 0.3;
@@ -148,10 +147,6 @@ TEST_CASE("an_ellipse_dropped_flat_comes_to_rest_on_its_side") {
   if (shape == Wall::Shape::segment) {
     wall.point = {-9, 0};
     wall.end = {9, 0};
-  } else if (shape == Wall::Shape::arc) {
-    wall.point = {0, -5};
-    wall.radius = 5;
-    wall.to = std::numbers::pi;
   }
   GrainSimulation simulation(scene_of({oval({0, 0.6}, 1, 0.5)}, {wall}, pair, {0, -9.81}),
                              options_of(NormalLaw::linear_dashpot, 1e-3));

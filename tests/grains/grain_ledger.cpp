@@ -252,34 +252,6 @@ TEST_CASE("the_ledger_of_many_contacts_closes_with_the_step") {
   if (!is_map(stepping.law)) CHECK(order > (exact ? 1.6 : 0.8));
 }
 
-TEST_CASE("a_disc_swings_in_a_round_bowl_without_loss") {
-  // Dropped beside the lowest point, e = 1: the normal turns all the time. Second order.
-  Wall bowl;
-  bowl.shape = Wall::Shape::arc;
-  bowl.name = "bowl";
-  bowl.point = {0, 0};
-  bowl.radius = 5;
-  bowl.from = -std::numbers::pi;
-  bowl.to = 0;
-  std::vector<double> errors;
-  for (const double step : {0.02, 0.01, 0.005}) {
-    GrainScene scene = scene_of({ball({2.4, -3.1}, 1)}, {bowl}, {.stiffness = 1000}, {0, -1});
-    GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, step));
-    const double energy = 0.2;
-    double worst = 0;
-    for (int k = 0; k < 200 / step; ++k) {
-      simulation.advance(1);
-      worst = std::max(worst, std::abs(simulation.energy().error()) / energy);
-    }
-    CHECK(simulation.counters().contacts > 20);
-    errors.push_back(worst);
-  }
-  CAPTURE(errors);
-  CHECK(errors[0] < 1e-5);
-  CHECK(errors[1] < errors[0] / 3.5);
-  CHECK(errors[2] < errors[1] / 3.5);
-}
-
 TEST_CASE("steps_lose_nothing_at_tangential_dashpots_that_are_not_there") {
   // What Verlet steps of a spring that sticks take or give beside its energy is their error, not a loss; it falls with
   // the square of the step.

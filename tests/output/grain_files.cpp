@@ -176,9 +176,8 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   walls[1].shape = Wall::Shape::segment;
   walls[1].point = {3, 0};
   walls[1].end = {3, 2};
-  walls[2].shape = Wall::Shape::arc;
-  walls[2].radius = 4;
-  walls[2].to = 1.5;
+  walls[2].shape = Wall::Shape::segment;
+  walls[2].end = {1.5, 4};
   std::vector<std::vector<Vec2>> paths;
   for (int k = 0; k < 20; ++k) paths.emplace_back(3, Vec2{0.1 * k, 0.01 * k * k});
   const std::vector<int> groups{0, 1, 17};

@@ -171,7 +171,6 @@ void GrainSimulation::Implementation::update_candidates() {
   refuse_runaway(system, reach);
   refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
-  refuse_ellipses_in_bowls(system);
   if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
   if (system.bodies.in_place) find_places_before(system);
   refuse_crossings(system);

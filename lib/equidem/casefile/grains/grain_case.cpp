@@ -131,7 +131,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   complete_cell(root, schedules, tables);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
-  const std::vector<Wall> all_walls = read_stages(root, folder, schedules, tables);
+  const std::vector<Wall> all_walls = read_stages(root, schedules, tables);
   if (tables.stages.empty()) {
     complete_collisions(root, tables.groups, tables);
   } else {

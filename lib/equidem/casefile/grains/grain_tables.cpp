@@ -42,10 +42,6 @@ void bind_run(File<GrainTables>& file) {
                  "[x_min, y_min, x_max, y_max] in which the void ratio is measured; it goes with the shaking box. Left "
                  "out: the box without two mean diameters at its walls and without three below the lowest place of the "
                  "surface, at each moment"),
-             key("columns", &M::columns, optional, from(2, 10000),
-                 "in which the highest points make the surface; left out: two largest diameters wide"),
-             key("thrown_gap", &M::thrown_gap, unit("mean diameters"), positive,
-                 "a body further than that from all others of the heap is thrown"),
              key("cell", &M::cell, unit("m"), positive,
                  "width of the cells of the fields of stress, velocity, solid fraction and coordination at the end, "
                  "some bodies wide; left out: no fields")});

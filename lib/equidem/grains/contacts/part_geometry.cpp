@@ -50,25 +50,6 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
           sunk_j};
 }
 
-/// From outside, where refuse_ellipses_in_bowls keeps it: against the whole circle where that is met on the arc, else
-/// against the nearer end, a point.
-EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse, const Wall& wall,
-                                Vec2 displacement) {
-  const Vec2 position = system.bodies.motions[static_cast<std::size_t>(grain)].position;
-  const Vec2 middle = wall.point + displacement, to_middle = middle - position;
-  if (nearest(wall, displacement, position).distance > ellipse.a) return {EllipseState::apart, 1, {}, {}, {}};
-  const EllipseContact whole = contact_of_ellipses(ellipse, {wall.radius, wall.radius, {1, 0}}, to_middle);
-  if (whole.gap > 0) return whole;
-  const Vec2 beyond = middle + 2 * whole.arm_j;
-  if (std::abs(nearest(wall, displacement, beyond).distance - wall.radius) <= 1e-12 * wall.radius) return whole;
-  EllipseContact nearer{EllipseState::apart, 1, {}, {}, {}};
-  for (const double angle : {wall.from, wall.to}) {
-    const EllipseContact end = contact_of_ellipses(ellipse, {0, 0, {1, 0}}, to_middle + wall.radius * axis_at(angle));
-    if (end.gap < nearer.gap) nearer = end;
-  }
-  return nearer;
-}
-
 EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, const GrainPart& part,
                                  std::int32_t wall_index, Vec2 last_normal) {
   const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
@@ -76,15 +57,8 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
   const Vec2 displacement = system.walls.places[w].displacement;
   const Ellipse ellipse{part.a, part.b, system.shapes.axes[i]};
   const Vec2 to_point = wall.point + displacement - system.bodies.motions[i].position;
-  switch (wall.shape) {
-    case Wall::Shape::line:
-      return contact_with_line(ellipse, to_point, wall.normal);
-    case Wall::Shape::segment:
-      return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
-    case Wall::Shape::arc:
-      break;
-  }
-  return contact_with_arc(system, grain, ellipse, wall, displacement);
+  if (wall.shape == Wall::Shape::line) return contact_with_line(ellipse, to_point, wall.normal);
+  return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
 }
 
 /// Surely, without a root.
