@@ -46,7 +46,7 @@ class SlowGrains {
     scene_.walls = walls_of({box, PackingBox::Sides::walls});
     scene_.grains = std::move(grains);
     scene_.bonds = std::move(bonds);
-    options_ = {.law = NormalLaw::linear_dashpot, .integrator = GrainOptions::Integrator::corrected_verlet};
+    options_ = {.law = NormalLaw::linear_dashpot, .integrator = GrainOptions::Integrator::velocity_verlet};
     options_.time_step = 0.2 * contact_step_limit(scene_, options);
     parts_ = std::llround(steps / steps_a_part);
     push_to({});

@@ -47,7 +47,6 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
   CHECK(given.options.law == options.law);
   CHECK(given.options.integrator == options.integrator);
   CHECK(given.options.ellipse_law == options.ellipse_law);
-  CHECK(given.options.bond_step == options.bond_step);
   CHECK(given.options.reference_length == options.reference_length);
   CHECK(given.scene.gravity == scene.gravity);
   CHECK(given.contacts.kinds == contacts.kinds);
@@ -95,6 +94,5 @@ TEST_CASE("defaults_of_packings_are_those_of_the_options") {
   CHECK(settling.time_step == usual.time_step);
   CHECK(settling.rest == usual.rest);
   CHECK(settling.longest == usual.longest);
-  CHECK(settling.relax_first == usual.relax_first);
   CHECK(settling.bond_share == usual.bond_share);
 }

@@ -13,10 +13,8 @@ namespace equidem::test {
 /// Those that know bonds.
 inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                      {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                     {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                      {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
                                                      {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler}};
-inline constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
 
 /// Every dashpot and spring.
 inline constexpr GrainBond all_of_a_bond{

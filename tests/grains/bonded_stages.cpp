@@ -18,7 +18,6 @@ namespace {
 const std::vector<Stepping> steppings_of_bonded_stages{
     {NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
     {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-    {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
     {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler}};
 
 /// A chain whose bonds break one after the other.
@@ -302,7 +301,7 @@ TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
     CHECK(error.where() == "stage 'bond'");
     CHECK_THAT(error.what(), Catch::Contains("limit"));
   }
-  const double likely = likely_step_limit(press.scene.grains, *bond.bonds, GrainOptions::BondStep::exact);
+  const double likely = likely_step_limit(press.scene.grains, *bond.bonds);
   CAPTURE(likely);
   CHECK(likely < options.time_step);
 }

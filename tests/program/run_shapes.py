@@ -123,16 +123,11 @@ class Refusals(ShapeTest):
                  (BONDED, "bond.0.grains=[0, 0]", "itself"),
                  (BONDED, "bonds.normal_dashpot=nan", "finite"),
                  (SHAKEN, "shaking.frequency=none", "frequency"),
-                 (SHAKEN, "shaking.record=none.csv", "record"),
                  (SHAKEN, "shaking.acceleration=1e300", "m/s"),
                  (SHAKEN, "measures.cell=1e-9", "measures.cell"))
         for case, key, word in cases:
             with self.subTest(key=key):
                 self.check_error(equidem("run", case, "--set", key), 2, word)
-
-    def test_explicit_bonds_past_their_limit_are_refused_with_it(self):
-        self.check_error(equidem("run", BONDED, "--set", "bonds.step=explicit", "--set", "bonds.normal_dashpot=1e9",
-                                 "--set", "run.time_step=1e-5"), 2, "limit", "bonds")
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ normal = [0.0, -1.0]
 """
 SERVO = 'servo = { force = 20.0, max_speed = 0.1 }\n'
 RUN = "[run]\nduration = 0.1\n"
-VERLET = ("--set", "run.integrator=corrected_verlet")
+VERLET = ("--set", "run.integrator=velocity_verlet")
 STAGES = """[run]
 gravity = [0.0, -9.81]
 [[stage]]

@@ -51,7 +51,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   std::vector<std::size_t> numbers = tie_bonds(system, scene);
   if (scene.strengths)
     system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
-  self.bond_limit = bond_step_limit(scene, options.bond_step);
+  self.bond_limit = bond_step_limit(scene);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);
@@ -151,7 +151,6 @@ void GrainSimulation::Implementation::step_by_verlet() {
   begin_loads_of_walls(system);  // servo walls were steered by those of the last step
   find_impulses(deforms ? nullptr : kick_of_verlet);
   if (deforms) kick_in_cell(system);
-  give_touch_impulses(system);
 }
 
 void GrainSimulation::Implementation::find_impulses(BlockMove move) {

@@ -153,10 +153,7 @@ void add_law(Results& out, const GrainCase& resolved) {
       .add("law", "", to_string(resolved.options.law))
       .note(fmt::format(" ({}): {}", law.letter, law.summary));
   if (law.kind == LawKind::force) {
-    out.note(resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler ? ", semi-implicit Euler"
-             : resolved.options.integrator == GrainOptions::Integrator::velocity_verlet
-                 ? ", velocity Verlet"
-                 : ", velocity Verlet, contacts that begin or end within a step corrected");
+    out.note(resolved.options.verlet() ? ", velocity Verlet" : ", semi-implicit Euler");
   }
   // A map reverses the approach of two bodies as if nothing else acted on them: summed at one body, that is too much.
   if (!is_map(resolved.options.law) || resolved.scene.grains.size() + resolved.scene.walls.size() <= 2) return;
@@ -170,17 +167,14 @@ void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& ste
   const bool later =
       std::ranges::any_of(resolved.stages, [](const StageCase& stage) { return stage.bonds.has_value(); });
   if (resolved.scene.bonds.empty() && !later) return;
-  const bool exact = resolved.options.bond_step == GrainOptions::BondStep::exact;
   out.line("bonds")
       .add("bonds/number", "", resolved.scene.bonds.size(), "", {Shown::count})
       .note(later ? " at the start" : "")
-      .add("", "", exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step");
+      .note(", each decays exactly over a step");
   if (step.chain_limit > 0) {
     out.line("", "where a disc has several bonds, their dashpots lose too little energy: some per cent at ")
         .add("bonds/explicit_time_step", "", step.chain_limit, "s")
-        .note(
-            fmt::format(", in proportion to the step, which is {:.3g} of that; step = \"explicit\" in [bonds] is right",
-                        step.step / step.chain_limit));
+        .note(fmt::format(", in proportion to the step, which is {:.3g} of that", step.step / step.chain_limit));
   }
   if (step.bond_limit == 0) {
     out.line("", "they do not limit the step").set("bonds/critical_time_step", nullptr);
@@ -217,12 +211,6 @@ std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& 
         "linear_dashpot where they press on one another",
         std::abs(ledger.error()), energy_unit(resolved.body),
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
-  }
-  const bool euler =
-      gives_force(resolved.options.law) && resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
-  if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
-    return "contacts without tangential springs that nearly stick count too large a loss by slip in "
-           "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
   }
   return "compare with a shorter step before trusting the motion";
 }

@@ -30,9 +30,7 @@ void bind_run(File<GrainTables>& file) {
              key_in<T>(
                  "integrator", &GrainCase::options, &GrainOptions::integrator, optional, formerly("scheme"),
                  "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
-                 "creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
-                 "contacts that begin or end within a step push for their part of it only: for impacts, and where "
-                 "the balance of energy counts")});
+                 "creep; velocity_verlet: second order, as LAMMPS steps")});
   bind_motion(file, BodyFamily::colliding, &GrainCase::probes);
   bind_shaking(file);
   bind_stages(file);

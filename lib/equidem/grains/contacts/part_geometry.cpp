@@ -31,7 +31,7 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
   }
   const Ellipse e_i{part_i.a, part_i.b, system.shapes.axes[i]}, e_j{part_j.a, part_j.b, system.shapes.axes[j]};
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) {
-    const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch, system.options.ellipse_law);
+    const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch);
     if (!contact.is_contact()) return {};
     return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
   }
@@ -93,8 +93,7 @@ PartGeometry meeting_of_part_with_wall(const GrainSystem& system, const Candidat
 
 }  // namespace
 
-EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch,
-                                           GrainOptions::EllipseLaw law) {
+EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   struct Symmetric {
     double xx, xy, yy;
   };
@@ -113,9 +112,7 @@ EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, V
   };
   const double room = 1 - product(branch, branch);
   if (!(room >= 0)) return {EllipseState::apart, -room, {}, {}, {}};
-  const AngleReading reading =
-      law == GrainOptions::EllipseLaw::enlarged_as_printed ? AngleReading::printed : AngleReading::mended;
-  const EnlargedEllipseContact contact = enlarged_ellipse_contact(i, j, branch, reading);
+  const EnlargedEllipseContact contact = enlarged_ellipse_contact(i, j, branch);
   const double square = product(contact.normal, contact.normal), half = product(contact.normal, branch);
   const double root = std::sqrt(half * half + square * room);
   EllipseContact result;

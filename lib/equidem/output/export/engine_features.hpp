@@ -62,8 +62,6 @@ enum class EngineFeature {
   tangential_dashpots,
   dashpots_along_alone,
   unequal_pairs,
-  rigid_friction,
-  friction_of_spring,
   friction_levers,
   breakage,
 };
@@ -167,8 +165,8 @@ struct EnumNames<EngineFeature> {
        "its dashpots follow from one number for each body", "Export to lammps or pfc, or set restitution = 1"},
       {dashpots_by_pair, "restitution below 1 with properties that differ from pair to pair", true, false, false,
        "its dashpots follow from one number for each body", "Export to lammps, or give all the same"},
-      {pulling_dashpots, "restitution below 1 of contacts that may pull (contact_end = \"zero_overlap\")", true, false,
-       true, "its dashpots end where they would pull", "Set contact_end = \"zero_force\""},
+      {pulling_dashpots, "restitution below 1 of contacts that may pull", true, false, true,
+       "its dashpots end where they would pull", "Set restitution = 1"},
       {strong_dashpots, "dashpots at or above the critical one, of bodies of unequal masses", false, false, true,
        "LAMMPS takes a restitution above 0 there", "Raise restitution"},
       {tangential_dashpots, "tangential dashpots", true, false, true, "its law of this export has none",
@@ -177,10 +175,6 @@ struct EnumNames<EngineFeature> {
        "its tangential dashpot is a multiple of the normal one", "Set tangential_damping = 0, or restitution below 1"},
       {unequal_pairs, "contact properties that differ from pair to pair of groups", true, true, false,
        "one table holds for all contacts", "Give all the same"},
-      {rigid_friction, "friction without a tangential spring", false, false, false,
-       "its friction limits the force of a spring", "Set tangential_ratio, such as 2/7"},
-      {friction_of_spring, "friction that limits the spring alone", false, false, false,
-       "it limits spring and dashpot together", "Set friction_cap = \"whole_force\""},
       {friction_levers, "friction of bodies that overlap", false, false, false,
        "its levers differ by parts of the overlap (LAMMPS: the radii, YADE: to the middle, walls otherwise; here: "
        "parts of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
