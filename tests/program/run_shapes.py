@@ -86,7 +86,6 @@ class ReadBack(ShapeTest):
         self.assertEqual(result["bonds"]["number"], 8)
         for row, again in zip(bonds, rows_of(out / "bonds.csv")):
             self.assertEqual(row["normal_dashpot"], again["normal_dashpot"])
-            self.assertLess(abs(float(again["distance_drift"])), 1e-2)
         # the two of a pair, which overlap from nothing to hold them apart, do not collide
         contacts = rows_of(out / "contacts.csv")
         self.assertFalse([c for c in contacts if c["j"] and int(c["i"]) // 2 == int(c["j"]) // 2])

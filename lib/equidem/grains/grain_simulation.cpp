@@ -51,7 +51,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   std::vector<std::size_t> numbers = tie_bonds(system, scene);
   if (scene.strengths)
     system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
-  self.bond_limit = bond_step_limit(scene);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);

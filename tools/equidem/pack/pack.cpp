@@ -55,7 +55,7 @@ void write_tables(const CommonOptions& common, const PackCase& resolved, const G
   const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
   const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
   write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period}, common.overwrite);
-  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, {}, common.overwrite);
+  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
 }
 
 void write_assemblies(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,

@@ -185,26 +185,8 @@ void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& ste
       .add("", "it is", step.step / step.bond_limit, "of that", {.digits = 3});
 }
 
-/// Deformation of the bonds since the start.
-void add_drifts(Results& out, const BondReport& bonds) {
-  if (bonds.number == 0) return;
-  const auto add = [&](const std::string& key, const char* label, const BondReport::Drift& drift) {
-    out.add("bonds/" + key + "/largest", label, drift.largest, "", {.digits = 3})
-        .note(" (")
-        .add("bonds/" + key + "/mean", "mean", drift.mean, "", {.digits = 3})
-        .note(")");
-  };
-  out.line("drift of bonds", "largest since the start: ");
-  add("distance_drift", "distance", bonds.distance);
-  add("slip_drift", "slip", bonds.slip);
-  out.note(" of the sum of the radii").line("");
-  add("roll_drift", "roll", bonds.roll);
-  out.note(" rad");
-}
-
 /// Likely cause of a large error of the balance, and the remedy.
-std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& simulation,
-                              const EnergyLedger& ledger) {
+std::string advice_on_balance(const GrainCase& resolved, const EnergyLedger& ledger) {
   if (is_map(resolved.options.law)) {
     return fmt::format(
         "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
@@ -315,7 +297,6 @@ Results GrainRun::events() const {
     out.set("largest_overlap", nullptr);
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
-  add_drifts(out, simulation_.present().bonds());
   const std::vector<BondBreak> breaks = simulation_.breaks();
   add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
   return out;
@@ -324,7 +305,7 @@ Results GrainRun::events() const {
 Results GrainRun::advice(const Balance& balance) const {
   Results out;
   if (std::abs(balance.at_end) > Balance::doubtful)
-    out.line("", "that is much: " + advice_on_balance(case_, simulation_.present(), simulation_.energy()));
+    out.line("", "that is much: " + advice_on_balance(case_, simulation_.energy()));
   if (const std::int64_t doubtful = simulation_.present().counters().doubtful; doubtful > 0) {
     out.line("", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their "
                              "vibration: the step is safe for one contact, not for any cluster; compare with one a "
