@@ -46,7 +46,7 @@ class SlowGrains {
     scene_.walls = walls_of({box, PackingBox::Sides::walls});
     scene_.grains = std::move(grains);
     scene_.bonds = std::move(bonds);
-    options_ = {.law = NormalLaw::linear_dashpot, .integrator = GrainOptions::Integrator::corrected_verlet};
+    options_ = {.law = NormalLaw::linear_dashpot, .integrator = GrainOptions::Integrator::velocity_verlet};
     options_.time_step = 0.2 * contact_step_limit(scene_, options);
     parts_ = std::llround(steps / steps_a_part);
     push_to({});
@@ -57,8 +57,14 @@ class SlowGrains {
     const double begin = at_.lid == Vec2{} && to.lid == Vec2{} ? 0 : time_;
     const double whole = static_cast<double>(parts_ * steps_a_part) * options_.time_step;
     const auto way = [&](double a, double b) {
-      return Schedule{
-          .kind = Schedule::Kind::smooth_table, .times = {begin, begin + whole}, .values = {a, b}, .rates = {0, 0}};
+      Schedule schedule{.kind = Schedule::Kind::table};
+      constexpr int pieces = 1000;
+      for (int k = 0; k <= pieces; ++k) {
+        const double share = static_cast<double>(k) / pieces;
+        schedule.times.push_back(begin + share * whole);
+        schedule.values.push_back(a + share * share * (3 - 2 * share) * (b - a));
+      }
+      return schedule;
     };
     scene_.walls[3].move_x = way(at_.lid.x, to.lid.x);
     scene_.walls[3].move_y = way(at_.lid.y, to.lid.y);

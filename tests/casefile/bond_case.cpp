@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// [bonds] and [[bond]] of a case file.
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -58,27 +59,22 @@ normal_spring = 3.0
   CHECK((first.i == 0 && first.j == 1 && second.i == 2 && second.j == 1));
   CHECK((first.normal_dashpot == 20 && first.tangential_dashpot == 10 && first.normal_spring == 0));
   CHECK((second.normal_dashpot == 5 && second.tangential_dashpot == 10 && second.normal_spring == 3));
-  CHECK(made.options.bond_step == GrainOptions::BondStep::exact);
   CHECK(build_grain_scene(made, 1e-4).bonds.size() == 2);
   CHECK(parsed_bonds("").scene.bonds.empty());
 }
 
-TEST_CASE("an_automatic_step_keeps_to_half_the_limit_of_explicit_bonds") {
-  const std::string bond = "[bonds]\nstep = \"explicit\"\n[[bond]]\ngrains = [0, 1]\n";
-  const double mass = 1000 * 3.141592653589793 * 0.01, dashpot = 1e7;
-  const GrainCase made = parsed_bonds(bond + "normal_dashpot = 1e7\n");
-  const GrainTimeStep step = choose_grain_step(made);
-  CAPTURE(step.step, step.bond_limit);
-  CHECK(step.bond_limit == Approx(2 * (mass / 2) / dashpot));
-  CHECK(step.step == 0.5 * step.bond_limit);
-  // exact bonds leave the step to the contacts
-  const GrainTimeStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"bonds.step=exact"}));
+TEST_CASE("dashpots_leave_the_automatic_step_to_the_contacts_and_springs_halve_their_limit") {
+  const std::string bond = "[[bond]]\ngrains = [0, 1]\n";
+  const double mass = 1000 * 3.141592653589793 * 0.01, dashpot = 1e7, spring = 1e12;
+  const GrainTimeStep free = choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n"));
   CHECK(free.bond_limit == 0);
-  CHECK(free.step > 10 * step.step);
-  CHECK(free.chain_limit == step.bond_limit);
-  CHECK(step.chain_limit == 0);
+  CHECK(free.chain_limit == Approx(2 * (mass / 2) / dashpot));
+  const GrainTimeStep step = choose_grain_step(parsed_bonds(bond + "normal_spring = 1e12\n"));
+  CAPTURE(step.step, step.bond_limit);
+  CHECK(step.bond_limit == Approx(2 * std::sqrt(mass / 2 / spring)));
+  CHECK(step.step == 0.5 * step.bond_limit);
   CHECK_THROWS_WITH(
-      choose_grain_step(parsed_bonds(bond + "normal_dashpot = 1e7\n", {"run.time_step=4e-6"})),
+      choose_grain_step(parsed_bonds(bond + "normal_spring = 1e12\n", {"run.time_step=2e-5"})),
       Catch::Contains("run.time_step") && Catch::Contains("the limit of") && Catch::Contains("that the bonds impose"));
 }
 

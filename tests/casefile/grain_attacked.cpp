@@ -38,8 +38,7 @@ TEST_CASE("an_automatic_step_follows_strong_dashpots") {
   for (const char* law : {"linear_dashpot", "hertz_dashpot"}) {
     for (const double restitution : {0.1, 0.01, 0.001}) {
       const GrainCase given =
-          case_of(ball_with(fmt::format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0\n"
-                                        "contact_end = \"zero_force\"",
+          case_of(ball_with(fmt::format("law = \"{}\"\nrestitution = {}\nstiffness = 1.0e6\nclosing_speed = 1.0",
                                         law, restitution)));
       const GrainTimeStep step = choose_grain_step(given);
       GrainSimulation simulation(build_grain_scene(given, step.step), grain_options(given, step.step));
@@ -79,7 +78,6 @@ TEST_CASE("restitutions_that_no_dashpot_resolves_are_refused_with_ways_out") {
     const std::string sentence =
         sentence_of(ball_with(fmt::format("restitution = {}\nstiffness = 1.0e6", restitution)));
     CAPTURE(sentence);
-    CHECK(sentence.find("contact_end = \"zero_overlap\"") != std::string::npos);
     CHECK(sentence.find("energy_map") != std::string::npos);
   }
 }

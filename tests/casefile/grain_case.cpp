@@ -56,8 +56,8 @@ TEST_CASE("a_case_of_grains_says_what_its_file_says") {
   CHECK(c.scene.walls[1].move_x.value == Approx(0.06));
   CHECK(c.scene.walls[1].move_y.value == Approx(0.08));
   CHECK(c.scene.walls[1].move_y.frequency == 5);
-  CHECK(c.scene.walls[2].shape == Wall::Shape::arc);
-  CHECK(c.scene.walls[2].to == 5.5);
+  CHECK(c.scene.walls[2].shape == Wall::Shape::segment);
+  CHECK(c.scene.walls[2].end == Vec2{4, 6});
   REQUIRE(c.probes.size() == 1);
   CHECK(c.probes[0].bodies == std::vector<std::int32_t>{0, 2});
   CHECK(c.probes[0].quantities == std::vector{ProbeQuantity::velocity, ProbeQuantity::spin});

@@ -54,12 +54,10 @@ displacement = 0.1
 direction = [3.0, 4.0]
 schedule = "shake"
 [[wall]]
-name = "bowl"
-shape = "arc"
-centre = [0.0, 5.0]
-radius = 4.0
-from = 3.5
-to = 5.5
+name = "slope"
+shape = "segment"
+point = [0.0, 5.0]
+end = [4.0, 6.0]
 [[schedule]]
 name = "shake"
 kind = "sine"

@@ -84,15 +84,3 @@ TEST_CASE("a_law_with_a_dashpot_gives_the_restitution_asked_for") {
     }
   });
 }
-
-TEST_CASE("a_whole_drift_of_contact_counts_as_much_as_the_trapezoidal_rule_says") {
-  // far from its beginning a force that grows with time changes little within a drift
-  for_each_force_law([]<class Law>(std::type_identity<Law>) {
-    const DriftShares short_contact = Law::shares_of_drift(1e-9), whole = Law::shares_of_drift(1);
-    CAPTURE(Law::name, short_contact.spring, short_contact.dashpot, whole.spring, whole.dashpot);
-    CHECK(whole.spring == Approx(0.5).margin(0.05));
-    if (!Law::has_dashpot) return;
-    CHECK(whole.dashpot >= 0.5);
-    CHECK(whole.dashpot <= 1);
-  });
-}

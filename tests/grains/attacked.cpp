@@ -148,15 +148,6 @@ TEST_CASE("numbers_whose_squares_are_none_are_refused_where_they_stand") {
 
 namespace {
 
-Wall arc(std::string name, Vec2 centre, double radius, double from, double to) {
-  Wall wall = line(std::move(name), centre, {0, 1});
-  wall.shape = Wall::Shape::arc;
-  wall.radius = radius;
-  wall.from = from;
-  wall.to = to;
-  return wall;
-}
-
 struct Passage {
   double least = INFINITY, most = 0;  // force on the walls over the weight
   double lowest = INFINITY, highest = -INFINITY;
@@ -214,27 +205,6 @@ TEST_CASE("a_disc_passes_ends_of_walls_that_nearly_meet_as_one_wall") {
   }
 }
 
-TEST_CASE("a_disc_passes_from_an_arc_that_is_typed_with_six_digits_to_a_segment_as_from_an_exact_one") {
-  // down a quarter of a bowl, over the floor; 4.71239 is 3 pi/2
-  const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
-  const double pi = std::numbers::pi;
-  const auto walls = [&](double to, double x, double y) {
-    return std::vector<Wall>{arc("bowl", {0, 0.1}, 0.1, 3.5, to), segment("floor", {x, y}, {0.05, 0})};
-  };
-  const Vec2 start = Vec2{0, 0.1} + (0.098 + 1e-6) * Vec2{std::cos(4.68), std::sin(4.68)};
-  const auto roll = [&](const std::vector<Wall>& all) { return pass(all, stepping, start, {0.25, -0.0081}, 0.03); };
-  const Passage exact = roll(walls(1.5 * pi, 0, 0));
-  for (const double to : {4.71239, 4.71238, 4.7124, 4.7123, 1.5 * pi - 1e-5, 1.5 * pi + 1e-5}) {
-    for (const Vec2 end : {Vec2{0, 0}, Vec2{1e-6, 0}, Vec2{-1e-6, 1e-7}}) {
-      const Passage typed = roll(walls(to, end.x, end.y));
-      CAPTURE(to, end.x, end.y, exact.most, exact.least, typed.most, typed.least, typed.end.y);
-      CHECK(typed.most == Approx(exact.most).epsilon(5e-3));
-      CHECK(typed.end.y == Approx(exact.end.y).margin(2e-7));
-      CHECK(typed.end.x == Approx(exact.end.x).epsilon(1e-3));
-    }
-  }
-}
-
 TEST_CASE("corners_of_ends_that_nearly_meet_act_as_corners") {
   // over a ridge, through a notch, over kinks so slight that both walls are met in nearly one point
   const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
@@ -250,13 +220,6 @@ TEST_CASE("corners_of_ends_that_nearly_meet_act_as_corners") {
     }
     if (std::abs(slope) <= 1e-5) CHECK(exact.most == Approx(1).epsilon(5e-3));
   }
-}
-
-TEST_CASE("rings_close_whose_ends_nearly_meet") {
-  const std::vector<Wall> walls = joined_walls(std::vector{arc("ring", {0, 0}, 0.1, 0, 6.28318)}, 2e-5);
-  CHECK(walls[0].to - walls[0].from == Approx(2 * std::numbers::pi).epsilon(1e-15));
-  const std::vector<Wall> open = joined_walls(std::vector{arc("ring", {0, 0}, 0.1, 0, 6.2)}, 2e-5);
-  CHECK(open[0].to == 6.2);
 }
 
 TEST_CASE("only_walls_that_move_alike_join_and_gaps_of_others_stay") {

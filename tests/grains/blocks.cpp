@@ -33,7 +33,6 @@ GrainScene box_of_two_kinds(const Stepping& stepping) {
   GrainScene scene = busy_box(stepping.law, 5, 5, 82);
   PairProperties other = scene.pairs[0];
   other.friction = 0.1;
-  other.cap = FrictionCap::spring_alone;
   scene.kinds = 2;
   scene.pairs = {scene.pairs[0], other, other, scene.pairs[0]};
   for (std::size_t k = 0; k < scene.grains.size(); k += 3) scene.grains[k].kind = 1;
@@ -46,12 +45,6 @@ GrainScene smooth_box(const Stepping& stepping) {
   return scene;
 }
 
-GrainScene rigid_friction_box(const Stepping& stepping) {
-  GrainScene scene = busy_box(stepping.law, 5, 5, 84);
-  scene.pairs[0].tangential_ratio = scene.pairs[0].tangential_damping = 0;
-  return scene;
-}
-
 struct BlockScene {
   std::string name;
   GrainScene scene;
@@ -60,8 +53,7 @@ struct BlockScene {
 std::vector<BlockScene> block_scenes(const Stepping& stepping) {
   std::vector<BlockScene> scenes{{"discs", busy_box(stepping.law, 5, 5, 80)},
                                  {"two kinds", box_of_two_kinds(stepping)},
-                                 {"no friction", smooth_box(stepping)},
-                                 {"friction without springs", rigid_friction_box(stepping)}};
+                                 {"no friction", smooth_box(stepping)}};
   if (!gives_force(stepping.law)) return scenes;
   scenes.push_back({"shapes", mixed_box(stepping.law, 5, 5, 85)});
   scenes.push_back({"needles", flying_needles(24, 86)});

@@ -6,17 +6,47 @@
 #include <array>
 #include <vector>
 
+#include "equidem/grains/contacts/bond_step.hpp"
+
 #include "grains/scenes.hpp"
 
 namespace equidem::test {
 
+/// Deformation of the bonds of a scene since the start, over the sum of the radii; of discs that have not gone round a
+/// periodic cell.
+struct BondDrifts {
+  struct Drift {
+    double largest = 0, mean = 0;  ///< of the absolute values over all bonds
+  };
+  Drift distance, slip, roll;  ///< roll: rad
+};
+
+inline BondDrifts drifts_of(const GrainScene& scene, const GrainSimulation& simulation) {
+  BondDrifts drifts;
+  const std::vector<Grain> now = simulation.grains();
+  const auto add = [&](BondDrifts::Drift& sum, double amount) {
+    sum.largest = std::max(sum.largest, std::abs(amount));
+    sum.mean += std::abs(amount) / static_cast<double>(scene.bonds.size());
+  };
+  for (const GrainBond& bond : scene.bonds) {
+    const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
+    const BondRest rest = bond.rest ? *bond.rest : rest_of(scene, bond.i, bond.j);
+    const double radii = i.radius + j.radius, length = norm(rest.branch), lever = length * i.radius / radii;
+    const Vec2 way = now[bond.j].position - now[bond.i].position - rest.branch;
+    const BondMotion<double> motion{way.x, way.y, now[bond.i].angle - rest.angle_i, now[bond.j].angle - rest.angle_j};
+    const ContactDeformation drift = bond_deformation(FiniteBond{rest.branch, lever, length - lever, {}, 0}, motion);
+    add(drifts.distance, drift.normal / radii);
+    add(drifts.slip, drift.tangential / radii);
+    add(drifts.roll, motion.theta_j - motion.theta_i);
+  }
+  return drifts;
+}
+
 /// Those that know bonds.
 inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                      {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                     {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                      {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
                                                      {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler}};
-inline constexpr std::array both_bond_steps{GrainOptions::BondStep::exact, GrainOptions::BondStep::explicit_euler};
 
 /// Every dashpot and spring.
 inline constexpr GrainBond all_of_a_bond{

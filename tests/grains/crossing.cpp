@@ -39,17 +39,10 @@ std::vector<Passing> passings(NormalLaw law) {
   Wall plate = named(Wall::Shape::segment, "plate");
   plate.point = {-1, 0};
   plate.end = {1, 0};
-  Wall bowl = named(Wall::Shape::arc, "bowl");
-  bowl.point = {0, 5};
-  bowl.radius = 5;
-  bowl.from = -3;
-  bowl.to = -0.1;
   Wall ram = line("ram", {0, 0}, {0, 1});
   ram.move_y = {Schedule::Kind::table, 0, 0, 0, 0, {0, 10}, {0, 40}};
   all.push_back({"a line", scene_of({ball({0, 2}, 1, {0, -4})}, {floor}, pair), "wall \"floor\""});
   all.push_back({"a segment", scene_of({ball({0.3, 2}, 1, {0, -4})}, {plate}, pair), "wall \"plate\""});
-  all.push_back({"an arc, from inside", scene_of({ball({0, 2}, 1, {0, -4})}, {bowl}, pair), "wall \"bowl\""});
-  all.push_back({"an arc, from outside", scene_of({ball({0, -2}, 1, {0, 4})}, {bowl}, pair), "wall \"bowl\""});
   all.push_back({"a wall that comes", scene_of({ball({0, 2}, 1, {0, 0})}, {ram}, pair), "wall \"ram\""});
   all.push_back({"a grain", scene_of({ball({0, 0}, 1, {}), ball({5, 0.1}, 1, {-10, 0})}, {}, pair), "grain 1"});
   all.push_back({"a small grain", scene_of({ball({0, 0}, 0.1, {}), ball({2, 0.1}, 1, {-4, 0})}, {}, pair), "grain 1"});

@@ -59,8 +59,6 @@ std::vector<Spoiled> all_spoiled() {
       {"tangential damping is given without", [](S& s, O&) { s.pairs[0].tangential_damping = 0.1; }},
       {"velocity_verlet is asked for with the law \"exact_flow\"",
        [](S&, O& o) { o.integrator = GrainIntegrator::velocity_verlet; }},
-      {"corrected_verlet is asked for with the law \"exact_flow\"",
-       [](S&, O& o) { o.integrator = GrainIntegrator::corrected_verlet; }},
       {"velocity_verlet is asked for with the law \"energy_map\"",
        [](S&, O& o) {
          o.integrator = GrainIntegrator::velocity_verlet;

@@ -112,8 +112,6 @@ TEST_CASE("errors_of_contacts_name_the_option_at_fault") {
   damped.rebound = DashpotDamping{0.3};
   CHECK(option_at_fault({.bodies = damped}) == "none");
   CHECK(option_at_fault({.bodies = damped}, NormalLaw::energy_map) == "damping");
-  damped.contact_end = ContactEnd::at_zero_overlap;
-  CHECK(option_at_fault({.bodies = damped}) == "contact_end");
 }
 
 TEST_CASE("a_step_that_cannot_be_chosen_is_asked_for") {

@@ -11,24 +11,10 @@
 
 namespace equidem::test {
 
-/// The scene with an added kind that no body has. Its contacts always slide among themselves and have springs with the
-/// rest: a scene with both computes contacts one by one.
-inline GrainScene one_by_one(GrainScene scene) {
-  PairProperties sprung = scene.pairs[0], sliding = scene.pairs[0];
-  sprung.friction = sliding.friction = 0.1;
-  sprung.tangential_ratio = 0.5;
-  sliding.tangential_ratio = 0;
-  sliding.tangential_damping = 0;
-  const int kinds = scene.kinds;
-  std::vector<PairProperties> pairs;
-  for (int a = 0; a <= kinds; ++a) {
-    for (int b = 0; b <= kinds; ++b) {
-      pairs.push_back(a < kinds && b < kinds ? scene.between(a, b) : a == b ? sliding : sprung);
-    }
-  }
-  scene.kinds = kinds + 1;
-  scene.pairs = pairs;
-  return scene;
+/// The options for contacts one by one.
+inline GrainOptions one_by_one(GrainOptions options) {
+  options.one_by_one = true;
+  return options;
 }
 
 inline double distance_of_motions(const GrainSimulation& a, const GrainSimulation& b) {

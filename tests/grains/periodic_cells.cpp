@@ -202,12 +202,6 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
       },
       {"wall 'side'", "no line along x"});
   check_scene([](GrainScene& s) { s.gravity = {0, -1}; }, {"gravity", "no floor"});
-  check_scene(
-      [](GrainScene& s) {
-        s.grains[3].short_half_axis = 0.5 * s.grains[3].radius, s.pairs[0].tangential_ratio = 0;
-        s.pairs[0].tangential_damping = 0;
-      },
-      {"without a tangential spring"});
   check_scene([](GrainScene& s) { s.cell->shift = NAN; }, {"shift"});
   check_scene(
       [](GrainScene& s) {
@@ -225,7 +219,7 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
   GrainScene shaped = good;
   shaped.grains[3].short_half_axis = 0.5 * shaped.grains[3].radius;
   GrainOptions enlarged = options;
-  enlarged.ellipse_law = GrainOptions::EllipseLaw::enlarged_mended;
+  enlarged.ellipse_law = GrainOptions::EllipseLaw::enlarged;
   check_cell_error([&] { GrainSimulation(shaped, enlarged); }, {"enlarged", "exact contact"});
   GrainScene moving = good;
   moving.cell->rate_xy = {.value = 1};

@@ -16,7 +16,6 @@ TEST_CASE("a_run_saved_at_any_step_goes_on_with_the_same_bits") {
 
 TEST_CASE("bonds_saved_at_any_step_go_on_with_the_same_forces_whatever_they_are_of") {
   const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  const GrainOptions::BondStep bond_step = GENERATE(from_range(both_bond_steps));
   const bool springs = GENERATE(true, false), dashpots = GENERATE(true, false), in_cell = GENERATE(true, false);
   if (!springs && !dashpots) return;
   GrainBond like;
@@ -36,9 +35,8 @@ TEST_CASE("bonds_saved_at_any_step_go_on_with_the_same_forces_whatever_they_are_
     scene.gravity = {};
     scene.cell = PeriodicCell{.corner = {0, 0}, .width = 4, .height = 3};
   }
-  GrainOptions options = options_of(stepping, 4e-3);
-  options.bond_step = bond_step;
-  CAPTURE(stepping.name(), bond_step, springs, dashpots, in_cell);
+  const GrainOptions options = options_of(stepping, 4e-3);
+  CAPTURE(stepping.name(), springs, dashpots, in_cell);
   check_resuming(scene, options, 100);
 }
 

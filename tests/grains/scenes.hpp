@@ -31,17 +31,13 @@ struct Stepping {
   NormalLaw law = NormalLaw::exact_flow;
   GrainIntegrator integrator = GrainIntegrator::semi_implicit_euler;
   [[nodiscard]] std::string name() const {
-    return to_string(law) + (integrator == GrainIntegrator::velocity_verlet    ? ", velocity_verlet"
-                             : integrator == GrainIntegrator::corrected_verlet ? ", corrected_verlet"
-                                                                               : "");
+    return to_string(law) + (integrator == GrainIntegrator::velocity_verlet ? ", velocity_verlet" : "");
   }
 };
 inline const std::vector<Stepping> all_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                 {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                  {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
-                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::corrected_verlet},
                                                  {NormalLaw::five_case_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};

@@ -14,7 +14,6 @@ namespace {
 
 const std::vector<Stepping> steppings_of_servos{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
 

@@ -64,14 +64,6 @@ TEST_CASE("scenes_of_shapes_that_cannot_be_stepped_are_refused") {
   CHECK_THAT(changed([](GrainScene& s) { s.clumps[0].discs[0].radius = 0; }), Contains("disc of the radius 0"));
   CHECK_THAT(changed([](GrainScene& s) { s.clumps[0].discs.clear(); }), Contains("has no discs"));
   CHECK_THAT(changed([](GrainScene& s) { s.walls = {line("floor", {0, -0.5}, {1, 0})}; }), Contains("behind wall"));
-
-  Wall bowl;
-  bowl.shape = Wall::Shape::arc;
-  bowl.name = "bowl";
-  bowl.radius = 5;
-  bowl.from = -3;
-  GrainScene in_bowl = scene_of({oval({0, -2}, 1, 0.5)}, {bowl}, {.stiffness = 100});
-  CHECK_THAT(refusal(in_bowl), Contains("at the inside of the arc \"bowl\"") && Contains("segments"));
 }
 
 TEST_CASE("an_interlocked_clump_may_start_in_the_hollow_of_another") {
@@ -160,27 +152,6 @@ TEST_CASE("a_grain_squeezed_through_a_closing_gap_is_refused") {
   GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 0.001));
   CHECK_THROWS_WITH(simulation.advance(5000), Catch::Contains("grain") && Catch::Contains("Use"));
   CHECK(simulation.time() > 0.5);
-}
-
-TEST_CASE("an_ellipse_that_falls_into_a_bowl_is_refused_before_it_touches_twice") {
-  Wall bowl;
-  bowl.shape = Wall::Shape::arc;
-  bowl.name = "bowl";
-  bowl.radius = 2;
-  bowl.from = -std::numbers::pi;
-  GrainScene scene = scene_of({oval({0, 2.5}, 1, 0.5)}, {bowl}, {.stiffness = 1000}, {0, -10});
-  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-3));
-  CHECK_THROWS_WITH(simulation.advance(5000),
-                    Catch::Contains("grain 0, an ellipse, would come to the inside of the arc \"bowl\""));
-  const Bits before = bits_of(simulation);
-  CHECK_THROWS_AS(simulation.advance(1), Error);
-  CHECK(bits_of(simulation) == before);
-  // on the rim it rebounds from the end, a point
-  scene.grains[0].position.x = 2.0;
-  GrainSimulation rim(scene, options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 1e-4));
-  REQUIRE(pass_contact(rim, 20000));
-  CHECK(rim.grains()[0].velocity.y > 5);
-  CHECK(std::abs(rim.energy().error()) < 1e-3 * 20);
 }
 
 TEST_CASE("a_box_filled_past_its_volume_with_needles_keeps_numbers_or_is_refused") {

@@ -15,7 +15,6 @@ namespace {
 
 const std::vector<Stepping> steppings_of_bodies{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                 {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
                                                 {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};

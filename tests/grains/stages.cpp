@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<Stepping> steppings_in_stages{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                {NormalLaw::hertz_dashpot, GrainIntegrator::corrected_verlet},
+                                                {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
                                                 {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
                                                 {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
 

@@ -51,9 +51,6 @@ TEST_CASE("every_width_of_vectors_gives_the_same_bits") {
   std::vector<Case> cases{{"discs", busy_box(stepping.law, 8, 6, 31), 0.004},
                           {"ellipses, clumps and discs", mixed_box(stepping.law, 4, 4, 72), 0.004},
                           {"needles", flying_needles(24, 33), 1e-3}};
-  cases.push_back(cases.front());
-  cases.back().name = "discs that slide";
-  for (PairProperties& pair : cases.back().scene.pairs) pair.tangential_ratio = pair.tangential_damping = 0;
   if (stepping.law == NormalLaw::linear_dashpot) {
     cases.push_back({"bonded pairs", busy_pairs(stepping.law), 0.004});
     cases.push_back({"bonds that break", breaking_rows(stepping.law), 0.004});

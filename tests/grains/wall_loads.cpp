@@ -11,7 +11,6 @@ namespace {
 
 const std::vector<Stepping> steppings_with_forces{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
                                                   {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                  {NormalLaw::linear_dashpot, GrainIntegrator::corrected_verlet},
                                                   {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
                                                   {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
 

@@ -27,29 +27,20 @@ Wall line(Vec2 point, double angle) {
 Wall segment(Vec2 point, Vec2 end) {
   return {.shape = Shape::segment, .name = "w", .point = point, .end = end};
 }
-Wall arc(Vec2 centre, double radius, double from, double to) {
-  return {.shape = Shape::arc, .name = "w", .point = centre, .radius = radius, .from = from, .to = to};
-}
-
 Vec2 at_random(Random& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size)};
 }
 
 Wall thin_wall(Random& random) {
-  if (random.below(2) == 0) return segment(at_random(random, 1), at_random(random, 1));
-  const double from = random.uniform(-10, 10);
-  const double angle = random.below(4) == 0 ? 2 * pi : random.uniform(0.1, 2 * pi);
-  return arc(at_random(random, 1), random.uniform(0.2, 1.5), from, from + angle);
+  const Vec2 point = at_random(random, 1);
+  return segment(point, at_random(random, 1));
 }
 
 /// Points of a thin wall from end to end, evenly spaced.
 std::vector<Vec2> sampled(const Wall& wall, int pieces) {
   std::vector<Vec2> points;
   for (int k = 0; k <= pieces; ++k) {
-    const double share = static_cast<double>(k) / pieces;
-    const double angle = wall.from + share * (wall.to - wall.from);
-    points.push_back(wall.shape == Shape::segment ? wall.point + share * (wall.end - wall.point)
-                                                  : wall.point + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
+    points.push_back(wall.point + static_cast<double>(k) / pieces * (wall.end - wall.point));
   }
   return points;
 }
@@ -76,18 +67,11 @@ bool crosses_samples(const std::vector<Vec2>& points, Vec2 before, Vec2 after) {
   return false;
 }
 
-/// The wall a little longer or shorter, larger or smaller.
+/// The wall a little longer or shorter.
 Wall changed(Wall wall, double share) {
   const Vec2 along = share * (wall.end - wall.point);
-  if (wall.shape == Shape::segment) {
-    wall.point -= along;
-    wall.end += along;
-  }
-  wall.radius *= 1 + share;
-  if (wall.to - wall.from < 2 * pi - 1e-3) {
-    wall.from -= share;
-    wall.to += share;
-  }
+  wall.point -= along;
+  wall.end += along;
   return wall;
 }
 
@@ -149,17 +133,13 @@ TEST_CASE("next_to_a_thin_wall_the_normal_is_its_own") {
   for (int k = 0; k < 500; ++k) {
     const Wall wall = thin_wall(random);
     const double share = random.uniform(0.01, 0.99);
-    const double angle = wall.from + share * (wall.to - wall.from);
-    const Vec2 outwards{std::cos(angle), std::sin(angle)};
-    const bool straight = wall.shape == Shape::segment;
-    const Vec2 along = (wall.end - wall.point) / norm(wall.end - wall.point);
-    const Vec2 own = straight ? perpendicular(along) : outwards;
-    const Vec2 on = wall.point + (straight ? share * (wall.end - wall.point) : wall.radius * outwards);
+    const Vec2 own = perpendicular(wall.end - wall.point) / norm(wall.end - wall.point);
+    const Vec2 on = wall.point + share * (wall.end - wall.point);
     for (const double height : {1e-3, 1e-9, 1e-14, 0.0, -1e-14, -1e-9, -1e-3}) {
       const WallContact found = nearest(wall, {}, on + height * own);
       CAPTURE(static_cast<int>(wall.shape), k, height, found.distance, found.normal.x, found.normal.y, own.x, own.y);
       CHECK(std::abs(found.distance - std::abs(height)) < 1e-14);
-      CHECK(std::abs(cross(found.normal, own)) < 1e-14 + 1e-15 / wall.radius);
+      CHECK(std::abs(cross(found.normal, own)) < 1e-14);
       if (std::abs(height) > 1e-13) CHECK(dot(found.normal, height * own) > 0);
     }
   }
@@ -174,7 +154,6 @@ TEST_CASE("a_way_passes_through_where_it_crosses_the_samples_of_the_wall") {
     const Wall wall = thin_wall(random);
     const Vec2 before = at_random(random, 1.5);
     const Vec2 after = at_random(random, 1.5);
-    // Arcs are samples joined by chords, off by less than what the wall is changed by.
     const bool smaller = crosses_samples(sampled(changed(wall, -1e-4), 500), before, after);
     const bool larger = crosses_samples(sampled(changed(wall, 1e-4), 500), before, after);
     if (smaller != larger) {
@@ -203,36 +182,26 @@ TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
   for (std::size_t k = 0; k < corners.size(); ++k) {
     polygon.push_back(segment(corners[k], corners[(k + 1) % corners.size()]));
   }
-  std::vector<Wall> ring;
-  for (int k = 0; k < 5; ++k) ring.push_back(arc({}, 1.3, 0.2 + 0.4 * pi * k, 0.2 + 0.4 * pi * (k + 1)));
-  const std::vector<Wall> circle = {arc({}, 1, 0.7, 0.7 + 2 * pi)};
-  for (const auto& closed : {polygon, ring, circle}) {
-    for (int k = 0; k < 3000; ++k) {
-      const Vec2 inside = at_random(random, 0.1);
-      Vec2 outside = at_random(random, 1);
-      outside *= 5 / norm(outside);
-      if (k % 3 == 0) {
-        // Through a corner, or between two arcs.
-        const Wall& wall = closed[random.below(closed.size())];
-        const Vec2 corner = wall.shape == Shape::segment
-                                ? wall.point
-                                : wall.point + wall.radius * Vec2{std::cos(wall.from), std::sin(wall.from)};
-        outside = inside + 7 * (corner - inside) / norm(corner - inside);
-      }
-      const auto seen = [&](Vec2 before, Vec2 after) {
-        return std::any_of(closed.begin(), closed.end(),
-                           [&](const Wall& wall) { return passes_through(wall, before, after); });
-      };
-      CAPTURE(closed.size(), k, inside.x, inside.y, outside.x, outside.y);
-      CHECK(seen(inside, outside));
-      CHECK(seen(outside, inside));
+  for (int k = 0; k < 3000; ++k) {
+    const Vec2 inside = at_random(random, 0.1);
+    Vec2 outside = at_random(random, 1);
+    outside *= 5 / norm(outside);
+    if (k % 3 == 0) {
+      const Vec2 corner = corners[random.below(corners.size())];
+      outside = inside + 7 * (corner - inside) / norm(corner - inside);
     }
+    const auto seen = [&](Vec2 before, Vec2 after) {
+      return std::any_of(polygon.begin(), polygon.end(),
+                         [&](const Wall& wall) { return passes_through(wall, before, after); });
+    };
+    CAPTURE(k, inside.x, inside.y, outside.x, outside.y);
+    CHECK(seen(inside, outside));
+    CHECK(seen(outside, inside));
   }
 }
 
 TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {
-  std::vector<Wall> walls = {line({0, 2}, pi), segment({0, -1}, {0, 3}), segment({0, 3}, {0, -1}),
-                             arc({-2, 0}, 2, -1, 1)};
+  std::vector<Wall> walls = {line({0, 2}, pi), segment({0, -1}, {0, 3}), segment({0, 3}, {0, -1})};
   walls[0].normal = {-1, 0};
   for (const Wall& wall : walls) {
     const Vec2 own = nearest(wall, {}, {0, 0}).normal;
@@ -250,23 +219,9 @@ TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {
   }
 }
 
-TEST_CASE("a_chord_passes_an_arc_twice_and_a_tangent_never") {
-  const Wall upper = arc({0, 0}, 1, 0, pi);
-  CHECK(passes_through(upper, {-2, 0.5}, {2, 0.5}));
-  CHECK(passes_through(upper, {2, 0.999}, {-2, 0.999}));
-  CHECK_FALSE(passes_through(upper, {-2, 1}, {2, 1}));
-  CHECK_FALSE(passes_through(upper, {-2, 1.001}, {2, 1.001}));
-  CHECK_FALSE(passes_through(upper, {-2, -0.5}, {2, -0.5}));
-  CHECK_FALSE(passes_through(upper, {-0.9, 0.1}, {0.9, 0.1}));
-  CHECK_FALSE(passes_through(upper, {0, 0.5}, {0, -3}));
-  CHECK(passes_through(upper, {0, -3}, {0, 3}));
-}
-
 TEST_CASE("no_place_of_the_centre_makes_a_contact_that_is_no_number") {
   const double tiny = 5e-324;
-  const std::vector<Wall> walls = {line({0, 0}, 1),           segment({0, 0}, {1, 0}), segment({0, 0}, {0, 1e-100}),
-                                   arc({0, 0}, 1, 0, 2 * pi), arc({0, 0}, 1, 3, 4),    arc({0, 0}, 1e-100, 0, 1),
-                                   arc({0, 0}, 1e100, 0, 1)};
+  const std::vector<Wall> walls = {line({0, 0}, 1), segment({0, 0}, {1, 0}), segment({0, 0}, {0, 1e-100})};
   for (const Wall& wall : walls) {
     REQUIRE(refusal(wall).empty());
     const std::vector<Vec2> points = sampled(wall, 8);
@@ -275,7 +230,7 @@ TEST_CASE("no_place_of_the_centre_makes_a_contact_that_is_no_number") {
         for (Vec2 centre :
              {Vec2{x, y}, points.front() + Vec2{x, y}, points.back() + Vec2{x, y}, points[4] + Vec2{x, y}}) {
           const WallContact found = nearest(wall, {}, centre);
-          CAPTURE(static_cast<int>(wall.shape), wall.radius, centre.x, centre.y, found.distance);
+          CAPTURE(static_cast<int>(wall.shape), centre.x, centre.y, found.distance);
           CHECK(std::isfinite(found.distance));
           CHECK(std::abs(norm(found.normal) - 1) < 1e-14);
           CHECK_FALSE(passes_through(wall, centre, centre));
@@ -283,10 +238,6 @@ TEST_CASE("no_place_of_the_centre_makes_a_contact_that_is_no_number") {
       }
     }
   }
-  const WallContact middle = nearest(arc({2, 3}, 1, 0, pi), {}, {2, 3});
-  CHECK(middle.distance == 1);
-  CHECK(std::abs(middle.normal.x) < 1e-15);
-  CHECK(middle.normal.y == Approx(-1));
 }
 
 TEST_CASE("walls_that_stand_nowhere_are_refused") {
@@ -294,25 +245,17 @@ TEST_CASE("walls_that_stand_nowhere_are_refused") {
   const double infinite = std::numeric_limits<double>::infinity();
   CHECK(refusal(line({0, 0}, 1)).empty());
   CHECK(refusal(segment({0, 0}, {0, 1e-9})).empty());
-  for (const double from : {0.0, -1.0, 0.1, 5.0, 100.0}) CHECK(refusal(arc({0, 0}, 1, from, from + 2 * pi)).empty());
 
   Wall slanted = line({0, 0}, 1);
   slanted.normal = {1, 1};
   CHECK_THAT(refusal(slanted), Catch::Contains("(1, 1), which is no unit vector"));
   slanted.normal = {nan, 1};
   CHECK_THAT(refusal(slanted), Catch::Contains("no unit vector"));
-  for (const auto& wall : {line({nan, 0}, 1), segment({0, infinite}, {1, 0}), arc({nan, 0}, 1, 0, 1)}) {
+  for (const auto& wall : {line({nan, 0}, 1), segment({0, infinite}, {1, 0})}) {
     CHECK_THAT(refusal(wall), Catch::Contains("wall 'w' stands at"));
   }
   CHECK_THAT(refusal(segment({0, 0}, {nan, 0})), Catch::Contains("ends at (nan, 0)"));
   CHECK_THAT(refusal(segment({1, 2}, {1, 2})), Catch::Contains("begins and ends at (1, 2)"));
-  for (const double radius : {0.0, -1.0, nan, infinite}) {
-    CHECK_THAT(refusal(arc({0, 0}, radius, 0, 1)), Catch::Contains("has radius = "));
-  }
-  CHECK_THAT(refusal(arc({0, 0}, 1, 1, 0.5)), Catch::Contains("goes from 1 to 0.5 rad"));
-  CHECK_THAT(refusal(arc({0, 0}, 1, 1, 1)), Catch::Contains("counter-clockwise"));
-  CHECK_THAT(refusal(arc({0, 0}, 1, nan, 1)), Catch::Contains("goes from nan"));
-  CHECK_THAT(refusal(arc({0, 0}, 1, 0, 6.2832)), Catch::Contains("at most 2 pi long"));
   Wall moving = line({0, 0}, 1);
   moving.move_y.value = nan;
   CHECK_FALSE(refusal(moving).empty());

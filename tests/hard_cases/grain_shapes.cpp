@@ -72,9 +72,9 @@ TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
   HardCase table(needles);
   const auto peg = [](std::string name, double x) {
     Wall wall = line(std::move(name), {x, 0}, {0, 1});
-    wall.shape = Wall::Shape::arc;
-    wall.radius = 0.05;
-    wall.to = 2 * std::numbers::pi;
+    wall.shape = Wall::Shape::segment;
+    wall.point = {x, -1};
+    wall.end = {x, 0.05};
     return wall;
   };
   const double stiffness = 1e4;

@@ -36,16 +36,9 @@ Schedule cycles(double value, double start, double frequency, int count) {
           .end = start + count / frequency,
           .frequency = frequency};
 }
-Schedule smooth(std::vector<double> times, std::vector<double> values, std::vector<double> rates) {
-  return {.kind = Schedule::Kind::smooth_table,
-          .times = std::move(times),
-          .values = std::move(values),
-          .rates = std::move(rates)};
-}
-
 std::vector<Schedule> one_of_each() {
-  return {Schedule{.value = 3},           ramp(-2, 0.5, 2.5),      sine(0.7, 0.25, 3),
-          table({0.5, 1, 3}, {1, -1, 4}), cycles(0.7, 0.25, 3, 4), smooth({0.5, 1, 3}, {1, -1, 4}, {2, 0, -1})};
+  return {Schedule{.value = 3}, ramp(-2, 0.5, 2.5), sine(0.7, 0.25, 3), table({0.5, 1, 3}, {1, -1, 4}),
+          cycles(0.7, 0.25, 3, 4)};
 }
 
 std::string refusal(const Schedule& schedule) {
@@ -129,24 +122,6 @@ TEST_CASE("cycles_go_from_rest_to_rest_with_the_acceleration_of_a_cosine") {
   }
 }
 
-TEST_CASE("a_smooth_table_is_any_cubic_exactly_and_has_the_rates_given") {
-  const auto cubic = [](double t) { return 1 + t * (-2 + t * (0.5 + 0.75 * t)); };
-  const auto rate = [](double t) { return -2 + t * (1 + 2.25 * t); };
-  const std::vector<double> times{-1, -0.25, 0.5, 2};
-  std::vector<double> values, rates;
-  for (const double t : times) {
-    values.push_back(cubic(t));
-    rates.push_back(rate(t));
-  }
-  const Schedule s = smooth(times, values, rates);
-  for (double t = -1; t <= 2; t += 1.0 / 64) {
-    CAPTURE(t);
-    CHECK(s.at(t) == Approx(cubic(t)).epsilon(0).margin(1e-14));
-  }
-  CHECK(s.at(-5) == cubic(-1));
-  CHECK(s.at(5) == cubic(2));
-}
-
 TEST_CASE("a_scaled_schedule_is_the_factor_times_it_at_every_time") {
   for (const Schedule& schedule : one_of_each()) {
     CHECK(refusal(schedule).empty());
@@ -180,9 +155,6 @@ TEST_CASE("schedules_without_a_meaning_are_refused_with_the_number_at_fault") {
            Bad{cycles(1, 0, -3, 1), "frequency -3 Hz"},
            Bad{{.kind = Schedule::Kind::cycles, .value = 1, .end = 1.25, .frequency = 2}, "2.5 cycles"},
            Bad{{.kind = Schedule::Kind::cycles, .value = 1, .start = 1, .end = 1, .frequency = 2}, "0 cycles"},
-           Bad{smooth({1, 2}, {1, 1}, {0}), "2 times and 1 rate"},
-           Bad{smooth({1, 2}, {1, 1}, {0, nan}), "rate = nan"},
-           Bad{smooth({2, 1}, {1, 1}, {0, 0}), "the time 1 s comes after 2 s"},
            Bad{table({}, {}), "0 times"},
            Bad{table({1, 2}, {1}), "2 times and 1 value"},
            Bad{table({1, 1}, {0, 1}), "the time 1 s comes after 1 s"},
@@ -216,7 +188,6 @@ TEST_CASE("an_event_that_returns_within_a_step_is_missed_and_a_jump_is_not") {
   CHECK(missed(sine(1, 0, 500)).share == 1);
   CHECK(missed(cycles(1, 0, 500, 4)).share == 1);
   CHECK(missed(cycles(1, 0, 10, 4)).share < 1e-3);
-  CHECK(missed(smooth({0.01, 0.0102, 0.0104}, {0, 1, 0}, {0, 0, 0})).share == Approx(1).epsilon(1e-12));
   CHECK(missed(sine(1, 0, 100)).share == Approx(1 - std::cos(0.1 * pi)).epsilon(1e-12));
 }
 

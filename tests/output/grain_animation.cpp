@@ -31,11 +31,11 @@ struct AnimatedScene {
     grains.push_back({.position = {0.2, 0.3}, .radius = 0.1, .inertia = {1, 1}});
     grains.push_back({.position = {1.1, 0.4}, .radius = 0.3, .inertia = {1, 1}, .short_half_axis = 0.15});
     grains.push_back({.position = {0.5, 0.9}, .radius = 0.25, .inertia = {1, 1}, .clump = 0});
-    Wall floor, arc;
+    Wall floor, plate;
     floor.move_x = {.kind = Schedule::Kind::sine, .value = 0.1, .frequency = 1};
-    arc.shape = Wall::Shape::arc;
-    arc.radius = 1, arc.to = 2;
-    walls = {floor, arc};
+    plate.shape = Wall::Shape::segment;
+    plate.point = {-1, 0}, plate.end = {1, 1};
+    walls = {floor, plate};
     for (int k = 0; k < 5; ++k) {
       std::vector<Grain> moved = grains;
       for (std::size_t g = 0; g < moved.size(); ++g) {
@@ -114,20 +114,19 @@ TEST_CASE("the_view_of_an_animation_holds_its_walls") {
   AnimatedScene scene;
   const double far = GENERATE(0.0, -1e4);  // position along its line of the point that defines a wall
   scene.walls[0].point.x = far;
-  Wall& arc = scene.walls[1];
-  arc.radius = GENERATE(1.0, 6.0);
-  arc.to = 3;
-  arc.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // highest at 0.1 s
+  Wall& plate = scene.walls[1];
+  plate.end = {GENERATE(1.0, 6.0), 6};
+  plate.move_y = {.kind = Schedule::Kind::sine, .value = 0.5, .frequency = 2.5};  // highest at 0.1 s
   const Data data(grain_animation_html(scene.animation("three bodies")));
   const double left = data("low.0"), bottom = data("low.1"), width = data("size.0"), height = data("size.1");
   const double from = data("walls.0.0"), floor = data("walls.0.1"), to = data("walls.0.2");
-  CAPTURE(far, arc.radius, left, bottom, width, height, from, to, floor);
+  CAPTURE(far, plate.end.x, left, bottom, width, height, from, to, floor);
   CHECK(std::max(from, to) > left + width);
   CHECK(std::min(from, to) < left);
   CHECK(floor == 0);
-  CHECK(left < arc.radius * std::cos(3.0));
-  CHECK(left + width > arc.radius);
-  CHECK(bottom + height > arc.radius + 0.5);
+  CHECK(left < plate.point.x);
+  CHECK(left + width > plate.end.x);
+  CHECK(bottom + height > plate.end.y + 0.5);
   CHECK(width > 0.49 * height);
   CHECK(height > 0.24 * width);
 }

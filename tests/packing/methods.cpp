@@ -127,30 +127,6 @@ TEST_CASE("discs_that_rearrange_while_they_jam_are_jammed_at_any_overlap_asked_f
   CHECK(measures.largest_overlap < 1e-5);
 }
 
-TEST_CASE("local_moves_from_a_grid_shake_discs_that_lie_free_there_and_part_those_that_overlap") {
-  PackingOptions options = square_box(PackingMethod::local_moves, PackingBox::Sides::walls, 400, 0.3);
-  options.from_grid = true;
-  const GrainPacking free = pack(options);
-  CHECK(free.work == 1);
-  const double cell = options.box.size.x / 20;
-  double farthest = 0;
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    const Vec2 place{(static_cast<double>(k % 20) + 0.5) * cell, (static_cast<double>(k / 20) + 0.5) * cell};
-    farthest = std::max(farthest, norm(free.grains[k].position - place) / free.radii[k]);
-  }
-  CHECK(farthest > 0);
-  CHECK(farthest < 0.08);  // 0.05 each way
-
-  options = square_box(PackingMethod::local_moves, PackingBox::Sides::periodic, 400, 0.72);
-  options.from_grid = true;
-  const GrainPacking dense = pack(options);
-  CHECK(dense.work > 1);
-  CHECK(largest_overlap(dense) <= options.overlap);
-
-  options.method = PackingMethod::growth;
-  CHECK_THROWS_AS(pack(options), Error);
-}
-
 TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   const auto problem = [](const PackingOptions& options) {
     try {

@@ -52,26 +52,14 @@ double difference(const Matrix3& a, const Matrix3& b) {
 
 }  // namespace
 
-// Forces of statics at the contacts of resting bodies are those that dynamics left: motions are round-off.
-TEST_CASE("settled_bodies_of_every_shape_are_confirmed_by_statics") {
+TEST_CASE("settled_bodies_of_every_shape_make_a_network_that_walls_hold") {
   const PackingShape shape = GENERATE(from_range(networked_shapes()));
   PackingOptions options = falling_soil(40, 0.15);
   options.shape = shape;
   const GrainPacking packing = pack(options);
   const SettlingReport& report = packing.settling;
-  const RestConfirmation rest = confirm_rest(packing, options.settling);
-  CAPTURE(to_string(shape.kind), report.unbalanced, report.time, rest.mean_overlap, rest.largest_motion, rest.share(),
-          rest.residual, rest.left_out);
+  CAPTURE(to_string(shape.kind), report.unbalanced, report.time);
   CHECK(report.unbalanced <= 1e-6);
-  CHECK(rest.residual < 1e-12);
-  CHECK(rest.share() < 1e-3);
-  CHECK(rest.left_out < 4);
-
-  // A thousandth of its weight more on every body does move them.
-  GrainPacking heavier = packing;
-  for (Grain& grain : heavier.grains) grain.inertia.mass *= 1.001;
-  CHECK(confirm_rest(heavier, options.settling).share() > 10 * rest.share());
-
   const HeldNetwork held = held_network_of(packing, {.springs = options.settling.springs});
   check(held.assembly);
   CHECK(held.assembly.contact_arms.empty() == shape.is_disc());
@@ -148,15 +136,12 @@ TEST_CASE("the_forces_at_rest_of_bodies_that_fell_balance_their_weight") {
         Approx(options.settling.gravity * std::ranges::max(inertia, {}, &Inertia::mass).mass).epsilon(0.3));
 }
 
-TEST_CASE("pairs_tied_by_dashpots_are_confirmed_as_rigid_ones") {
+TEST_CASE("pairs_tied_by_dashpots_are_rigid_bodies_of_the_network") {
   PackingOptions options = falling_soil(20, 0.12);
   options.shape = {.kind = Kind::bonded_pair};
   const GrainPacking packing = pack(options);
-  const RestConfirmation rest = confirm_rest(packing, options.settling);
-  CAPTURE(packing.settling.unbalanced, rest.mean_overlap, rest.largest_motion, rest.share(), rest.residual);
+  CAPTURE(packing.settling.unbalanced);
   CHECK(packing.settling.unbalanced <= 1e-6);
-  CHECK(rest.residual < 1e-12);
-  CHECK(rest.share() < 1e-3);
   const Assembly network = network_of(packing, {.springs = options.settling.springs});
   REQUIRE(network.size() == packing.size());
   const std::vector<Inertia> inertia = inertia_of(network, options.settling.density, Body::disc);

@@ -355,7 +355,6 @@ TEST_CASE("every_shape_falls_and_comes_to_rest_under_its_weight") {
     if (shape.kind == Kind::bonded_pair || shape.aspect == 1) continue;
     PackingOptions options = falling_soil(14, 0.1);
     options.shape = shape;
-    options.settling.relax_first = shape.kind == Kind::rigid_pair;
     const GrainPacking packing = pack(options);
     INFO(to_string(shape.kind));
     CHECK(packing.settling.unbalanced <= 1e-6);

@@ -134,18 +134,6 @@ class Damage(RunTest):
         table.write_bytes(good[:-5])
         self.check_error(equidem(*study), 2, "samples.csv", "was altered")
 
-    def test_throws_are_those_of_the_checkpoint(self):
-        case = ("run", BOX, "--threads", 1, "--quiet", *NO_PICTURE, *MEASURED, "--set", "measures={thrown_gap = 0.02}")
-        out, whole = self.folder / "out", self.folder / "whole"
-        self.check_done(equidem(*case, "--out", out, "--set", "run.duration=0.03"))
-        early = (out / "thrown.csv").read_text()
-        (out / "thrown.csv").write_text("grain,step,time_s\n5,1,0.1\n-1,2,0.1\nx,2,0.1\n")
-        for folder, resume in ((out, ("--resume",)), (whole, ())):
-            self.check_done(equidem(*case, "--out", folder, "--set", "run.duration=0.06", *resume))
-        wanted = (whole / "thrown.csv").read_text()
-        self.assertEqual((out / "thrown.csv").read_text(), wanted)
-        self.assertTrue(1 < early.count("\n") < wanted.count("\n"), (early, wanted))
-
 
 class GoingOn(RunTest):
     def test_a_finished_box_with_fields_goes_on_to_its_own_files(self):

@@ -282,17 +282,6 @@ class Refusals(GrainTest):
                 self.assertEqual(doubtful, "came from nothing" in " ".join(text.split()), text)
         self.assertNotIn("two by two", equidem("run", DROP, "--set", "run.duration=0.1").stdout)
 
-    def test_slip_that_is_counted_too_large_is_told(self):
-        three = BALL.split("[[grain]]")[0].replace("sphere", "disc") + "".join(
-            f"[[grain]]\nposition = [{x}, {y}]\nradius = 0.01\n" for x, y in ((0.01, 0.01), (0.03, 0.01), (0.02, 0.01 + 0.01 * math.sqrt(3))))
-        three += ('[collisions]\nlaw = "linear_dashpot"\nrestitution = 0.3\ncontact_duration = 1e-3\nfriction = 0.3\n'
-                  'tangential_ratio = 0.0\n')
-        for name, point, normal in (("floor", "[0, 0]", "[0, 1]"), ("left", "[0, 0]", "[1, 0]"), ("right", "[0.04, 0]", "[-1, 0]")):
-            three += f'[[wall]]\nname = "{name}"\npoint = {point}\nnormal = {normal}\n'
-        case = self.write(three + "[run]\nduration = 0.3\ngravity = [0.0, -9.8]\n")
-        self.assertIn("take velocity_verlet", " ".join(equidem("run", case).stdout.split()))
-        self.assertNotIn("that is much", equidem("run", case, "--set", "run.integrator=velocity_verlet").stdout)
-
     def test_bytes_of_a_file_do_not_reach_the_terminal_raw(self):
         self.write("x,y,radius\n0,0.02,\x1b[31m\x07\n", "grains.csv")
         done = equidem("run", self.write(BALL.replace("density", 'path = "grains.csv"\ndensity', 1)))

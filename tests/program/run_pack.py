@@ -136,24 +136,21 @@ class Files(PackTest):
         self.check_error(equidem("run", self.run_of_grains(out), "--set", "grains.density=2500"), 2, "periodic cell",
                          'sides = "walls"')
 
-    def test_steps_and_time_of_falling_are_estimated_before_they_are_taken(self):
+    def test_the_most_steps_of_falling_are_known_before_they_are_taken(self):
         for case, falling in ((SOIL, True), (PAIRS, True), (JAMMED, False)):
             with self.subTest(case=case.name):
                 few = FEW if case == SOIL else ("--set", "packing.grains=60")
                 estimate = parse_json(self.check_done(equidem("pack", case, *few, "--dry-run", "--json", "-")).stdout)
-                self.assertEqual("estimated_steps" in estimate, falling)
+                self.assertEqual("most_steps" in estimate, falling)
                 if not falling:
                     continue
                 result, _ = self.pack(case, *few, name=case.stem)
                 self.assertEqual(result["time_step"], estimate["time_step"])
-                self.assertLess(abs(math.log2(result["steps"] / estimate["estimated_steps"])), 1)
-                self.assertLess(estimate["estimated_steps"], estimate["most_steps"])
-                self.assertGreater(estimate["estimated_seconds"], 0)
+                self.assertLess(result["steps"], estimate["most_steps"])
 
     def test_discs_at_rest_are_solved_by_statics_and_stay_at_rest_in_a_run(self):
         result, out = self.pack(SOIL, *FEW)
         self.assertLessEqual(result["unbalanced_force_ratio"], 1e-6)
-        self.assertLess(result["static_motion_over_overlap"], 1e-2)
         held = ('[[support]]\ngroup = "walls"\nux = 0.0\nuy = 0.0\nrotation = 0.0\n'
                 '[[group]]\nname = "one"\ndiscs = [0]\n[[load]]\ngroup = "one"\nforce = [0.0, -1.0]\n')
         self.check_done(equidem("solve", self.case_of(out / "assembly_with_walls.json", held)))
@@ -243,7 +240,6 @@ class Shapes(PackTest):
     def test_pairs_fall_and_come_to_rest(self):
         result, out = self.pack(PAIRS, "--set", "packing.grains=12", "--set", "packing.box=[0.12, 1.0]")
         self.assertLessEqual(result["unbalanced_force_ratio"], 1e-6)
-        self.assertLess(result["static_motion_over_overlap"], 1e-2)
         self.assertEqual(len(rows_of(out / "grains.csv")), 12)
         held = ('[[support]]\ngroup = "walls"\nux = 0.0\nuy = 0.0\nrotation = 0.0\n'
                 '[[group]]\nname = "one"\ndiscs = [0]\n[[load]]\ngroup = "one"\nforce = [0.0, -1.0]\n')

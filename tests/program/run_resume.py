@@ -49,7 +49,7 @@ cell = 0.02
 class ResumeOfBonds(RunTest):
     def test_bonds_of_every_kind_go_on_after_any_step_with_the_same_rows(self):
         springs, dashpots = "normal_spring = 2.0e6\ntangential_spring = 1.0e6\n", "normal_dashpot = 100.0\nrolling_dashpot = 1e-3\n"
-        for bonds in (springs, dashpots, springs + dashpots, springs + dashpots + 'step = "explicit"\n',
+        for bonds in (springs, dashpots, springs + dashpots,
                       springs + dashpots + "[strength]\ntension = 60.0\nshear = 60.0\n"):
             for integrator in ("semi_implicit_euler", "velocity_verlet"):
                 case, whole = self.folder / "case.toml", self.folder / "whole"

@@ -45,7 +45,7 @@ normal = [0.0, -1.0]
 """
 SERVO = 'servo = { force = 20.0, max_speed = 0.1 }\n'
 RUN = "[run]\nduration = 0.1\n"
-VERLET = ("--set", "run.integrator=corrected_verlet")
+VERLET = ("--set", "run.integrator=velocity_verlet")
 STAGES = """[run]
 gravity = [0.0, -9.81]
 [[stage]]
@@ -281,7 +281,7 @@ class Stages(StageTest):
                             (stage(wall.format("left") + "point = [1.0, 0.0]\n"), ("'left' is there already",)),
                             (stage(wall.format("left") + "removed = true\nvelocity = [1.0, 0.0]\n"), ("is removed, and",)),
                             (stage(wall.format("left") + "removed = true\nnormal = [1.0, 0.0]\n"), ("is removed, and",)),
-                            (stage(wall.format("left") + 'shape = "arc"\n'), ("'left' is there already", "stage.wall.shape")),
+                            (stage(wall.format("left") + 'shape = "segment"\n'), ("'left' is there already", "stage.wall.shape")),
                             (stage(wall.format("left") + "removed = true\n" + wall.format("left") +
                                    "point = [0.0, 0.0]\nnormal = [1.0, 0.0]\n"), ("two walls 'left'",)),
                             (stage(wall.format("left") + 'removed = true\n[[stage]]\nname = "b"\nduration = 0.1\n' +

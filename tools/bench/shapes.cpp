@@ -18,7 +18,6 @@ namespace equidem::bench {
 namespace {
 
 using EllipseLaw = GrainOptions::EllipseLaw;
-using BondStep = GrainOptions::BondStep;
 using GrainIntegrator = GrainOptions::Integrator;
 
 constexpr double stiffness = 1e5;
@@ -31,7 +30,6 @@ struct Shape {
   double aspect = 1;  ///< 0: disc; < 0: pair of discs; else long over short half-axis
   EllipseLaw law = EllipseLaw::exact;
   bool bonded = false;  ///< a pair bonded by dashpots, two grains
-  BondStep bond_step = BondStep::exact;
   GrainIntegrator integrator = GrainIntegrator::semi_implicit_euler;
 };
 
@@ -43,15 +41,12 @@ std::vector<Shape> shapes() {
                          {"ellipse, aspect 2", 2},
                          {"ellipse, aspect 5", 5},
                          {"ellipse, aspect 20", 20},
-                         {"ellipse, aspect 2, enlarged, mended", 2, EllipseLaw::enlarged_mended},
+                         {"ellipse, aspect 2, enlarged", 2, EllipseLaw::enlarged},
                          {"rigid pair of discs", -1}};
-  for (const GrainIntegrator integrator :
-       {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet, GrainIntegrator::corrected_verlet}) {
+  for (const GrainIntegrator integrator : {GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet}) {
     if (integrator != GrainIntegrator::semi_implicit_euler)
-      all.push_back({"disc", 0, EllipseLaw::exact, false, BondStep::exact, integrator});
-    all.push_back({"bonded pair of discs", -1, EllipseLaw::exact, true, BondStep::exact, integrator});
-    all.push_back(
-        {"bonded pair of discs, explicit", -1, EllipseLaw::exact, true, BondStep::explicit_euler, integrator});
+      all.push_back({"disc", 0, EllipseLaw::exact, false, integrator});
+    all.push_back({"bonded pair of discs", -1, EllipseLaw::exact, true, integrator});
   }
   return all;
 }
@@ -107,8 +102,7 @@ GrainSimulation settled(const Shape& shape, int side) {
   const GrainOptions options{.law = NormalLaw::linear_dashpot,
                              .integrator = shape.integrator,
                              .time_step = step_of(scene.grains[0]),
-                             .ellipse_law = shape.law,
-                             .bond_step = shape.bond_step};
+                             .ellipse_law = shape.law};
   GrainSimulation simulation(scene, options);
   const double height = side * 2 * scene.grains[0].radius * (shape.bonded ? 2 : 1);
   simulation.advance(static_cast<std::int64_t>(3 * std::sqrt(height) / options.time_step));

@@ -18,19 +18,6 @@ Vec2 unit_vector(const Vec2& given, const TomlValue& table, const std::string& p
   return given / length;
 }
 
-/// The key at fault where a wall is refused.
-const char* culprit_of(Wall::Shape shape) {
-  switch (shape) {
-    case Wall::Shape::line:
-      return "normal";
-    case Wall::Shape::segment:
-      return "end";
-    case Wall::Shape::arc:
-      break;
-  }
-  return "to";
-}
-
 }  // namespace
 
 void run_duration(KeySpec& key) {
@@ -81,17 +68,12 @@ std::vector<Key<WallTable>> wall_keys(BodyFamily family) {
       key("normal", &T::wall, &W::normal, required, of({"line"}),
           "towards the bodies, of any length; all bodies are on that side")};
   if (colliding) {
-    const auto segment = of({"segment"}), arc = of({"arc"});
     keys.insert(keys.begin() + 1,
                 key("shape", &T::wall, &W::shape,
-                    "line: endless, bodies on one side; segment, arc: thin, with two sides and two ends; ends within a "
+                    "line: endless, bodies on one side; segment: thin, with two sides and two ends; ends within a "
                     "hundredth of the smallest radius, and of their lengths, of one another or of another wall that "
                     "moves alike are joined there"));
-    keys.insert(keys.end(), {key("end", &T::wall, &W::end, required, unit("m"), segment),
-                             key("centre", &T::wall, &W::point, required, unit("m"), arc),
-                             key("radius", &T::wall, &W::radius, required, unit("m"), positive, arc),
-                             key("from", &T::wall, &W::from, unit("rad"), arc, "counter-clockwise from here ..."),
-                             key("to", &T::wall, &W::to, unit("rad"), arc, "... to here"),
+    keys.insert(keys.end(), {key("end", &T::wall, &W::end, required, unit("m"), of({"segment"})),
                              key("shaken", &T::shaken, optional, "false: [shaking] does not move it")});
   } else {
     keys.push_back(key("kN", &T::wall, &W::kN, required, unit("Pa"), positive,
@@ -187,8 +169,7 @@ Wall wall_of(const TomlValue& table, const std::string& path, const WallTable& r
   Wall wall = read.wall;
   if (wall.shape == Wall::Shape::line)
     wall.normal = unit_vector(wall.normal, table, path, "normal", "it says on which side the bodies are");
-  if (wall.shape != Wall::Shape::arc) wall.to = 0;
-  with_key(table, path, culprit_of(wall.shape), [&] { check(wall); });
+  with_key(table, path, wall.shape == Wall::Shape::line ? "normal" : "end", [&] { check(wall); });
   set_motion(table, path, read, schedules, wall);
   return wall;
 }

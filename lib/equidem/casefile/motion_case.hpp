@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,16 +25,9 @@ struct ScheduleTable {
   std::optional<std::filesystem::path> path;
 };
 
-/// By default an arc is a full circle.
-inline Wall full_circle() {
-  Wall wall;
-  wall.to = 2 * std::numbers::pi;
-  return wall;
-}
-
 /// [[wall]].
 struct WallTable {
-  Wall wall = full_circle();
+  Wall wall;
   std::optional<double> displacement;  ///< m, along `direction`
   std::optional<Vec2> direction;       ///< none: the normal of a line
   bool shaken = true;                  ///< colliding bodies
@@ -85,8 +77,8 @@ Schedule scheduled(const TomlValue& table, const std::string& key, double value,
                    std::span<const NamedSchedule> schedules);
 
 /// The walls of a document with their motion.
-/// \throws Error (bad_input) with line and key: two walls of one name, a normal or direction of length 0, a segment or
-///         an arc that `check` refuses, a displacement without a direction
+/// \throws Error (bad_input) with line and key: two walls of one name, a normal or direction of length 0, a segment
+///         that `check` refuses, a displacement without a direction
 std::vector<Wall> read_walls(const TomlValue& root, const std::vector<WallTable>& tables,
                              std::span<const NamedSchedule> schedules);
 

@@ -54,8 +54,7 @@ void read_servo(const TomlValue& table, const std::string& path, std::span<const
   if (servo.is_stress && servo.length == 0 && !read.from) {
     if (wall.shape != Wall::Shape::segment)
       fail_at(*given, key, fmt::format("the stress of wall '{}' has no length to act on", wall.name),
-              wall.shape == Wall::Shape::line ? "a line is endless" : "an arc has no one direction",
-              "Give length, or the walls from and to which it is measured");
+              "a line is endless", "Give length, or the walls from and to which it is measured");
     servo.length = norm(wall.end - wall.point);
   }
   servo.place = fmt::format("{}: {}", given->where(), key);

@@ -15,25 +15,11 @@
 
 namespace equidem {
 
-/// Force that is limited by friction.
-enum class FrictionCap {
-  whole_force,   ///< |T| <= mu N of spring and dashpot together; the dashpot is inactive while sliding
-  spring_alone,  ///< only the spring (Sukegawa (2.16)); the dashpot adds to it
-};
-
-template <>
-struct EnumNames<FrictionCap> {
-  using enum FrictionCap;
-  static constexpr const char* what = "limit of friction";
-  static constexpr NamedValue<FrictionCap> list[] = {{whole_force, "whole_force"}, {spring_alone, "spring_alone"}};
-};
-
 /// All >= 0.
 struct Sliding {
   double stiffness = 0;    ///< kT, N/m
   double dashpot = 0;      ///< c, N s/m
   double coefficient = 0;  ///< mu
-  FrictionCap cap = FrictionCap::whole_force;
 };
 
 /// Whether there is neither spring nor dashpot.
@@ -74,12 +60,7 @@ inline SlidingStep slide_through(const Sliding& law, double stretch, double fric
   const double largest = law.stiffness > 0 ? std::abs(friction) / law.stiffness : 0;
   const double end = std::clamp(stretch + way, -largest, largest);
   const double released = law.stiffness * (stretch - end) * (stretch + end) / 2;
-  const double dashpot = law.cap == FrictionCap::spring_alone ? law.dashpot * velocity : 0;
-  return {.force = -(friction + dashpot),
-          .stretch = end,
-          .slip_loss = friction * velocity * step + released,
-          .dashpot_loss = dashpot * velocity * step,
-          .slides = true};
+  return {.force = -friction, .stretch = end, .slip_loss = friction * velocity * step + released, .slides = true};
 }
 
 /// Explicit: force from the stretch at the end of the step with the velocity given (LAMMPS, YADE, Sukegawa
@@ -95,10 +76,9 @@ inline SlidingStep sliding_step(const Sliding& law, double stretch, double veloc
     const double friction = velocity == 0 ? 0 : std::copysign(yield, velocity);
     return slide_through(law, 0, friction, velocity, step, way);
   }
-  const double spring = law.stiffness * (stretch + way), dashpot = law.dashpot * velocity;
-  const double capped = law.cap == FrictionCap::whole_force ? spring + dashpot : spring;
-  if (std::abs(capped) <= yield) return stick_through(law, stretch, spring + dashpot, velocity, step, way);
-  return slide_through(law, stretch, std::copysign(yield, capped), velocity, step, way);
+  const double resistance = law.stiffness * (stretch + way) + law.dashpot * velocity;
+  if (std::abs(resistance) <= yield) return stick_through(law, stretch, resistance, velocity, step, way);
+  return slide_through(law, stretch, std::copysign(yield, resistance), velocity, step, way);
 }
 inline SlidingStep sliding_step(const Sliding& law, double stretch, double velocity, double normal_force, double step) {
   return sliding_step(law, stretch, velocity, normal_force, step, velocity * step);
@@ -122,11 +102,9 @@ inline SlidingStep sliding_step_midpoint(const Sliding& law, double stretch, dou
   const double rate = law.stiffness * step / 2 + law.dashpot, share = 1 + mobility * rate;
   const double mean = (velocity - mobility * law.stiffness * stretch) / share;
   const double resistance = (law.stiffness * stretch + rate * velocity) / share;
-  const bool whole = law.cap == FrictionCap::whole_force;
-  const double capped = whole ? resistance : resistance - law.dashpot * mean;
-  if (std::abs(capped) <= yield) return stick_through(law, stretch, resistance, mean, step, mean * step);
-  const double friction = std::copysign(yield, capped);
-  const double slipping = (velocity - mobility * friction) / (whole ? 1 : 1 + mobility * law.dashpot);
+  if (std::abs(resistance) <= yield) return stick_through(law, stretch, resistance, mean, step, mean * step);
+  const double friction = std::copysign(yield, resistance);
+  const double slipping = velocity - mobility * friction;
   return slide_through(law, stretch, friction, slipping, step, slipping * step);
 }
 

@@ -336,28 +336,6 @@ Relaxation relax(const Scene& scene, const RelaxationOptions& options) {
   return result;
 }
 
-RelaxationEstimate estimate_relaxation(const Scene& scene, const RelaxationOptions& options) {
-  constexpr double steps_across = 5, steps_a_digit = 0.55;  // by the root of the number of discs
-  constexpr double finite_steps = 1.6;                      // of motions that are not linear, over those that are
-  constexpr double beside_forces = 1.3;                     // sums over discs beside the evaluation of forces
-  constexpr double enough = 0.02;                           // s
-  check(scene, options);
-  const StillScene still(scene, options);
-  const Vector u = still.start(options.start);
-  const Stopwatch watch;
-  int evaluations = 0;
-  while (evaluations == 0 || watch.seconds() < enough) {
-    static_cast<void>(still.unbalanced(u));
-    ++evaluations;
-  }
-  const double across = std::sqrt(static_cast<double>(scene.assembly.size()));
-  RelaxationEstimate result;
-  result.steps = across * (steps_across - steps_a_digit * std::log10(std::min(options.tolerance, 1.0)));
-  if (!still.linear()) result.steps *= finite_steps;
-  result.seconds = beside_forces * result.steps * (still.linear() ? 1 : 2) * watch.seconds() / evaluations;
-  return result;
-}
-
 std::string Relaxation::report() const {
   const std::string work = fmt::format("{}, {} of the forces, {:.2g} s", counted(steps, "step"),
                                        counted(evaluations, "evaluation"), seconds);

@@ -48,16 +48,6 @@ struct Relaxation {
 ///         equilibrium is found, or the state is not a minimum of the energy (kT < 0 with free rotation)
 Relaxation relax(const Scene& scene, const RelaxationOptions& options = {});
 
-struct RelaxationEstimate {
-  double steps = 0;
-  double seconds = 0;
-};
-
-/// Steps and time of relax(), from some evaluations of the forces. The steps are those of blocks under tension of 100
-/// to 40,000 discs, lattices and triangulations, within a factor of two; bodies that hang on few contacts take more.
-/// \throws Error as relax on bad input
-RelaxationEstimate estimate_relaxation(const Scene& scene, const RelaxationOptions& options = {});
-
 /// 2-norm of the unbalanced forces, moments over the mean radius, over that of them and the forces of contacts and
 /// walls together: 0 in equilibrium, 1 if no contact carries a force.
 /// \param time s, at which walls are evaluated

@@ -41,7 +41,6 @@ std::vector<double> turning_points(const Schedule& displacement) {
     case Schedule::Kind::sine:
       return {displacement.start + 0.25 / displacement.frequency, displacement.start + 0.75 / displacement.frequency};
     case Schedule::Kind::table:
-    case Schedule::Kind::smooth_table:
       return displacement.times;
     case Schedule::Kind::cycles:
       return {displacement.start + 0.5 / displacement.frequency, displacement.end};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Histories of bodies in a box while they move: void ratio, surface, bodies thrown, period of the surface.
+/// Histories of bodies in a box while they move: void ratio and surface.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,6 @@ namespace equidem {
 struct MeasureOptions {
   std::optional<Region> region = {};  ///< of the void ratio, m, where the box stands at the start; none:
                                       ///< measured_region at each moment
-  std::size_t columns = 0;            ///< of the surface, at least 2; 0: two largest diameters wide
-  double thrown_gap = 1;              ///< mean diameters between the heap and a body that is thrown
   std::optional<double> cell = {};    ///< width of the cells of the fields, m; none: no fields
 };
 
@@ -38,27 +36,9 @@ struct MeasuredMoment {
   std::int64_t step = 0;
   double time = 0;  ///< s
   double void_ratio = not_measured, porosity = not_measured;
-  SurfaceShape surface;          ///< of the heap
-  Vec2 centre;                   ///< of mass, m
-  std::int64_t thrown = 0;       ///< bodies apart from the heap now
-  std::int64_t ever_thrown = 0;  ///< bodies that were, now or before
-  std::int64_t outside = 0;      ///< bodies with the centre beyond a side or the floor of the box
-};
-
-/// When a body was first seen apart from the heap.
-struct FirstThrow {
-  std::int64_t step = 0;
-  double time = 0;  ///< s
-};
-
-/// Strongest period of the slope of the surface.
-struct Sloshing {
-  double from = 0;                  ///< s, start of the history examined
-  double period = not_measured;     ///< s
-  double amplitude = 0;             ///< of the slope
-  double frequency_resolution = 0;  ///< Hz
-  double theory = not_measured;     ///< s, sloshing_period of a liquid of the depth before the shaking
-  std::string missing = {};         ///< why there is no period
+  SurfaceShape surface;      ///< of the heap
+  Vec2 centre;               ///< of mass, m
+  std::int64_t outside = 0;  ///< bodies with the centre beyond a side or the floor of the box
 };
 
 /// A shaking of the box in a part of a run.
@@ -67,34 +47,30 @@ struct BoxShaking {
   double from = 0;                                         ///< s; infinite: not known yet
   double until = std::numeric_limits<double>::infinity();  ///< s, where the box stops
 
-  [[nodiscard]] double start() const { return from + shaking.start(); }               ///< s
-  [[nodiscard]] double end() const { return std::min(from + shaking.end(), until); }  ///< s
+  [[nodiscard]] double start() const { return from + shaking.displacement.start; }  ///< s
   [[nodiscard]] Vec2 displacement(double time) const;
 };
 
 class BoxMeasures {
  public:
   /// \param scene bodies at the start, walls and gravity; must outlive this
-  /// \param bodies number of all that a run has at some time
   /// \param shakings of the box, one after the other; none: it stands
   /// \throws Error (bad_input) as box_of, and as grid_over where the cells are too small
-  BoxMeasures(const GrainScene& scene, MeasureOptions options, std::size_t bodies,
-              std::vector<BoxShaking> shakings = {});
+  BoxMeasures(const GrainScene& scene, const MeasureOptions& options, std::vector<BoxShaking> shakings = {});
 
   /// \param shakings as before, with the times that are known now
   void set_shakings(std::vector<BoxShaking> shakings);
-  /// \param grains that are there; \param numbers of each in the run
+  /// \param grains that are there
   /// \param walls at their places (GrainSimulation::placed_walls)
   const MeasuredMoment& record(std::int64_t step, double time, const std::vector<Grain>& grains,
-                               const std::vector<std::size_t>& numbers, const std::vector<Wall>& walls);
+                               const std::vector<Wall>& walls);
   /// Continue the history of an earlier run.
   /// \param moments at least one
   /// \param profiles of the surface at the moments
-  void restore(std::vector<MeasuredMoment> moments, const std::vector<SurfaceProfile>& profiles,
-               std::vector<std::optional<FirstThrow>> throws);
+  void restore(std::vector<MeasuredMoment> moments, const std::vector<SurfaceProfile>& profiles);
 
-  [[nodiscard]] const MeasureOptions& options() const { return options_; }  ///< columns chosen
-  [[nodiscard]] double mean_diameter() const { return diameter_; }          ///< m
+  [[nodiscard]] std::size_t columns() const { return columns_; }    ///< of the surface
+  [[nodiscard]] double mean_diameter() const { return diameter_; }  ///< m
   /// The first column and its width at the start, heights unknown.
   [[nodiscard]] SurfaceProfile empty_profile() const;
   [[nodiscard]] const std::vector<MeasuredMoment>& moments() const { return moments_; }
@@ -102,11 +78,8 @@ class BoxMeasures {
   [[nodiscard]] const MeasuredMoment& before() const;
   [[nodiscard]] const SurfaceProfile& surface_before() const { return before_; }
   [[nodiscard]] const SurfaceProfile& surface() const { return last_; }  ///< of the last moment
-  [[nodiscard]] const std::vector<std::optional<FirstThrow>>& throws() const { return throws_; }  ///< of each body
-  /// Over the free motion after the last shaking where it lasts two periods of theory, else from before() on.
-  [[nodiscard]] Sloshing sloshing() const;
-  /// The grid of the fields over the inside of the box, below the surface where there is no lid; options().cell must be
-  /// given.
+  /// The grid of the fields over the inside of the box, below the surface where there is no lid; MeasureOptions::cell
+  /// must be given.
   /// \throws Error (computation_failed) where no heap is left in the box, or bodies are too far apart for the cells
   [[nodiscard]] CoarseGrid grid_of_fields(const GrainSimulation& simulation) const;
   [[nodiscard]] CoarseFields fields(const GrainSimulation& simulation, const CoarseGrid& grid) const;
@@ -116,11 +89,11 @@ class BoxMeasures {
   MeasureOptions options_;
   std::vector<BoxShaking> shakings_;
   GrainBox start_;  ///< the box at t = 0
+  std::size_t columns_ = 0;
   double shaken_from_ = 0;
   double diameter_ = 0;
   std::vector<MeasuredMoment> moments_;
   SurfaceProfile before_, last_;
-  std::vector<std::optional<FirstThrow>> throws_;
 };
 
 }  // namespace equidem

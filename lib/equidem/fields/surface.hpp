@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The surface of bodies in a box, and bodies thrown out of it.
+/// The surface of bodies in a box.
 #pragma once
 
 #include <cstddef>
@@ -39,8 +39,7 @@ struct SurfaceShape {
 SurfaceShape shape_of(const SurfaceProfile& profile);
 
 /// The heap: the largest set of bodies of which each lies no further than `gap` from another, surface to surface (of
-/// ellipses and clumps: of the circles that hold them). What is apart from it is thrown: it flies, or lies where it has
-/// flown to. \return 1 for a body of the heap \param gap >= 0, m
+/// ellipses and clumps: of the circles that hold them). \return 1 for a body of the heap \param gap >= 0, m
 std::vector<char> heap_of(std::span<const Grain> grains, double gap);
 
 /// The centre of mass of all bodies, m.

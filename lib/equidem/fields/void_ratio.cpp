@@ -16,7 +16,6 @@ constexpr double side_strip = 2, surface_strip = 3, least = 2;  // mean diameter
 
 /// Along y for a wall along x; 0: it stands askew.
 Vec2 normal_of(const Wall& wall) {
-  if (wall.shape == Wall::Shape::arc) return {};
   Vec2 normal = wall.normal;
   if (wall.shape == Wall::Shape::segment) normal = perpendicular(wall.end - wall.point) / norm(wall.end - wall.point);
   constexpr double straight = 1e-9;

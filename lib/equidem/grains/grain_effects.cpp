@@ -16,12 +16,10 @@ std::string law_of_ellipses(GrainOptions::EllipseLaw law) {
   switch (law) {
     case GrainOptions::EllipseLaw::exact:
       return "contact by closest points and common normal";
-    case GrainOptions::EllipseLaw::enlarged_as_printed:
-      return "contact by the enlarged ellipse as printed: misses shallow contacts, does not keep the energy";
-    case GrainOptions::EllipseLaw::enlarged_mended:
+    case GrainOptions::EllipseLaw::enlarged:
       break;
   }
-  return "contact by the enlarged ellipse, angles mended: misses shallow contacts, does not keep the energy";
+  return "contact by the enlarged ellipse: misses shallow contacts, does not keep the energy";
 }
 
 }  // namespace

@@ -51,7 +51,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   std::vector<std::size_t> numbers = tie_bonds(system, scene);
   if (scene.strengths)
     system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
-  self.bond_limit = bond_step_limit(scene, options.bond_step);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);
@@ -151,7 +150,6 @@ void GrainSimulation::Implementation::step_by_verlet() {
   begin_loads_of_walls(system);  // servo walls were steered by those of the last step
   find_impulses(deforms ? nullptr : kick_of_verlet);
   if (deforms) kick_in_cell(system);
-  give_touch_impulses(system);
 }
 
 void GrainSimulation::Implementation::find_impulses(BlockMove move) {
@@ -171,7 +169,6 @@ void GrainSimulation::Implementation::update_candidates() {
   refuse_runaway(system, reach);
   refuse_long_ways_in_cell(system, reach);
   refresh_candidates(system, reach);
-  refuse_ellipses_in_bowls(system);
   if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
   if (system.bodies.in_place) find_places_before(system);
   refuse_crossings(system);

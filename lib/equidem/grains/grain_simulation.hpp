@@ -38,24 +38,6 @@ struct GrainCounters {
   std::int64_t doubtful = 0;
 };
 
-/// Deformation of a bond since the start.
-struct BondDrift {
-  std::size_t i = 0, j = 0;  ///< grains
-  double distance = 0;       ///< distance of the centres over the sum of the radii
-  double slip = 0;           ///< slip of the surfaces at the bond over the sum of the radii, without whole turns
-  double roll = 0;           ///< rotation of j relative to i, rad
-};
-
-/// Deformation of all bonds: extremes and means of BondDrift.
-struct BondReport {
-  struct Drift {
-    double largest = 0, mean = 0;  ///< of the absolute values over all bonds
-  };
-  std::size_t number = 0;
-  Drift distance, slip, roll;  ///< as in BondDrift
-  double step_limit = 0;       ///< largest time step that the bonds allow, s; infinite: no limit
-};
-
 /// The numbers of bodies, bonds and walls of a scene in another one; -1: they are new.
 struct SceneOrigins {
   std::vector<std::int32_t> bodies, bonds, walls;
@@ -112,9 +94,6 @@ class GrainSimulation final : public AnySimulation {
   /// Contacts of the last step, ordered by (i, j).
   [[nodiscard]] std::vector<GrainContact> contacts() const;
   [[nodiscard]] const GrainCounters& counters() const;
-  [[nodiscard]] BondReport bonds() const;
-  /// One entry per bond, ordered by (i, j), i < j.
-  [[nodiscard]] std::vector<BondDrift> bond_drifts() const;
   /// Bonds that broke so far, in the order of time, and of the bonds at one time.
   [[nodiscard]] std::vector<BondBreak> breaks() const;
   /// Set all velocities to 0. The kinetic energy removed is counted in EnergyLedger::lost_dashpot.

@@ -16,7 +16,6 @@ struct GrainSimulation::Implementation {
   CandidateLoop collide = nullptr;  ///< force laws and maps
   FlowFunction flow = nullptr;      ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
-  double bond_limit = 0;  ///< largest step that the bonds allow, s
   SavedState kept;        ///< a recent state, restored when a step fails
 
   void make_step();

@@ -10,7 +10,6 @@
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/contacts/touch_instants.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/kernels/bond_loop.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
@@ -79,15 +78,38 @@ struct WallPlace {
   Vec2 passed_velocity;  ///< velocity_verlet: mean over the previous step
 };
 
+/// The impulses of bodies on a wall; work since the start.
+struct WallLoad {
+  Vec2 impulse, step_impulse;  ///< since the start without the present step, in this one; N s
+  double step_angular = 0;     ///< about the place of the wall, N m s
+  double work = 0;             ///< done by the wall, J
+
+  void add_in_step(const WallLoad& other) {
+    step_impulse += other.step_impulse;
+    step_angular += other.step_angular;
+    work += other.work;
+  }
+  void begin_step() {
+    impulse += step_impulse;
+    step_impulse = {};
+    step_angular = 0;
+  }
+};
+
+/// The sums of a step to which every contact adds.
+struct ContactSums {
+  EnergyLedger& lost;               ///< losses and work since the start
+  std::vector<WallLoad>* on_walls;  ///< of each wall; may be empty where no wall is touched
+};
+
 /// Sums over the contacts of a block in a step.
 struct BlockSums {
   EnergyLedger lost;
-  std::vector<TouchImpulse> touch_impulses;
   std::vector<WallLoad> on_walls;              ///< empty: none of its bodies is near a wall
   std::int64_t evaluations = 0, contacts = 0;  ///< as in GrainCounters
   double deepest = 0;                          ///< deepest overlap, m
 
-  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, &on_walls}; }
+  [[nodiscard]] ContactSums sums() { return {lost, &on_walls}; }
 };
 
 /// The control of a servo wall at the start of a step.
@@ -189,14 +211,13 @@ struct GrainSystem {
   MovingCell cell;
 
   std::int64_t step = 0;
-  std::vector<TouchImpulse> touch_impulses;  ///< of the present step
-  bool free_flight = false;                  ///< all impulses are zero
-  double longest_way = 0;                    ///< square of the longest displacement of a body in the present step, m²
-  double deepest = 0;                        ///< deepest overlap of the present step, m
-  EnergyLedger lost;                         ///< losses and work since the start
+  bool free_flight = false;  ///< all impulses are zero
+  double longest_way = 0;    ///< square of the longest displacement of a body in the present step, m²
+  double deepest = 0;        ///< deepest overlap of the present step, m
+  EnergyLedger lost;         ///< losses and work since the start
   GrainCounters counters;
 
-  [[nodiscard]] ContactSums sums() { return {lost, touch_impulses, &walls.loads}; }
+  [[nodiscard]] ContactSums sums() { return {lost, &walls.loads}; }
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }

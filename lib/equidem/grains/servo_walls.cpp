@@ -237,8 +237,7 @@ void check_length_of_stress(const GrainScene& scene, const Wall& wall) {
       refuse_servo_wall(wall, fmt::format("is a stress between '{}' and '{}'", servo.between[0], servo.between[1]),
                         fmt::format("'{}' is no other wall", name), "Name two other walls, or give the length", key);
     const Wall& bound = scene.walls[found];
-    if (bound.shape == Wall::Shape::arc || wall.shape == Wall::Shape::arc ||
-        std::abs(dot(normal_of(bound), normal_of(wall))) > 1 - 1e-9)
+    if (std::abs(dot(normal_of(bound), normal_of(wall))) > 1 - 1e-9)
       refuse_servo_wall(wall, fmt::format("is a stress whose length '{}' bounds", name), "that wall does not cross it",
                         "Name walls at an angle to it, or give the length", key);
   }
@@ -290,7 +289,7 @@ void limit_free_way(GrainSystem& system) {
   for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
     const Wall& wall = system.scene.walls[w];
     const Vec2 moved = system.walls.places[w].displacement;
-    include(wall.point + moved, wall.shape == Wall::Shape::arc ? wall.radius : 0);
+    include(wall.point + moved, 0);
     if (wall.shape == Wall::Shape::segment) include(wall.end + moved, 0);
   }
   system.walls.longest_free_way = norm(high - low);

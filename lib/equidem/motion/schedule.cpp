@@ -13,10 +13,6 @@
 namespace equidem {
 namespace {
 
-bool is_table(const Schedule& schedule) {
-  return schedule.kind == Schedule::Kind::table || schedule.kind == Schedule::Kind::smooth_table;
-}
-
 double on_ramp(const Schedule& ramp, double time) {
   if (time <= ramp.start) return 0;
   if (time >= ramp.end) return ramp.value;
@@ -41,19 +37,6 @@ double in_cycles(const Schedule& cycles, double time) {
   return 2 * cycles.value * (root * root);
 }
 
-/// Hermite's cubic.
-double in_smooth_table(const Schedule& table, double time) {
-  const auto next = std::upper_bound(table.times.begin(), table.times.end(), time);
-  if (next == table.times.begin()) return table.values.front();
-  if (next == table.times.end()) return table.values.back();
-  const auto k = static_cast<std::size_t>(next - table.times.begin());
-  const double length = table.times[k] - table.times[k - 1], share = (time - table.times[k - 1]) / length;
-  const double way = table.values[k] - table.values[k - 1];
-  const double first = length * table.rates[k - 1], last = length * table.rates[k];
-  return table.values[k - 1] +
-         share * (first + share * ((3 * way - 2 * first - last) + share * (first + last - 2 * way)));
-}
-
 void check_finite(double value, const char* name) {
   if (!std::isfinite(value))
     bad_input(fmt::format("a schedule has {} = {}", name, value), "only finite numbers have a meaning",
@@ -74,13 +57,6 @@ void check_table(const Schedule& table) {
                 "times ascend, and a value cannot jump", "Order the points and leave out repeated times");
     }
   }
-  if (table.kind != Schedule::Kind::smooth_table) return;
-  if (table.rates.size() != table.times.size()) {
-    bad_input(fmt::format("a smooth table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
-                          counted(static_cast<long long>(table.rates.size()), "rate")),
-              "each point needs its rate", "Give as many of one as of the other");
-  }
-  for (const double rate : table.rates) check_finite(rate, "rate");
 }
 
 void check_cycles(const Schedule& schedule) {
@@ -104,14 +80,12 @@ double Schedule::at(double time) const {
       return in_table(*this, time);
     case Kind::cycles:
       return in_cycles(*this, time);
-    case Kind::smooth_table:
-      return in_smooth_table(*this, time);
   }
   return 0;
 }
 
 void check(const Schedule& schedule) {
-  if (is_table(schedule)) return check_table(schedule);
+  if (schedule.kind == Schedule::Kind::table) return check_table(schedule);
   check_finite(schedule.value, "value");
   if (!schedule.changes()) return;
   check_finite(schedule.start, "start");
@@ -139,7 +113,7 @@ MissedEvent missed_event(const Schedule& schedule, double step, double end) {
     most = {turns < 0.5 ? 1 - std::cos(std::numbers::pi * turns) : 1.0,
             schedule.start + (cycles ? 0.5 : 0.25) / schedule.frequency};
   }
-  if (!is_table(schedule)) return most;
+  if (schedule.kind != Schedule::Kind::table) return most;
   const auto [low, high] = std::minmax_element(schedule.values.begin(), schedule.values.end());
   for (std::size_t k = 0; k < schedule.times.size() && *low < *high; ++k) {
     const double time = schedule.times[k], value = schedule.values[k];
@@ -163,7 +137,6 @@ std::int64_t count_steps(double duration, double step) {
 Schedule scaled(Schedule schedule, double factor) {
   schedule.value *= factor;
   for (double& value : schedule.values) value *= factor;
-  for (double& rate : schedule.rates) rate *= factor;
   return schedule;
 }
 

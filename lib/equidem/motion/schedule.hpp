@@ -22,15 +22,13 @@ struct Schedule {
     table,     ///< linear between points, constant outside
     /// value (1 - cos(2 pi frequency (t - start))) from start to end, a whole number of cycles; 0 outside. The motion
     /// starts and ends at rest; the acceleration is value (2 pi frequency)² cos(...) with full amplitude throughout.
-    cycles,
-    smooth_table,  ///< cubic Hermite interpolation with the given rates; constant outside
+    cycles
   } kind = Kind::constant;
   double value = 0;
   double start = 0;                             ///< s
   double end = 0;                               ///< s, ramp, cycles: > start
   double frequency = 0;                         ///< Hz, sine, cycles: > 0
-  std::vector<double> times = {}, values = {};  ///< tables: times ascending, at least one
-  std::vector<double> rates = {};               ///< smooth_table: derivatives of the values, 1/s
+  std::vector<double> times = {}, values = {};  ///< table: times ascending, at least one
 
   /// Value at a time, s; bit-identical on every machine.
   [[nodiscard]] double at(double time) const;

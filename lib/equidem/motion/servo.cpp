@@ -20,7 +20,6 @@ double lowest_value(const Schedule& schedule) {
     case Schedule::Kind::cycles:
       return std::min(0.0, schedule.value);
     case Schedule::Kind::table:
-    case Schedule::Kind::smooth_table:
       break;
   }
   return *std::min_element(schedule.values.begin(), schedule.values.end());

@@ -2,7 +2,6 @@
 #include "equidem/motion/wall.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -11,9 +10,6 @@
 namespace equidem {
 namespace {
 
-constexpr double whole_turn = 2 * std::numbers::pi;
-/// Relative tolerance of angles that differ by a whole turn, rad per rad.
-constexpr double rounding = 1e-15;
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;
 
@@ -41,22 +37,6 @@ void check_segment(const Wall& wall) {
          "a segment without length has no sides", "Move one of its ends");
 }
 
-void check_arc(const Wall& wall) {
-  if (!(wall.radius >= shortest) || !std::isfinite(wall.radius)) {
-    refuse(wall, fmt::format("has radius = {} m", wall.radius), "that of an arc must be > 0 and finite",
-           "Give a positive one");
-  }
-  const double angle = wall.to - wall.from;
-  if (!(angle > 0) || !std::isfinite(angle)) {
-    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc runs counter-clockwise, to > from",
-           "Exchange the angles, or add 2 pi to the second");
-  }
-  if (angle > whole_turn * (1 + rounding) + rounding * std::abs(wall.from)) {
-    refuse(wall, fmt::format("goes from {} to {} rad", wall.from, wall.to), "an arc is at most 2 pi long",
-           "Take 2 pi for a whole circle");
-  }
-}
-
 }  // namespace
 
 void move_along(Wall& wall, Vec2 direction, const Schedule& displacement) {
@@ -81,9 +61,6 @@ void check(const Wall& wall) {
       break;
     case Wall::Shape::segment:
       check_segment(wall);
-      break;
-    case Wall::Shape::arc:
-      check_arc(wall);
       break;
   }
   check(wall.move_x);

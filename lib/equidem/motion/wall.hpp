@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Walls: lines, segments, arcs; at rest or moving.
+/// Walls: lines and segments, at rest or moving.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,18 @@
 
 namespace equidem {
 
-/// A wall of infinite mass. Bodies are outside a line on the side of its normal; segments and arcs are thin, with two
-/// sides and two ends. The normal of a segment points to the left of the direction from `point` to `end`, that of an
-/// arc away from its centre; a centre exactly on a wall counts as on that side.
+/// A wall of infinite mass. Bodies are outside a line on the side of its normal; segments are thin, with two
+/// sides and two ends. The normal of a segment points to the left of the direction from `point` to `end`; a centre
+/// exactly on a wall counts as on that side.
 ///
-/// Bonded discs take lines with a spring kN, without friction. Colliding bodies take all shapes; stiffness, restitution
-/// and friction follow from `kind`.
+/// Bonded discs take lines with a spring kN, without friction. Colliding bodies take both shapes; stiffness,
+/// restitution and friction follow from `kind`.
 struct Wall {
-  enum class Shape { line, segment, arc } shape = Shape::line;
+  enum class Shape { line, segment } shape = Shape::line;
   std::string name;
-  Vec2 point;               ///< line: a point on it; segment: first end; arc: centre. m
-  Vec2 normal = {0, 1};     ///< line: unit, towards the bodies
-  Vec2 end = {};            ///< segment: second end, m
-  double radius = 0;        ///< arc, m, > 0
-  double from = 0, to = 0;  ///< arc: angles, counter-clockwise from `from` to `to` > from, at most 2 pi further; rad
+  Vec2 point;                         ///< line: a point on it; segment: first end. m
+  Vec2 normal = {0, 1};               ///< line: unit, towards the bodies
+  Vec2 end = {};                      ///< segment: second end, m
   Schedule move_x = {}, move_y = {};  ///< displacement over time, m; constant 0: at rest
   int kind = 0;                       ///< colliding bodies: row of the table of pairs
   double kN = 0;                      ///< bonded discs: force per m of overlap, Pa, > 0
@@ -46,7 +44,7 @@ template <>
 struct EnumNames<Wall::Shape> {
   using enum Wall::Shape;
   static constexpr const char* what = "shape of a wall";
-  static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}, {arc, "arc"}};
+  static constexpr NamedValue<Wall::Shape> list[] = {{line, "line"}, {segment, "segment"}};
 };
 
 /// A wall of a simulation at its time, and what bodies have done to it. N, J, N s: of discs per metre of depth.
@@ -66,8 +64,7 @@ void move_along(Wall& wall, Vec2 direction, const Schedule& displacement);
 
 std::vector<std::string> names_of(std::span<const Wall> walls);
 
-/// \throws Error (bad_input) on numbers that are not finite, a normal that is not a unit vector, a segment of length 0,
-///         an arc of radius 0 or with angles out of order
+/// \throws Error (bad_input) on numbers that are not finite, a normal that is not a unit vector, a segment of length 0
 void check(const Wall& wall);
 
 }  // namespace equidem

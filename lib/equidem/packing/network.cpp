@@ -7,14 +7,11 @@
 #include <numbers>
 #include <utility>
 
-#include "equidem/contact/effects.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/packing/carried_forces.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/outline.hpp"
-#include "equidem/statics/equilibrium.hpp"
-#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 namespace {
@@ -136,30 +133,6 @@ void add_contact(PackingShape::Kind shape, const PackingContact& found, const Co
   assembly.contact_kT.push_back(springs->kT);
 }
 
-/// Force and moment that a body lacks to be in balance.
-struct Lack {
-  Vec2 force;
-  double moment = 0;
-};
-
-std::vector<Lack> lacks_of(const GrainPacking& packing, double gravity) {
-  std::vector<Lack> lacks(packing.size());
-  for (std::size_t k = 0; k < packing.grains.size(); ++k)
-    lacks[packing.body_of(k)].force.y -= packing.grains[k].inertia.mass * gravity;
-  for (const GrainContact& contact : packing.contacts) {
-    const Vec2 on_j = contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
-    const auto push = [&](std::int32_t grain, Vec2 arm, Vec2 force) {
-      const auto k = static_cast<std::size_t>(grain);
-      Lack& lack = lacks[packing.body_of(k)];
-      lack.force += force;
-      lack.moment += cross(place_in_body(packing, k) + arm, force);
-    };
-    push(contact.i, contact.arm_i, -on_j);
-    if (contact.j >= 0) push(contact.j, contact.arm_j, on_j);
-  }
-  return lacks;
-}
-
 /// 1 for the bodies with two contacts or more, counted without the bodies that have fewer.
 std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
   std::vector<std::vector<std::int32_t>> partners(bodies);
@@ -226,54 +199,6 @@ HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& o
     add_contact(packing.shape, found, contacts.force(c), true, options.springs, assembly);
   }
   if (!walls.discs.empty()) assembly.groups["walls"] = walls;
-  return result;
-}
-
-namespace {
-
-void confirm_by_statics(const GrainPacking& packing, const SettlingOptions& options, RestConfirmation& result) {
-  const std::vector<Lack> lacks = lacks_of(packing, options.gravity);
-  HeldNetwork network = held_network_of(packing, {.springs = options.springs});
-  Assembly& assembly = network.assembly;
-  result.left_out = static_cast<std::int64_t>(packing.size() - network.bodies.size());
-  for (const GrainContact& contact : packing.contacts)
-    result.mean_overlap += contact.overlap / static_cast<double>(packing.contacts.size());
-  const ContactSprings springs(options.springs);
-  const Effects effects = derive_effects(assembly, springs, Rotation::from_scene);
-  // Where no contact resists the rotation of a body, friction does not either: the moment it lacks is round-off.
-  const DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, {});
-  const auto turns = [&](std::size_t k) {
-    return effects.rotation && unknowns.held[3 * k + 2] == DegreesOfFreedom::free;
-  };
-  LoadCase loads;
-  for (std::size_t k = 0; k < network.bodies.size(); ++k) {
-    const Lack& lack = lacks[static_cast<std::size_t>(network.bodies[k])];
-    const std::string name = fmt::format("body{}", k);
-    assembly.groups[name] = {{static_cast<std::int32_t>(k)}, {}};
-    loads.push_back({.group = name, .force = lack.force, .moment = turns(k) ? lack.moment : 0});
-  }
-  const std::vector<Support> held{
-      {.group = "walls", .ux = 0.0, .uy = 0.0, .rotation = effects.rotation ? std::optional(0.0) : std::nullopt}};
-  const Equilibrium found = solve_equilibrium(assembly, springs, held, loads);
-  for (const DiscMotion& motion : found.motions)
-    result.largest_motion = std::max(result.largest_motion, norm(motion.u));
-  result.residual = found.relative_residual;
-}
-
-}  // namespace
-
-RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options) {
-  RestConfirmation result;
-  if (packing.contacts.empty()) {
-    result.missing = "there are no contacts";
-    return result;
-  }
-  try {
-    confirm_by_statics(packing, options, result);
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::interrupted) throw;
-    result.missing = error.problem();
-  }
   return result;
 }
 

@@ -12,7 +12,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -37,19 +36,5 @@ struct HeldNetwork {
   std::vector<std::int32_t> bodies;  ///< of the packing: the first of the assembly
 };
 HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options);
-
-/// The contact network of a packing at rest, for statics.
-struct RestConfirmation {
-  double mean_overlap = 0;    ///< m
-  double largest_motion = 0;  ///< m: how far a body moves under what its weight and contact forces lack
-  double residual = 0;        ///< relative, of the solution
-  std::int64_t left_out = 0;  ///< bodies with fewer than two contacts
-  std::string missing;        ///< why statics gives no answer, such as motions without stiffness; empty: it does
-  [[nodiscard]] double share() const { return largest_motion / mean_overlap; }
-};
-
-/// Put the unbalanced forces and moments of a settled packing on its network and solve.
-/// \throws Error (interrupted)
-RestConfirmation confirm_rest(const GrainPacking& packing, const SettlingOptions& options);
 
 }  // namespace equidem

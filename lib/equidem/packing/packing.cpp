@@ -84,10 +84,6 @@ void check(const PackingOptions& options) {
     bad_input_at("overlap", fmt::format("the overlap allowed is {} of the smaller radius", options.overlap),
                  "it must be above 0, which nothing reaches, and at most 0.1", "Correct it");
   }
-  if (options.from_grid && options.method != PackingMethod::local_moves) {
-    bad_input(fmt::format("from_grid with the method {}", to_string(options.method)),
-              "only local moves start from places that are given", "Leave it out, or use local_moves");
-  }
   if (options.attempts < 1)
     bad_input_at("attempts", fmt::format("{} attempts", options.attempts), "one is needed", "Give 1 or more");
 }

@@ -52,10 +52,7 @@ struct PackingOptions {
   bool as_dense_as_possible = false;
   double overlap = 1e-6;           ///< largest allowed, of the smaller radius; of jammed bodies the mean wanted
   std::int64_t attempts = 100000;  ///< to place a body by rejection or insertion; sweeps of local moves
-  /// Local moves start from the places of a rectangular grid, as many as there are bodies, in the order given (Sukegawa
-  /// 2010, section 2.7 b); otherwise from random places.
-  bool from_grid = false;
-  SettlingOptions settling;  ///< falling
+  SettlingOptions settling;        ///< falling
 };
 
 /// Bodies in a box.
@@ -109,10 +106,6 @@ bool grows_to_any_size(const PackingOptions& options);
 
 /// \throws Error (bad_input) as pack
 void check(const PackingOptions& options);
-
-/// Steps and time of a packing by falling, without the relaxation where that comes first.
-/// \throws Error (bad_input) as pack
-SettlingEstimate estimate_falling(const PackingOptions& options);
 
 /// Bodies as grains of a scene: `grains`, `clumps`, `bonds` (without dashpots) and `radii` of a packing.
 void make_grains(const PackingShape& shape, const Bodies& bodies, double density, GrainPacking& packing);

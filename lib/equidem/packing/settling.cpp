@@ -7,7 +7,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/grains/stages/unbalance.hpp"
@@ -46,11 +45,6 @@ void check(const SettlingOptions& options) {
   }
 }
 
-/// A quarter of the limit of one contact: several at a body lower it, dashpots in proportion to their number.
-double chosen_step(const GrainScene& scene, const SettlingOptions& options) {
-  return options.time_step > 0 ? options.time_step : 0.25 * contact_step_limit(scene, options);
-}
-
 void tie(GrainScene& scene, double share, double step) {
   for (GrainBond& bond : scene.bonds) {
     const double mass = 0.5 * scene.grains[bond.i].inertia.mass;
@@ -63,7 +57,7 @@ void tie(GrainScene& scene, double share, double step) {
 GrainSimulation simulation_of(const GrainScene& scene, double step) {
   return {scene,
           {.law = NormalLaw::linear_dashpot,
-           .integrator = GrainOptions::Integrator::corrected_verlet,
+           .integrator = GrainOptions::Integrator::velocity_verlet,
            .time_step = step,
            .reference_length = 0,
            .margin = 0}};
@@ -103,6 +97,10 @@ double contact_step_limit(const GrainScene& scene, const SettlingOptions& option
   return step;
 }
 
+double settling_step(const GrainScene& scene, const SettlingOptions& options) {
+  return options.time_step > 0 ? options.time_step : 0.25 * contact_step_limit(scene, options);
+}
+
 std::vector<Wall> walls_of_box(double width) {
   const auto wall = [](const char* name, Vec2 point, Vec2 normal) {
     Wall made;
@@ -133,27 +131,9 @@ GrainScene scene_of_box(double width, const SettlingOptions& options) {
   return scene;
 }
 
-SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options) {
-  check(options);
-  SettlingEstimate estimate{.time_step = chosen_step(scene, options)};
-  tie(scene, options.bond_share, estimate.time_step);
-  estimate.steps = static_cast<std::int64_t>(std::ceil(time_to_rest(scene, options) / estimate.time_step));
-  estimate.most = static_cast<std::int64_t>(std::ceil(options.longest / estimate.time_step));
-  GrainSimulation simulation = simulation_of(scene, estimate.time_step);
-  constexpr double enough = 0.05;      // s of wall-clock time
-  constexpr double with_contacts = 2;  // cost of a step of bodies that touch over that of bodies that fall freely
-  const Stopwatch watch;
-  for (std::int64_t steps = 1; watch.seconds() < enough && simulation.step() + steps <= estimate.steps; steps *= 2)
-    simulation.advance(steps);
-  if (simulation.step() > 0)
-    estimate.seconds =
-        with_contacts * watch.seconds() / static_cast<double>(simulation.step()) * static_cast<double>(estimate.steps);
-  return estimate;
-}
-
 SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   check(options);
-  const double step = chosen_step(scene, options);
+  const double step = settling_step(scene, options);
   tie(scene, options.bond_share, step);
   GrainSimulation simulation = simulation_of(scene, step);
 
@@ -180,8 +160,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
                                     .time_step = step,
                                     .time = simulation.time(),
                                     .steps = simulation.step(),
-                                    .ledger = simulation.energy(),
-                                    .bonds = simulation.bonds()},
+                                    .ledger = simulation.energy()},
                          .failure = std::move(failure)};
   };
   double peak = 0;

@@ -24,9 +24,6 @@ struct SettlingOptions {
   double time_step = 0;  ///< s; 0: a quarter of the limit of stability of the two lightest bodies
   double rest = 1e-6;    ///< unbalanced force ratio at which the bodies are at rest
   double longest = 10;   ///< s of motion after which it is given up
-  /// Bring the bodies down without inertia and friction first: much faster, but the network of contacts is that of
-  /// frictionless bodies and denser than what falls.
-  bool relax_first = false;
   /// Dashpots of bonded pairs, as shares of the stability limit of a step with the velocities at its start: C_n = share
   /// 2 m_n/dt, C_s = share 2 m_s/dt with m_n = m/2, m_s = m/6. What they carry makes them creep, the less the larger
   /// they are: far more than the limit of an explicit step, or the bodies never come to rest.
@@ -40,7 +37,6 @@ struct SettlingReport {
   double time = 0;                ///< s of motion
   std::int64_t steps = 0;
   EnergyLedger ledger = {};
-  BondReport bonds = {};  ///< how far bonded pairs drifted
 };
 
 /// Bodies at rest, or where `failure` says why they are not.
@@ -63,20 +59,13 @@ GrainScene scene_of_box(double width, const SettlingOptions& options);
 /// lever of its forces. Several contacts of a body lower it.
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options);
 
+/// The step of settle(), s: that of the options, or a quarter of the limit of one contact, since several at a body
+/// lower it, and dashpots in proportion to their number.
+double settling_step(const GrainScene& scene, const SettlingOptions& options);
+
 /// The grains of a scene of a box move under gravity until all are at rest, or until that fails: where no rest comes in
 /// `longest`, as GrainSimulation, or interrupted. Bonds get their dashpots.
 /// \throws Error (bad_input) on options out of range
 SettledBodies settle(GrainScene scene, const SettlingOptions& options);
-
-/// Work until bodies that fall are at rest, known before they do.
-struct SettlingEstimate {
-  double time_step = 0;    ///< s
-  std::int64_t steps = 0;  ///< expected: twice the fall from the highest body to the floor, measured within a factor 2
-  std::int64_t most = 0;   ///< steps after which `longest` gives it up
-  double seconds = 0;      ///< wall-clock time of the expected steps, from the first few
-};
-
-/// \throws Error (bad_input) as settle
-SettlingEstimate estimate_settling(GrainScene scene, const SettlingOptions& options);
 
 }  // namespace equidem

@@ -97,8 +97,8 @@ void add_bonds(GrainScene& scene) {
 void add_colliding_effects(Study& study, int side) {
   const CollidingCase scenes[] = {
       {"normal contacts, a floor, gravity", [](GrainScene&) {}},
-      {"+ friction, sliding", [](GrainScene& s) { s.pairs[0].friction = 0.3; }},
-      {"+ tangential springs", [](GrainScene& s) { s.pairs[0].tangential_ratio = 0.5; }},
+      {"+ friction with tangential springs",
+       [](GrainScene& s) { s.pairs[0].friction = 0.3, s.pairs[0].tangential_ratio = 0.5; }},
       {"+ tangential dashpots", [](GrainScene& s) { s.pairs[0].tangential_damping = 0.1; }},
       {"+ a moving wall", add_moving_floor},
       {"+ a tenth ellipses", add_ellipses},

@@ -103,16 +103,6 @@ void keep_stress(Wall& wall, double stress, double length) {
       .direction = wall.normal, .wanted = {.value = stress}, .is_stress = true, .length = length, .max_speed = 0.1};
 }
 
-/// A record of 100 points, one in ten steps.
-void shake_all(std::vector<Wall>& walls) {
-  std::vector<double> times, accelerations;
-  for (int k = 0; k < 100; ++k) {
-    times.push_back(10 * k * time_step);
-    accelerations.push_back(std::sin(0.5 * k));
-  }
-  shake(walls, {1, 0}, integrate_motion(times, accelerations, 0, Baseline::rest).displacement);
-}
-
 void add_stages(Study& study, const char* problem, const char* name, const std::vector<GrainStage>& stages,
                 const GrainOptions& options) {
   const auto shared = std::make_shared<const std::vector<GrainStage>>(stages);
@@ -136,7 +126,11 @@ void add_box(Study& study, int side) {
        [](GrainScene& s) {
          s.walls[1].move_y = {.kind = Schedule::Kind::sine, .value = 0.1 * row_overlap, .frequency = 50};
        }},
-      {"or shaken: all walls follow a record", [](GrainScene& s) { shake_all(s.walls); }, true},
+      {"or shaken: all walls move alike",
+       [](GrainScene& s) {
+         shake(s.walls, {1, 0}, harmonic_shaking(1, 50, 0, 5));
+       },
+       true},
       {"or two servo walls, which keep a stress",
        [box](GrainScene& s) {
          keep_stress(s.walls[1], box.stress, box.width);

@@ -73,8 +73,8 @@ Found exact(const Pair& pair) {
 }
 
 /// The method gives no overlap; what it would be along its normal.
-Found enlarged(const Pair& pair, AngleReading reading) {
-  const EnlargedEllipseContact contact = enlarged_ellipse_contact(pair.i, pair.j, pair.branch, reading);
+Found enlarged(const Pair& pair) {
+  const EnlargedEllipseContact contact = enlarged_ellipse_contact(pair.i, pair.j, pair.branch);
   return {-separation_along(pair.i, pair.j, pair.branch, contact.normal), contact.normal};
 }
 
@@ -143,10 +143,7 @@ Study ellipse_contact_study(bool quick) {
     const auto pairs = std::make_shared<const std::vector<Pair>>(random_pairs(aspect, count));
     const std::string problem = fmt::format("aspect {:g}", aspect);
     study.tasks.push_back(task_of({.problem = problem, .method = "exact"}, pairs, exact));
-    study.tasks.push_back(task_of({.problem = problem, .method = "enlarged as printed"}, pairs,
-                                  [](const Pair& p) { return enlarged(p, AngleReading::printed); }));
-    study.tasks.push_back(task_of({.problem = problem, .method = "enlarged mended"}, pairs,
-                                  [](const Pair& p) { return enlarged(p, AngleReading::mended); }));
+    study.tasks.push_back(task_of({.problem = problem, .method = "enlarged"}, pairs, enlarged));
     for (int n = 16; n <= 1024; n *= 2) {
       std::vector<Vec2> directions;
       for (int k = 0; k < n; ++k)

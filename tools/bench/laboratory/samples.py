@@ -38,7 +38,6 @@ seed   = {seed}
 smallest = 0.0016
 largest  = 0.0024
 [settling]
-start = "relax"
 friction = 0.5
 wall_friction = 0.5
 unbalanced = 1.0e-3

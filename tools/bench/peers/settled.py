@@ -56,7 +56,6 @@ density = 25.0
 [collisions]
 law = "linear_dashpot"
 restitution = {restitution!r}
-contact_end = "zero_overlap"
 stiffness = {STIFFNESS}
 friction = 0.5
 tangential_ratio = 0.8

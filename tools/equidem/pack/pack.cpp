@@ -55,7 +55,7 @@ void write_tables(const CommonOptions& common, const PackCase& resolved, const G
   const std::vector<double> densities(resolved.has_density() ? packing.grains.size() : 0, density);
   const auto period = packing.box.periodic() ? std::optional(packing.box.size) : std::nullopt;
   write_grain_csv(folder / "grains.csv", {packing.grains, packing.clumps, groups, densities, period}, common.overwrite);
-  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, {}, common.overwrite);
+  if (!packing.bonds.empty()) write_bond_csv(folder / "bonds.csv", packing.bonds, {}, common.overwrite);
 }
 
 void write_assemblies(const CommonOptions& common, const PackCase& resolved, const GrainPacking& packing,
@@ -109,9 +109,6 @@ int run(const CommonOptions& common) {
   Assembly network = network_of(packing, resolved.network);
   const double density = body_density(resolved, network);
   times.add("network", watch.lap());
-  RestConfirmation rest{.missing = packing.failure ? "the bodies are not at rest" : "stopped as asked"};
-  if (!packing.failure) keep_failure(packing, [&] { rest = confirm_rest(packing, resolved.packing.settling); });
-  times.add("statics", watch.lap());
   const PackingMeasures measures = measured(resolved, packing);
   times.add("measures", watch.lap());
   std::optional<Error> failure;
@@ -123,7 +120,7 @@ int run(const CommonOptions& common) {
     parts.push_back({"the assembly", [&] { write_assemblies(common, resolved, packing, network); }});
     parts.push_back({"the picture", [&] { draw(common, resolved, packing); }});
   }
-  deliver(common, "done", packing_results(resolved, packing, network, density, measures, rest), std::move(times), parts,
+  deliver(common, "done", packing_results(resolved, packing, network, density, measures), std::move(times), parts,
           failure);
   hand_over(std::make_shared<const Assembly>(std::move(network)));
   hand_over([shared_case, shared_packing](const CommonOptions& into) {

@@ -27,31 +27,18 @@ const char* name_of(PackingBox::Sides sides) {
   return "";
 }
 
-void add_rest(Results& out, const GrainPacking& packing, const RestConfirmation& rest, const std::string& noun) {
+void add_rest(Results& out, const GrainPacking& packing, const std::string& noun) {
   const SettlingReport& settling = packing.settling;
   out.line("rest")
       .add("time", "after", settling.time, "s in", {.digits = 4})
       .note(" ")
       .add("steps", "", settling.steps, "step", {Shown::count})
       .note(" of ")
-      .add("time_step", "", settling.time_step, "s by corrected_verlet", {.digits = 4});
+      .add("time_step", "", settling.time_step, "s by velocity_verlet", {.digits = 4});
   out.line("", "unbalanced force ")
       .add("unbalanced_force_ratio", "", settling.unbalanced, "of the mean contact force", {.digits = 2})
       .add("largest_unbalanced_force_ratio", "of one " + noun, settling.largest_unbalanced, "", {.digits = 2});
   out.set("energy_error", settling.ledger.error() / settling.ledger.lost());
-  if (rest.missing.empty()) {
-    out.line("", "statics on the same contacts would move nothing further than ")
-        .add("static_motion_over_overlap", "", rest.share(), "of the mean overlap", {.digits = 2});
-  } else {
-    out.set("static_motion_over_overlap", nullptr).line("", "statics does not confirm it: " + rest.missing);
-  }
-  const BondReport& bonds = settling.bonds;
-  if (bonds.number == 0) return;
-  out.line("bonds", "the dashpots let pairs drift by ")
-      .add("bond_drift", "", bonds.distance.mean, "of their length in the mean", {.digits = 2})
-      .add("largest_bond_drift", "", bonds.distance.largest, "at most", {.digits = 2})
-      .note("; ")
-      .add("largest_bond_slip", "surfaces slipped by", bonds.slip.largest, "at most", {.digits = 2});
 }
 
 /// Contacts of bodies that touch, and bodies that fewer hold than they need.
@@ -192,22 +179,24 @@ Results pack_estimate_results(const PackCase& resolved) {
     }
     return out;
   }
-  const SettlingEstimate estimate = estimate_falling(resolved.packing);
+  const PackingOptions& options = resolved.packing;
+  GrainPacking packing;
+  const std::size_t bodies = options.radii.size();
+  make_grains(options.shape, {std::vector<Vec2>(bodies), options.radii, std::vector<double>(bodies)},
+              options.settling.density, packing);
+  GrainScene scene;
+  scene.grains = std::move(packing.grains);
+  scene.clumps = std::move(packing.clumps);
+  const double step = settling_step(scene, options.settling);
   return out.line("steps")
-      .add("estimated_steps", "about", estimate.steps, "", {Shown::count})
+      .add("most_steps", "at most", static_cast<std::int64_t>(std::ceil(options.settling.longest / step)), "",
+           {Shown::count})
       .note(" of ")
-      .add("time_step", "", estimate.time_step, "s", {.digits = 4})
-      .note("; ")
-      .add("most_steps", "given up after", estimate.most, "", {Shown::count})
-      .line("", "")
-      .add("estimated_seconds", "about", estimate.seconds,
-           resolved.packing.settling.relax_first ? "s of settling; the relaxation before it is not counted"
-                                                 : "s, from the first steps",
-           {.digits = 2});
+      .add("time_step", "", step, "s", {.digits = 4});
 }
 
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const Assembly& network, double density,
-                        const PackingMeasures& measures, const RestConfirmation& rest) {
+                        const PackingMeasures& measures) {
   const PackingOptions& options = resolved.packing;
   const std::string noun = noun_of(options.shape.kind);
   Results out = pack_case_results(resolved);
@@ -236,7 +225,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   add_density(out, resolved, density, noun);
   out.line("overlap").add("largest_overlap", "at most", measures.largest_overlap, "of the smaller radius",
                           {.digits = 3});
-  if (!packing.contacts.empty()) add_rest(out, packing, rest, noun);
+  if (!packing.contacts.empty()) add_rest(out, packing, noun);
   return out.line("work").add("work", "", packing.work, entry_of(options.method).unit_of_work);
 }
 

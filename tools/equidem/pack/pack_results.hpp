@@ -20,6 +20,6 @@ Results pack_estimate_results(const PackCase& resolved);
 /// \param network of the packing, as it is written
 /// \param density kg/m³, of the bodies
 Results packing_results(const PackCase& resolved, const GrainPacking& packing, const Assembly& network, double density,
-                        const PackingMeasures& measures, const RestConfirmation& rest);
+                        const PackingMeasures& measures);
 
 }  // namespace equidem

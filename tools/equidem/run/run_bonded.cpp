@@ -275,15 +275,6 @@ RelaxationOptions BondedRun::relaxation_options() const {
   return {.motion = run().motion, .rotation = problem_.resolved.rotation, .tolerance = *run().until_rest};
 }
 
-Results BondedRun::estimate_of_relaxation() const {
-  const RelaxationEstimate estimate = estimate_relaxation(scene_, relaxation_options());
-  return Results()
-      .line("steps")
-      .add("estimated_steps", "about", static_cast<std::int64_t>(estimate.steps), "", {Shown::count})
-      .note(" of conjugate gradients, several times as many where bodies hang on few contacts; ")
-      .add("estimated_seconds", "about", estimate.seconds, "s", {.digits = 2});
-}
-
 Results BondedRun::relax(StageTimes& times) {
   Stopwatch watch;
   Relaxation rest = equidem::relax(scene_, relaxation_options());

@@ -59,7 +59,6 @@ class BondedRun final : public RunJob {
   [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
                                               bool overwrite) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
-  [[nodiscard]] Results estimate_of_relaxation() const override;
   Results relax(StageTimes& times) override;
 
  private:

@@ -353,8 +353,7 @@ std::vector<OutputPart> GrainRun::parts(const std::filesystem::path& folder, con
     if (!simulation_.bonds().empty())
       part("bonds.csv", [=, this] {
         const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
-        write_bond_csv(folder / "bonds.csv", holding.bonds, simulation_.present().bond_drifts(), holding.strengths,
-                       overwrite);
+        write_bond_csv(folder / "bonds.csv", holding.bonds, holding.strengths, overwrite);
       });
   }
   part("the table of breaks", [=, this] {

@@ -13,33 +13,16 @@ namespace equidem {
 namespace {
 
 const std::vector<std::string>& columns_of_moments() {
-  static const std::vector<std::string> columns{"step",
-                                                "time_s",
-                                                "void_ratio",
-                                                "porosity",
-                                                "surface_height_m",
-                                                "surface_slope",
-                                                "surface_roughness_m",
-                                                "centre_x_m",
-                                                "centre_y_m",
-                                                "thrown",
-                                                "ever_thrown",
-                                                "outside"};
+  static const std::vector<std::string> columns{
+      "step",       "time_s",     "void_ratio", "porosity", "surface_height_m", "surface_slope", "surface_roughness_m",
+      "centre_x_m", "centre_y_m", "outside"};
   return columns;
 }
 
 std::vector<double> cells_of(const MeasuredMoment& m) {
-  return {m.time,
-          m.void_ratio,
-          m.porosity,
-          m.surface.height,
-          m.surface.slope,
-          m.surface.roughness,
-          m.centre.x,
-          m.centre.y,
-          static_cast<double>(m.thrown),
-          static_cast<double>(m.ever_thrown),
-          static_cast<double>(m.outside)};
+  return {m.time,           m.void_ratio,    m.porosity,
+          m.surface.height, m.surface.slope, m.surface.roughness,
+          m.centre.x,       m.centre.y,      static_cast<double>(m.outside)};
 }
 
 constexpr const char *table_name = "measures.csv", *profiles_name = "surface.csv";
@@ -74,7 +57,7 @@ std::vector<BoxShaking> shakings_of(const GrainCase& resolved, const StagedSimul
 
 BoxMeasures measures_of(const GrainCase& resolved) {
   try {
-    return {resolved.scene, *resolved.measures, resolved.groups.size(), shakings_of(resolved, nullptr)};
+    return {resolved.scene, *resolved.measures, shakings_of(resolved, nullptr)};
   } catch (const Error& error) {
     throw error.at(resolved.where(resolved.measures->cell ? "measures.cell" : "measures"));
   }
@@ -87,14 +70,12 @@ GrainMeasures::GrainMeasures(const GrainCase& resolved, const StagedSimulation& 
 
 void GrainMeasures::open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) {
   folder_ = folder;
-  check_writable(folder / "thrown.csv", overwrite || from != nullptr);
   GrowingCsvOptions options{.overwrite = overwrite};
   if (from != nullptr) options.continue_from = from->mark_of(table_name);
   table_.emplace(folder / table_name, columns_of_moments(), options);
   std::vector<std::string> names{"step", "time_s"};
   const SurfaceProfile profile = measures_.empty_profile();
-  for (std::size_t k = 0; k < measures_.options().columns; ++k)
-    names.push_back(fmt::format("x_{:.6g}_m", profile.place(k)));
+  for (std::size_t k = 0; k < measures_.columns(); ++k) names.push_back(fmt::format("x_{:.6g}_m", profile.place(k)));
   if (from != nullptr) options.continue_from = from->mark_of(profiles_name);
   profiles_.emplace(folder / profiles_name, names, options);
   if (from != nullptr) go_on(*from);
@@ -109,15 +90,7 @@ void GrainMeasures::go_on(const Checkpoint& from) {
                        .porosity = row[3],
                        .surface = {row[4], row[5], row[6]},
                        .centre = {row[7], row[8]},
-                       .thrown = static_cast<std::int64_t>(row[9]),
-                       .ever_thrown = static_cast<std::int64_t>(row[10]),
-                       .outside = static_cast<std::int64_t>(row[11])});
-  }
-  auto throws = measures_.throws();
-  const std::vector<double>& thrown = from.record.recorded.front().values;
-  for (std::size_t k = 0; k < thrown.size(); k += 3) {
-    const auto step = static_cast<std::int64_t>(thrown[k + 1]);
-    if (step <= moments.back().step) throws[static_cast<std::size_t>(thrown[k])] = FirstThrow{step, thrown[k + 2]};
+                       .outside = static_cast<std::int64_t>(row[9])});
   }
   std::vector<SurfaceProfile> profiles;
   for (const auto& row : rows_of(folder_, from.mark_of(profiles_name))) {
@@ -125,14 +98,13 @@ void GrainMeasures::go_on(const Checkpoint& from) {
     profiles.back().heights = {row.begin() + 2, row.end()};
   }
   measures_.set_shakings(shakings_of(resolved_, &simulation_));
-  measures_.restore(std::move(moments), profiles, std::move(throws));
+  measures_.restore(std::move(moments), profiles);
 }
 
 void GrainMeasures::record(std::int64_t step, double time, bool regular) {
   measures_.set_shakings(shakings_of(resolved_, &simulation_));
   const GrainSimulation& present = simulation_.present();
-  const MeasuredMoment& moment =
-      measures_.record(step, time, present.grains(), simulation_.numbers(), present.placed_walls());
+  const MeasuredMoment& moment = measures_.record(step, time, present.grains(), present.placed_walls());
   if (!table_) return;
   table_->add(step, cells_of(moment), regular);
   std::vector<double> cells{time};
@@ -141,33 +113,11 @@ void GrainMeasures::record(std::int64_t step, double time, bool regular) {
   profiles_->add(step, cells, regular);
 }
 
-void GrainMeasures::write_thrown() const {
-  CsvText text({"grain", "step", "time_s"});
-  const auto& throws = measures_.throws();
-  for (std::size_t g = 0; g < throws.size(); ++g) {
-    if (!throws[g]) continue;
-    text.cell(static_cast<std::int64_t>(g));
-    text.cell(throws[g]->step);
-    text.cell(throws[g]->time);
-    text.end_row();
-  }
-  write_file(folder_ / "thrown.csv", text.text(), true);
-}
-
 void GrainMeasures::save(Checkpoint& checkpoint) {
-  write_thrown();
   table_->sync();
   profiles_->sync();
   checkpoint.files.push_back(table_->mark());
   checkpoint.files.push_back(profiles_->mark());
-  SavedArray saved{.name = "throws", .columns = 3, .values = {}};
-  const auto& throws = measures_.throws();
-  for (std::size_t g = 0; g < throws.size(); ++g) {
-    if (!throws[g]) continue;
-    saved.values.insert(saved.values.end(),
-                        {static_cast<double>(g), static_cast<double>(throws[g]->step), throws[g]->time});
-  }
-  checkpoint.record.recorded.push_back(std::move(saved));
 }
 
 }  // namespace equidem

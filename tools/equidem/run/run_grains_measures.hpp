@@ -25,7 +25,7 @@ class GrainMeasures final : public RunRecorder {
   /// \param simulation that is measured; must stay where it is
   GrainMeasures(const GrainCase& resolved, const StagedSimulation& simulation);
 
-  /// Write measures.csv, surface.csv and thrown.csv (when a body was first seen apart) into a folder.
+  /// Write measures.csv and surface.csv into a folder.
   /// \throws Error (bad_input) as GrowingCsv
   void open(const std::filesystem::path& folder, bool overwrite, const Checkpoint* from) override;
   [[nodiscard]] std::int64_t last_step() const override {
@@ -41,7 +41,6 @@ class GrainMeasures final : public RunRecorder {
 
  private:
   void go_on(const Checkpoint& from);
-  void write_thrown() const;
   [[nodiscard]] std::pair<CoarseGrid, std::string> grid_of_fields() const;
 
   const GrainCase& resolved_;

@@ -22,27 +22,6 @@ void add_both(Results& out, const std::string& key, const std::string& label, do
       .add(key + "/after", "", after, space + "after", {.digits = 4});
 }
 
-void add_sloshing(Results& out, const Sloshing& slosh) {
-  out.line("sloshing");
-  if (slosh.missing.empty()) {
-    const double frequency = 1 / slosh.period, resolution = slosh.frequency_resolution;
-    out.add("sloshing/period", "strongest period of the slope", slosh.period, "s", {.digits = 4})
-        .add("sloshing/from", "from t =", slosh.from, "s on", {.digits = 4})
-        .add("sloshing/amplitude", "amplitude", slosh.amplitude, "", {.digits = 2})
-        .note(fmt::format("; periods from {:.3g} to {:.3g} s cannot be resolved", 1 / (frequency + resolution),
-                          1 / std::max(1e-300, frequency - resolution)));
-  } else {
-    out.note("no period: " + slosh.missing).set("sloshing/period", slosh.period);
-    out.set("sloshing/from", slosh.from).set("sloshing/amplitude", slosh.amplitude);
-  }
-  if (std::isnan(slosh.theory)) {
-    out.set("sloshing/theory_period", slosh.theory);
-  } else {
-    out.note("; ").add("sloshing/theory_period", "linear theory of a liquid", slosh.theory, "s", {.digits = 4});
-  }
-  out.set("sloshing/frequency_resolution", slosh.frequency_resolution);
-}
-
 }  // namespace
 
 Results GrainMeasures::results() const {
@@ -75,14 +54,7 @@ Results GrainMeasures::results() const {
   out.line("settlement")
       .add("settlement", "of the surface", before.surface.height - after.surface.height, "m", {.digits = 4})
       .add("settlement_of_centre", "of the centre of mass", before.centre.y - after.centre.y, "m", {.digits = 4});
-  out.line("thrown")
-      .add("thrown", "", after.ever_thrown, "grain", {Shown::count})
-      .note(fmt::format(" further than {:.4g} m from the heap at a recorded time",
-                        resolved_.measures->thrown_gap * measures_.mean_diameter()))
-      .add("thrown_at_the_end", "", after.thrown, "at the end")
-      .note("; ")
-      .add("outside", "", after.outside, "outside the box");
-  add_sloshing(out, measures_.sloshing());
+  out.line("outside").add("outside", "", after.outside, "grain", {Shown::count}).note(" outside the box at the end");
   if (resolved_.measures->region && std::isnan(after.void_ratio))
     out.line("WARNING", resolved_.where("measures.region") +
                             ": no body is left in the region at the end, and there is no void ratio; end the run "

@@ -153,10 +153,7 @@ void add_law(Results& out, const GrainCase& resolved) {
       .add("law", "", to_string(resolved.options.law))
       .note(fmt::format(" ({}): {}", law.letter, law.summary));
   if (law.kind == LawKind::force) {
-    out.note(resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler ? ", semi-implicit Euler"
-             : resolved.options.integrator == GrainOptions::Integrator::velocity_verlet
-                 ? ", velocity Verlet"
-                 : ", velocity Verlet, contacts that begin or end within a step corrected");
+    out.note(resolved.options.verlet() ? ", velocity Verlet" : ", semi-implicit Euler");
   }
   // A map reverses the approach of two bodies as if nothing else acted on them: summed at one body, that is too much.
   if (!is_map(resolved.options.law) || resolved.scene.grains.size() + resolved.scene.walls.size() <= 2) return;
@@ -170,17 +167,14 @@ void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& ste
   const bool later =
       std::ranges::any_of(resolved.stages, [](const StageCase& stage) { return stage.bonds.has_value(); });
   if (resolved.scene.bonds.empty() && !later) return;
-  const bool exact = resolved.options.bond_step == GrainOptions::BondStep::exact;
   out.line("bonds")
       .add("bonds/number", "", resolved.scene.bonds.size(), "", {Shown::count})
       .note(later ? " at the start" : "")
-      .add("", "", exact ? "each decays exactly over a step" : "dashpots by the velocities at the start of a step");
+      .note(", each decays exactly over a step");
   if (step.chain_limit > 0) {
     out.line("", "where a disc has several bonds, their dashpots lose too little energy: some per cent at ")
         .add("bonds/explicit_time_step", "", step.chain_limit, "s")
-        .note(
-            fmt::format(", in proportion to the step, which is {:.3g} of that; step = \"explicit\" in [bonds] is right",
-                        step.step / step.chain_limit));
+        .note(fmt::format(", in proportion to the step, which is {:.3g} of that", step.step / step.chain_limit));
   }
   if (step.bond_limit == 0) {
     out.line("", "they do not limit the step").set("bonds/critical_time_step", nullptr);
@@ -191,38 +185,14 @@ void add_bonds(Results& out, const GrainCase& resolved, const GrainTimeStep& ste
       .add("", "it is", step.step / step.bond_limit, "of that", {.digits = 3});
 }
 
-/// Deformation of the bonds since the start.
-void add_drifts(Results& out, const BondReport& bonds) {
-  if (bonds.number == 0) return;
-  const auto add = [&](const std::string& key, const char* label, const BondReport::Drift& drift) {
-    out.add("bonds/" + key + "/largest", label, drift.largest, "", {.digits = 3})
-        .note(" (")
-        .add("bonds/" + key + "/mean", "mean", drift.mean, "", {.digits = 3})
-        .note(")");
-  };
-  out.line("drift of bonds", "largest since the start: ");
-  add("distance_drift", "distance", bonds.distance);
-  add("slip_drift", "slip", bonds.slip);
-  out.note(" of the sum of the radii").line("");
-  add("roll_drift", "roll", bonds.roll);
-  out.note(" rad");
-}
-
 /// Likely cause of a large error of the balance, and the remedy.
-std::string advice_on_balance(const GrainCase& resolved, const GrainSimulation& simulation,
-                              const EnergyLedger& ledger) {
+std::string advice_on_balance(const GrainCase& resolved, const EnergyLedger& ledger) {
   if (is_map(resolved.options.law)) {
     return fmt::format(
         "{:.3g} {} {}, as this law takes each contact as if nothing else acted on its bodies; take exact_flow or "
         "linear_dashpot where they press on one another",
         std::abs(ledger.error()), energy_unit(resolved.body),
         ledger.error() > 0 ? "came from nothing" : "vanished uncounted");
-  }
-  const bool euler =
-      gives_force(resolved.options.law) && resolved.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
-  if (euler && !simulation.effects().tangential_springs && ledger.lost_slip > std::abs(ledger.error())) {
-    return "contacts without tangential springs that nearly stick count too large a loss by slip in "
-           "semi_implicit_euler; take velocity_verlet, or a tangential_ratio above 0";
   }
   return "compare with a shorter step before trusting the motion";
 }
@@ -327,7 +297,6 @@ Results GrainRun::events() const {
     out.set("largest_overlap", nullptr);
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
-  add_drifts(out, simulation_.present().bonds());
   const std::vector<BondBreak> breaks = simulation_.breaks();
   add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
   return out;
@@ -336,7 +305,7 @@ Results GrainRun::events() const {
 Results GrainRun::advice(const Balance& balance) const {
   Results out;
   if (std::abs(balance.at_end) > Balance::doubtful)
-    out.line("", "that is much: " + advice_on_balance(case_, simulation_.present(), simulation_.energy()));
+    out.line("", "that is much: " + advice_on_balance(case_, simulation_.energy()));
   if (const std::int64_t doubtful = simulation_.present().counters().doubtful; doubtful > 0) {
     out.line("", fmt::format("of all evaluations {} were of contacts pressed together in a step that may feed their "
                              "vibration: the step is safe for one contact, not for any cluster; compare with one a "

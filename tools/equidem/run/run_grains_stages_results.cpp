@@ -59,35 +59,19 @@ std::string in_stage(const GrainCase& resolved, const std::string& what, const s
 }  // namespace
 
 std::string describe(const Shaking& shaking) {
-  const GroundMotion& motion = shaking.motion;
-  const std::string peak =
-      fmt::format("{:.4g} m/s² ({:.4g} gal) at most along ({:.4g}, {:.4g}), ", motion.peak_acceleration,
-                  motion.peak_acceleration / gal, shaking.direction.x, shaking.direction.y);
-  const Schedule& way = motion.displacement;
-  if (shaking.recorded)
-    return peak + fmt::format("a record of {} points from {:.4g} s to {:.4g} s", way.times.size(), way.times.front(),
-                              way.times.back());
-  return peak + fmt::format("{} Hz, {} from {:.4g} s to {:.4g} s", shaking.frequency,
-                            counted(static_cast<long long>(shaking.cycles), "cycle"), way.start, way.end);
+  return fmt::format("{:.4g} m/s² at most along ({:.4g}, {:.4g}), {} Hz, {} from {:.4g} s to {:.4g} s",
+                     shaking.peak_acceleration, shaking.direction.x, shaking.direction.y, shaking.frequency,
+                     counted(static_cast<long long>(shaking.cycles), "cycle"), shaking.displacement.start,
+                     shaking.displacement.end);
 }
 
 Results shaking_results(const Shaking& shaking) {
-  const GroundMotion& motion = shaking.motion;
   Results out;
   out.line("shaking", describe(shaking));
   out.line("")
-      .add("peak_velocity", "at most", motion.peak_velocity, "m/s", {.digits = 4})
-      .add("peak_displacement", "", motion.peak_displacement, "m", {.digits = 4});
-  if (shaking.recorded && motion.correction > 0) {
-    out.line("", fmt::format("baseline: up to {:.3g} of that acceleration taken away",
-                             motion.correction / motion.peak_acceleration));
-  }
-  if (motion.final_displacement != 0 && std::abs(motion.final_displacement) > 1e-9 * motion.peak_displacement)
-    out.line("", fmt::format("the box ends {:.4g} m from where it began", motion.final_displacement));
-  return out.set("peak_acceleration", motion.peak_acceleration)
-      .set("direction", shaking.direction)
-      .set("final_displacement", motion.final_displacement)
-      .set("baseline_correction", motion.correction);
+      .add("peak_velocity", "at most", shaking.peak_velocity, "m/s", {.digits = 4})
+      .add("peak_displacement", "", shaking.peak_displacement, "m", {.digits = 4});
+  return out.set("peak_acceleration", shaking.peak_acceleration).set("direction", shaking.direction);
 }
 
 Results stage_results(const GrainCase& resolved, const std::vector<StageReport>& stages, double step) {

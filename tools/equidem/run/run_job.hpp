@@ -52,7 +52,6 @@ class RunJob {
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
   /// The steps and the time that relax() is expected to take.
-  [[nodiscard]] virtual Results estimate_of_relaxation() const { return {}; }
   /// Relax the scene to rest, the state that parts() then write.
   virtual Results relax(StageTimes& /*times*/) { return {}; }
 };

@@ -107,7 +107,7 @@ Results dry_run_results(RunJob& job) {
   Results out = job.scene();
   static_cast<void>(job.simulation());  // the scene and its lists take their memory as in a run
   out.line("process").add("peak_bytes", "", peak_resident_memory(), "of memory at the peak", {Shown::bytes});
-  if (job.goes_to_rest()) return out.append(memory_results(job)).append(job.estimate_of_relaxation());
+  if (job.goes_to_rest()) return out.append(memory_results(job));
   out.append(step_results(job, plan));
   if (plan.frame_interval) {
     const double steps = static_cast<double>(plan.steps);

@@ -288,7 +288,7 @@ std::vector<Key<OutputCase>> output_keys() {
       key("csv", &OutputCase::csv, "discs.csv, contacts.csv"),
       key("vtk", &OutputCase::vtk, "state for ParaView"),
       key("picture", &OutputCase::picture,
-          "picture.svg, picture.png; of bodies that collide at segments or arcs, and whose paths are not drawn, those "
+          "picture.svg, picture.png; of bodies that collide at segments, and whose paths are not drawn, those "
           "are left out that lie farther from the box round these walls and the start than half its larger side"),
       key("assembly", &OutputCase::assembly,
           "discs and contacts in assembly.json or, read and written faster, assembly.h5 (HDF5); without it pack and "

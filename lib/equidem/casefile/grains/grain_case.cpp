@@ -131,7 +131,7 @@ GrainCase parse_grain_case(std::string_view content, const std::string& name, co
   tables.scene.walls = read_walls(root, tables.wall_tables, schedules);
   complete_cell(root, schedules, tables);
   check_ellipse_contact(*root.find("collisions"), tables.scene);
-  const std::vector<Wall> all_walls = read_stages(root, folder, schedules, tables);
+  const std::vector<Wall> all_walls = read_stages(root, schedules, tables);
   if (tables.stages.empty()) {
     complete_collisions(root, tables.groups, tables);
   } else {
@@ -164,7 +164,7 @@ GrainTimeStep choose_grain_step(const GrainCase& resolved) {
       const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, options, resolved.step);
       if (other.step < chosen.step) chosen = other;
       if (!stage.bonds) continue;
-      const double limit = likely_step_limit(stage.scene.grains, *stage.bonds, resolved.options.bond_step);
+      const double limit = likely_step_limit(stage.scene.grains, *stage.bonds);
       if (chosen.bond_limit == 0 || limit < chosen.bond_limit) chosen.bond_limit = std::isfinite(limit) ? limit : 0;
       if (chosen.automatic) chosen.step = std::min(chosen.step, 0.5 * limit);
     }

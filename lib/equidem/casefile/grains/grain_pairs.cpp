@@ -67,7 +67,6 @@ std::vector<RefusedWord> letters_of_laws() {
 /// The keys of a contact. In [collisions] they have defaults and help; elsewhere they override those.
 std::vector<Key<PairOptions>> contact_keys(bool base) {
   using P = PairOptions;
-  const auto pulls = [](const LawDescription& law) { return law.usual_end == ContactEnd::at_zero_overlap; };
   std::vector<Key<P>> keys{
       rebound_key<Restitution>(
           "restitution", from(0, 1), not_beside({"damping"}, "each says how strong the dashpot is"),
@@ -76,9 +75,6 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
           "damping", range({.low = 0, .high = 10, .low_open = true}),
           "h of the dashpots 2 h sqrt(m k), along and across, m the mass of a disc, as in [settling] of a packing; of "
           "laws with linear springs and dashpots"),
-      key("contact_end", &P::contact_end,
-          "of laws with a dashpot; zero_force: contacts never pull (default, except for " + joined(laws_with(pulls)) +
-              "); zero_overlap: they may pull while the bodies part"),
       stiffness_key<SpringStiffness>("stiffness", unit(unit_of_stiffness()),
                                      not_beside({"dimensionless_stiffness", "contact_duration", "largest_overlap",
                                                  "young_modulus", "shear_wave_speed"},
@@ -100,9 +96,7 @@ std::vector<Key<PairOptions>> contact_keys(bool base) {
           "kT/kN of the tangential spring, with friction; left out: 2/7, with wave speeds theirs, and for the maps, "
           "which act in one or two steps, 0: no spring, contacts slide"),
       key("tangential_damping", &P::tangential_damping, not_negative,
-          "zeta of the tangential dashpot; left out: 0, with damping that of its dashpot"),
-      key("friction_cap", &P::friction_cap,
-          "force that mu times the normal force limits: of spring and dashpot together, or of the spring alone")};
+          "zeta of the tangential dashpot; left out: 0, with damping that of its dashpot")};
   for (Key<P>& key : keys) {
     if (base) break;
     key.spec.fallback = KeySpec::none;
@@ -146,7 +140,7 @@ void bind_collisions(File<GrainTables>& file) {
       .keys({key_in<T>("ellipse_contact", &GrainCase::options, &GrainOptions::ellipse_law, optional,
                        "exact (default): closest points and common normal; enlarged: the test of Sukegawa (2010), "
                        "which takes the offset of an ellipse for an ellipse and so misses shallow contacts, with its "
-                       "quadrants mended; enlarged_as_printed: with its errors, for comparison"),
+                       "quadrants mended"),
              key_in<T>("reference_length", &GrainCase::options, &GrainOptions::reference_length, optional, unit("m"),
                        positive, when("law", nonlinear),
                        "d of dimensionless_stiffness; left out: twice the largest radius")});

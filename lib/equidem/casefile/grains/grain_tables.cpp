@@ -30,9 +30,7 @@ void bind_run(File<GrainTables>& file) {
              key_in<T>(
                  "integrator", &GrainCase::options, &GrainOptions::integrator, optional, formerly("scheme"),
                  "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
-                 "creep; velocity_verlet: second order, as LAMMPS steps; corrected_verlet: the same motion, but "
-                 "contacts that begin or end within a step push for their part of it only: for impacts, and where "
-                 "the balance of energy counts")});
+                 "creep; velocity_verlet: second order, as LAMMPS steps")});
   bind_motion(file, BodyFamily::colliding, &GrainCase::probes);
   bind_shaking(file);
   bind_stages(file);
@@ -42,10 +40,6 @@ void bind_run(File<GrainTables>& file) {
                  "[x_min, y_min, x_max, y_max] in which the void ratio is measured; it goes with the shaking box. Left "
                  "out: the box without two mean diameters at its walls and without three below the lowest place of the "
                  "surface, at each moment"),
-             key("columns", &M::columns, optional, from(2, 10000),
-                 "in which the highest points make the surface; left out: two largest diameters wide"),
-             key("thrown_gap", &M::thrown_gap, unit("mean diameters"), positive,
-                 "a body further than that from all others of the heap is thrown"),
              key("cell", &M::cell, unit("m"), positive,
                  "width of the cells of the fields of stress, velocity, solid fraction and coordination at the end, "
                  "some bodies wide; left out: no fields")});

@@ -51,17 +51,6 @@ struct BondsTable {
   std::optional<std::filesystem::path> path;
 };
 
-/// [shaking].
-struct ShakingTable {
-  enum class Unit { m_per_s2, gal, g };
-  Vec2 direction = {1, 0};
-  HarmonicShaking harmonic;  ///< acceleration in `unit`
-  Unit unit = Unit::m_per_s2;
-  double start = 0;  ///< s
-  std::optional<std::filesystem::path> record;
-  RecordedShaking recorded;  ///< without its points; accelerations in `unit`
-};
-
 /// [[stage]], without the tables in it.
 struct StageTable {
   std::string name;
@@ -79,7 +68,7 @@ struct GrainTables : GrainCase, MotionTables {
   BondsTable bonds;
   std::optional<StrengthOptions> strength;
   std::optional<CellTable> cell_table;
-  std::optional<ShakingTable> shaking_table;
+  std::optional<ShakingOptions> shaking_table;
   std::vector<StageTable> stage_tables;
 };
 
@@ -162,22 +151,20 @@ std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<cons
                                           std::optional<PeriodicCell> cell);
 
 /// [stage.shaking].
-std::vector<Key<ShakingTable>> shaking_keys();
+std::vector<Key<ShakingOptions>> shaking_keys();
 /// The shaking of a table.
-/// \param path of the table; \param[in,out] table a record becomes the path that the program opens
+/// \param path of the table
 /// \param duration of the run or of the stage, s; none: not known in seconds
-/// \throws Error (bad_input) with line and key: a duration of no whole cycles, a record that is no table
-Shaking read_shaking(const TomlValue& table, const std::string& path, const ShakingTable& given,
+/// \throws Error (bad_input) with line and key: a duration of no whole cycles
+Shaking read_shaking(const TomlValue& table, const std::string& path, const ShakingOptions& given,
                      std::optional<double> duration);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls
 /// \return the walls of all stages, one of each name
-/// \param[in,out] root records of [stage.shaking] become the paths that the program opens
 /// \throws Error (bad_input) with line and key: a motion of walls outside of the stages, a wall that is not there or
 ///         needed by the servo of another, an end that names no wall
-std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& folder,
-                              std::span<const NamedSchedule> schedules, GrainTables& tables);
+std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// Bodies and contacts of the stages.
 /// \param[in,out] root paths in its stages become those that the program opens
@@ -192,25 +179,7 @@ void complete_stages(TomlValue& root, const std::filesystem::path& folder, std::
 /// Apply [shaking] to the walls, except those with shaken = false.
 /// \param tables with walls and with [shaking]
 /// \throws Error (bad_input) with line and key: a duration of no whole cycles, no wall that moves, a wall that moves by
-///         itself as well, a record that is no table
+///         itself as well
 void complete_shaking(const TomlValue& root, GrainTables& tables);
 
 }  // namespace equidem::casefile
-
-namespace equidem {
-
-struct AccelerationUnit {
-  casefile::ShakingTable::Unit value;
-  const char* name;
-  double size;  ///< m/s²
-};
-
-template <>
-struct EnumNames<casefile::ShakingTable::Unit> {
-  using enum casefile::ShakingTable::Unit;
-  static constexpr const char* what = "unit of acceleration";
-  static constexpr AccelerationUnit list[] = {
-      {m_per_s2, "m/s2", 1}, {gal, "gal", equidem::gal}, {g, "g", standard_gravity}};
-};
-
-}  // namespace equidem

@@ -45,13 +45,12 @@ auto find_wall(Walls& walls, const std::string& name) {
 }
 
 /// The shaking of a stage; its walls move by it.
-std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path& folder,
-                                   const std::optional<double>& duration, const StageWalls& standing,
-                                   std::vector<Wall>& walls) {
-  TomlValue* table = stage.find("shaking");
+std::optional<Shaking> shake_stage(const TomlValue& stage, const std::optional<double>& duration,
+                                   const StageWalls& standing, std::vector<Wall>& walls) {
+  const TomlValue* table = stage.find("shaking");
   if (table == nullptr) return {};
-  ShakingTable read;
-  read_table_in_place(shaking_keys(), *table, folder, read);
+  ShakingOptions read;
+  read_table(shaking_keys(), *table, read);
   const Shaking shaking = read_shaking(*table, "stage.shaking", read, duration);
   bool any = false;
   for (Wall& wall : walls) {
@@ -63,7 +62,7 @@ std::optional<Shaking> shake_stage(TomlValue& stage, const std::filesystem::path
         fail_at(*table, "stage.shaking", fmt::format("wall '{}' shakes along the direction of its servo", wall.name),
                 "it cannot keep a force and a motion", "Shake across it, or give the wall shaken = false");
     with_place(fmt::format("{}: stage.shaking", table->where()), [&] {
-      shake({&wall, 1}, shaking.direction, shaking.motion.displacement);
+      shake({&wall, 1}, shaking.direction, shaking.displacement);
     });
   }
   if (!any)
@@ -213,14 +212,13 @@ void bind_stages(File<GrainTables>& file) {
   bind_stage_walls(file);
 }
 
-std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& folder,
-                              std::span<const NamedSchedule> schedules, GrainTables& tables) {
+std::vector<Wall> read_stages(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables) {
   check_names(root, "stage");
   if (!tables.stage_tables.empty()) refuse_beside_stages(root);
   StageWalls walls(tables.scene.walls, tables.wall_tables);
   std::optional<PeriodicCell> cell = tables.scene.cell;
   for (std::size_t k = 0; k < tables.stage_tables.size(); ++k) {
-    TomlValue& table = root.find("stage")->items[k];
+    const TomlValue& table = root.find("stage")->items[k];
     check_plain_name(*table.find("name"), "stage.name", "a stage", "it stands in tables");
     const StageTable& read = tables.stage_tables[k];
     walls.read(table, schedules);
@@ -236,7 +234,7 @@ std::vector<Wall> read_stages(TomlValue& root, const std::filesystem::path& fold
     stage.scene.walls = walls.walls();
     stage.renamed_walls = walls.renamed();
     stage.end = end_of_stage(table, stage.scene.walls, cell);
-    stage.shaking = shake_stage(table, folder, read.duration, walls, stage.scene.walls);
+    stage.shaking = shake_stage(table, read.duration, walls, stage.scene.walls);
     stage.scene.cell = cell;
     stage.scene.gravity = read.gravity.value_or(k == 0 ? tables.scene.gravity : tables.stages[k - 1].scene.gravity);
     tables.duration += stage.duration.value_or(INFINITY);

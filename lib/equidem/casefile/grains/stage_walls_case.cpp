@@ -161,9 +161,8 @@ void StageWalls::change(const TomlValue& table, std::span<const NamedSchedule> s
       fail_at(*table.find("name"), "stage.wall.name",
               fmt::format("wall '{}' is new, and an earlier one had that name", name),
               "histories and contacts go by the names of walls", "Give the new wall another name");
-    for (const char* key : read.wall.wall.shape == Wall::Shape::line      ? std::array{"point", "normal"}
-                           : read.wall.wall.shape == Wall::Shape::segment ? std::array{"point", "end"}
-                                                                          : std::array{"centre", "radius"})
+    for (const char* key :
+         read.wall.wall.shape == Wall::Shape::line ? std::array{"point", "normal"} : std::array{"point", "end"})
       if (table.find(key) == nullptr)
         fail_at(table, fmt::format("stage.wall.{}", key), "missing key",
                 fmt::format("'{}' is a new wall, and none of that name stands in the stage before", name),

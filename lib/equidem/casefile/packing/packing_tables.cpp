@@ -65,8 +65,6 @@ std::vector<Key<PackingTables>> settling_keys() {
     return key(std::move(name), &T::options, &P::settling, member, attributes...);
   };
   return {
-      key("start", &T::start,
-          "fall: all of it in time; relax: first brought down without inertia and friction, much faster and denser"),
       settling("gravity", &O::gravity, unit("m/s²"), positive, "downwards"),
       settling("friction", &O::friction, not_negative, "between bodies"),
       settling("wall_friction", &O::wall_friction, not_negative),
@@ -104,7 +102,6 @@ ScalablePacking packing_options(const TomlValue& root, const PackingTables& tabl
   const bool open = tables.sides == PackingBox::Sides::walls && entry_of(options.method).open_top;
   options.box.sides = open ? PackingBox::Sides::open_top : tables.sides;
   at_key(packing, "packing", [&] { set_amount(options.amount, options.sizes, options); });
-  options.settling.relax_first = tables.start == PackingTables::Start::relax;
   return options;
 }
 

@@ -25,23 +25,7 @@ struct PackingTables {
   PackingBox::Sides sides = PackingBox::Sides::walls;
   SizeDistribution sizes;
   std::optional<std::filesystem::path> sieve_curve;
-  enum class Start { fall, relax } start = Start::fall;
 };
-
-}  // namespace equidem::casefile
-
-namespace equidem {
-
-template <>
-struct EnumNames<casefile::PackingTables::Start> {
-  using enum casefile::PackingTables::Start;
-  static constexpr const char* what = "start of settling";
-  static constexpr NamedValue<casefile::PackingTables::Start> list[] = {{fall, "fall"}, {relax, "relax"}};
-};
-
-}  // namespace equidem
-
-namespace equidem::casefile {
 
 std::vector<Key<PackingTables>> packing_keys();
 std::vector<Key<PackingShape>> packing_shape_keys();

@@ -34,7 +34,6 @@ struct HertzDashpot {
   [[gnu::always_inline]] static Number dashpot(const Number& c, const Number& d) {
     return c * square_root(square_root(d));
   }
-  static DriftShares shares_of_drift(double part) { return shares_of_power_law<HertzDashpot>(part); }
 
   static double length_factor(double length) { return std::sqrt(length); }
   /// W = 2/5 k d^(5/2)

@@ -18,9 +18,8 @@
 ///   dissipation(e, end)     c/sqrt(m k) = sqrt(2 (p + 1)) zeta; of maps the restitution
 ///   stiffness_from_overlap  k of an impact whose largest overlap is the given one
 ///   stable_step(zeta)       largest omega dt of one contact, omega² = p k d^(p - 1)/m at the largest overlap; 0: any
-///   usual_end               the default of `contact_end`
+///   usual_end               where contacts end: at zero force, or at zero overlap
 ///   check_range(a, e)       throws Error (bad_input) where the law is not valid
-///   shares_of_drift         shares_of_power_law<Law> for p > 1
 ///
 /// The letter is one that no other law has.
 #pragma once
@@ -51,12 +50,6 @@ struct ContactStep {
   double loss = 0;
 };
 
-/// Impulses of spring and dashpot in the part of a drift of a Verlet scheme in which a contact lasts, over those of a
-/// whole kick with the overlap at the end of that part.
-struct DriftShares {
-  double spring = 0, dashpot = 0;
-};
-
 /// One step of a force law.
 /// \param c dimensionless dashpot coefficient, Law::dissipation sqrt(a)
 /// \param attraction whether the force may pull; else it is cut at 0
@@ -85,26 +78,6 @@ struct LinearSpring {
     return equidem::stiffness_from_overlap(overlap, speed, m, damping_ratio);
   }
 };
-
-/// Shares of a force law whose dashpot goes with d^((p - 1)/2) where its spring goes with d^p, p > 1; d is linear in
-/// time.
-///
-/// The trapezoidal rule errs where a force begins or ends: its unit steps give x^p, summed from the first node
-/// at x = part on, -zeta(-p, part) less than the integral from 0 (Hurwitz's zeta, here by Euler and Maclaurin from
-/// part + 1 on).
-template <class Law>
-DriftShares shares_of_power_law(double part) {
-  const double seen = part > 1e-12 ? part : 1e-12;  // an overlap of round-off
-  const auto beyond_sum = [&](double power, double now, double next) {
-    return (((1 + seen) / (power + 1) - 0.5 + power / (12 * (1 + seen))) * next - now) / now;
-  };
-  DriftShares shares{0.5 + beyond_sum(Law::spring_power, Law::spring(1.0, seen), Law::spring(1.0, 1 + seen)), 0};
-  if constexpr (Law::has_dashpot) {
-    shares.dashpot =
-        0.5 + beyond_sum((Law::spring_power - 1) / 2, Law::dashpot(1.0, seen), Law::dashpot(1.0, 1 + seen));
-  }
-  return shares;
-}
 
 }  // namespace laws
 
@@ -142,7 +115,6 @@ consteval bool check_law() {
   if constexpr (Law::kind == LawKind::force) {
     EQUIDEM_LAW_NEEDS(Law::spring(x, x), double, "a force law needs `spring(k, d)`");
     EQUIDEM_LAW_NEEDS(Law::dashpot(x, x), double, "a force law needs `dashpot(c, d)`");
-    EQUIDEM_LAW_NEEDS(Law::shares_of_drift(x), DriftShares, "a force law needs `shares_of_drift(part)`");
   } else if constexpr (Law::kind == LawKind::map) {
     EQUIDEM_LAW_NEEDS(Law::step(x, x, x, x, true), ContactStep,
                       "a map needs `step(depth, closing, a, restitution, first)`");

@@ -25,8 +25,6 @@ struct LinearDashpot : LinearSpring {
   [[gnu::always_inline]] static Number dashpot(const Number& c, const Number& /*d*/) {
     return c;
   }
-  /// The trapezoidal rule is exact for a linear force from its first instant on.
-  static DriftShares shares_of_drift(double part) { return {part / 2, part}; }
 
   /// c/sqrt(m k) = 2 zeta
   static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }

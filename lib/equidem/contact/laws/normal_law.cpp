@@ -36,7 +36,6 @@ constexpr LawDescription description_of(NormalLaw law) {
   d.check_range = Law::check_range;
   if constexpr (Law::kind == LawKind::force) {
     d.dashpot = [](double c, double depth) { return Law::dashpot(c, depth); };
-    d.shares_of_drift = Law::shares_of_drift;
   }
   if constexpr (Law::kind == LawKind::simultaneous) d.prepare = Law::prepare;
   return d;

@@ -45,7 +45,6 @@ struct LawDescription {
   double (*stable_step)(double damping_ratio) = nullptr;
   void (*check_range)(double a, double restitution) = nullptr;
   double (*dashpot)(double c, double d) = nullptr;                                                    ///< force
-  DriftShares (*shares_of_drift)(double part) = nullptr;                                              ///< force
   ExactPair (*prepare)(double m, double k, double dissipation, ContactEnd end, double dt) = nullptr;  ///< simultaneous
 };
 

@@ -1,28 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/contact/shapes/enlarged_ellipse.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace equidem {
-
-namespace {
-
-/// (4.44)-(4.45), or the one angle that has both cosine and sine.
-double parameter_angle(double cos_a, double sin_b, AngleReading reading) {
-  if (reading == AngleReading::mended) return std::atan2(sin_b, cos_a);
-  return (std::acos(std::clamp(cos_a, -1.0, 1.0)) + std::asin(std::clamp(sin_b, -1.0, 1.0))) / 2;
-}
-
-/// (4.49) from the gradient of ellipse i at the contact.
-double tangent_angle(Vec2 outward, Vec2 branch, AngleReading reading) {
-  if (reading == AngleReading::mended) return std::atan2(-outward.x, outward.y);
-  return std::atan(-outward.x / outward.y) + (branch.y < 0 ? std::numbers::pi : 0);
-}
-
-}  // namespace
 
 MappedEllipse mapped_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   assert(i.b > 0 && j.b > 0);
@@ -47,7 +29,7 @@ MappedEllipse mapped_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   return image;
 }
 
-EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch, AngleReading reading) {
+EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   const MappedEllipse image = mapped_ellipse(i, j, branch);
   const Vec2 along = {std::cos(image.theta), -std::sin(image.theta)}, across = perpendicular(along);
   const Vec2 centre = {-image.h, -image.k};
@@ -57,11 +39,11 @@ EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse&
   EnlargedEllipseContact contact;
   contact.judgement = cos_a * cos_a + sin_b * sin_b - 1;
   contact.point = back(-(cos_a * along + sin_b * across));
-  const double phi = parameter_angle(cos_a, sin_b, reading);
+  const double phi = std::atan2(sin_b, cos_a);  // (4.44)-(4.45), in every quadrant
   contact.surface_point = back(image.a * std::cos(phi) * along + image.b * std::sin(phi) * across + centre);
   const double p = dot(i.axis, contact.surface_point), q = cross(i.axis, contact.surface_point);
   const Vec2 outward = i.b * i.b * p * i.axis + i.a * i.a * q * perpendicular(i.axis);
-  contact.angle = tangent_angle(outward, branch, reading);
+  contact.angle = std::atan2(-outward.x, outward.y);  // (4.49), outwards of ellipse i
   contact.normal = {-std::sin(contact.angle), std::cos(contact.angle)};
   return contact;
 }

@@ -13,13 +13,6 @@
 
 namespace equidem {
 
-/// Evaluation of the angles of contact.
-enum class AngleReading {
-  printed,  ///< phi = (acos + asin)/2 (4.44)-(4.45), right only for phi from 0 to pi/2; omega (4.49) in the half-plane
-            ///< given by the heights of the centres
-  mended,   ///< phi = atan2(sin phi_b, cos phi_a), omega by atan2: outwards of ellipse i
-};
-
 /// OBE_i': the image of ellipse i where ellipse j is the unit circle round the origin. Half-axes a' and b', centre
 /// (-h', -k'), turned by -theta' (4.34).
 struct MappedEllipse {
@@ -42,6 +35,6 @@ struct EnlargedEllipseContact {
 
 /// Points and angle are meaningful only in or near contact, but always finite. Only the judgement is symmetric in i and
 /// j.
-EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch, AngleReading reading);
+EnlargedEllipseContact enlarged_ellipse_contact(const Ellipse& i, const Ellipse& j, Vec2 branch);
 
 }  // namespace equidem

@@ -56,16 +56,7 @@ void check_contents(const GrainScene& scene, const GrainOptions& options) {
   if (!gives_force(options.law))
     bad_input(fmt::format("a periodic cell is stepped by the law {}", to_string(options.law)),
               "images need a law that gives a force", "Use " + names_of_laws(LawKind::force));
-  const auto slides_only = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio == 0; };
-  const auto sticks = [](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; };
-  const bool any_slides = std::ranges::any_of(scene.pairs, slides_only);
-  if (any_slides && std::ranges::any_of(scene.pairs, sticks))
-    bad_input("some pairs of a periodic cell have friction with a tangential spring and some without",
-              "images need one loop for all pairs", "Give all of them a tangential_ratio > 0, or none");
   if (!has_shapes(scene)) return;
-  if (any_slides)
-    bad_input("ellipses or clumps of a periodic cell have friction without a tangential spring",
-              "their images need the loop for contacts with one", "Give all pairs a tangential_ratio > 0");
   if (options.ellipse_law != GrainOptions::EllipseLaw::exact)
     bad_input(fmt::format("ellipses of a periodic cell meet by the law {}", to_string(options.ellipse_law)),
               "their images need the exact contact", "Leave ellipse_contact out");

@@ -58,7 +58,6 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
   system.counters.contacts += sums.contacts;
   if (sums.evaluations > 0) system.free_flight = false;
   system.deepest = std::max(system.deepest, sums.deepest);
-  system.touch_impulses.insert(system.touch_impulses.end(), sums.touch_impulses.begin(), sums.touch_impulses.end());
   for (std::size_t w = 0; w < sums.on_walls.size(); ++w) system.walls.loads[w].add_in_step(sums.on_walls[w]);
   sums = {};
 }

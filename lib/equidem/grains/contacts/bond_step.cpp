@@ -111,13 +111,27 @@ struct Rates {
   double rate = 0, square = 0;
 };
 
-Rates rates_of(const GrainScene& scene, const GrainBond& bond, GrainOptions::BondStep bond_step) {
+Rates rates_of(const GrainScene& scene, const GrainBond& bond) {
   const Grain &i = scene.grains[bond.i], &j = scene.grains[bond.j];
   const ContactFrame frame = frame_of((bond.rest ? *bond.rest : rest_of(scene, bond.i, bond.j)).branch, share_of(i, j));
   const auto largest = [&](const BondModes& c) { return largest_bond_rate(c, frame, inverse_of(i), inverse_of(j)); };
-  const bool limits = bond_step == GrainOptions::BondStep::explicit_euler;
-  return {limits ? largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}) : 0.0,
+  return {largest({bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot}),
           largest({bond.normal_spring, bond.tangential_spring, bond.bending_spring})};
+}
+
+/// Largest sums of the rates at a disc.
+Rates largest_rates(const GrainScene& scene) {
+  std::vector<Rates> of_grain(scene.grains.size());
+  Rates largest;
+  for (const GrainBond& bond : scene.bonds) {
+    const Rates own = rates_of(scene, bond);
+    for (const std::size_t grain : {bond.i, bond.j}) {
+      Rates& sum = of_grain[grain];
+      sum = {sum.rate + own.rate, sum.square + own.square};
+      largest = {std::max(largest.rate, sum.rate), std::max(largest.square, sum.square)};
+    }
+  }
+  return largest;
 }
 
 }  // namespace
@@ -263,17 +277,12 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
   return result;
 }
 
-double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step) {
-  std::vector<Rates> of_grain(scene.grains.size());
-  Rates largest;
-  for (const GrainBond& bond : scene.bonds) {
-    const Rates own = rates_of(scene, bond, bond_step);
-    for (const std::size_t grain : {bond.i, bond.j}) {
-      Rates& sum = of_grain[grain];
-      sum = {sum.rate + own.rate, sum.square + own.square};
-      largest = {std::max(largest.rate, sum.rate), std::max(largest.square, sum.square)};
-    }
-  }
+double bond_step_limit(const GrainScene& scene) {
+  return bond_step_limit(0, largest_rates(scene).square);
+}
+
+double explicit_step_limit(const GrainScene& scene) {
+  const Rates largest = largest_rates(scene);
   return bond_step_limit(largest.rate, largest.square);
 }
 
@@ -293,14 +302,11 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
   if (scene.bonds.empty()) return;
   check_law_of_bonds(scene, options.law);
   check_bonds(scene);
-  const double limit = bond_step_limit(scene, options.bond_step);
+  const double limit = bond_step_limit(scene);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",
                         options.time_step, options.time_step / limit, limit),
-            "bonded discs would swing ever faster",
-            bond_step_limit(scene, GrainOptions::BondStep::exact) > options.time_step
-                ? "Stay below it, use smaller dashpots, or make the step of bonds exact, which dashpots do not limit"
-                : "Stay below it, or use smaller springs");
+            "bonded discs would swing ever faster", "Stay below it, or use smaller springs");
 }
 
 }  // namespace equidem

@@ -113,18 +113,14 @@ void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, 
     const TouchPlace place = place_of(geometry, candidate.j < 0);
     if (!(geometry.overlap > 0)) {
       if (candidate.touching)
-        end_contact<Law>(system, candidate, place, drift_of(system, candidate, geometry), sums.sums());
+        end_contact<Law>(system, candidate, place.arm_i, drift_of(system, candidate, geometry), sums.sums());
       continue;
     }
     count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
-    const auto others = [&] {
-      const double inverse_mass = inverse_tangential_mass(system, candidate, geometry);
-      return SlipByOthers{gain_of_slip(system, candidate, geometry, inverse_mass), inverse_mass};
-    };
     const Vec2 impulse = step_contact<Law, friction>(
         system, candidate, place, -dot(relative, geometry.normal), slip_velocity(system, candidate, geometry, relative),
-        drift_of(system, candidate, geometry), candidate.sliding, others, sums.sums());
+        drift_of(system, candidate, geometry), candidate.sliding, sums.sums());
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
   }
 }

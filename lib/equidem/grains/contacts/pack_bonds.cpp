@@ -180,9 +180,8 @@ class GroupWriter {
   void write_dashpots(const TiedPair& bond, const GrainBody& i, const GrainBody& j, bool used, std::size_t g,
                       std::size_t lane) {
     const double dt = system_.dt();
-    const bool exact = system_.options.bond_step == GrainOptions::BondStep::exact;
     const auto set = [&](double dashpot, double inverse_mass, double& per_rate, double& per_gain) {
-      const double mean = exact ? decay(dashpot * inverse_mass * dt).mean : 1;
+      const double mean = decay(dashpot * inverse_mass * dt).mean;
       per_rate = used ? dashpot * dt * mean : 0;
       per_gain = used && dashpot > 0 ? (1 - mean) / inverse_mass : 0;
     };

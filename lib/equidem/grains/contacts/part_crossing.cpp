@@ -82,23 +82,4 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
   return -after.gap > small ? "pass through" : nullptr;
 }
 
-void refuse_ellipses_in_bowls(const GrainSystem& system) {
-  if (system.shapes.parts.empty()) return;
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
-    const Candidate& candidate = system.contacts.candidates[c];
-    if (candidate.j >= 0 || !has_ellipse(system, candidate, system.contacts.part_pairs[c])) continue;
-    const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
-    const Wall& wall = system.scene.walls[w];
-    if (wall.shape != Wall::Shape::arc) continue;
-    const Vec2 displacement = system.walls.places[w].displacement + system.dt() * system.walls.places[w].velocity;
-    const Vec2 position = system.bodies.next[i].position;
-    if (norm(position - wall.point - displacement) >= wall.radius) continue;
-    if (nearest(wall, displacement, position).distance > system.bodies.constants[i].radius) continue;
-    computation_failed(fmt::format("step {}: grain {}, an ellipse, would come to the inside of the arc \"{}\"",
-                                   system.step, system.bodies.grain_of[i], wall.name),
-                       "there it may touch in two points at once, which one contact cannot tell",
-                       "Make the arc of segments");
-  }
-}
-
 }  // namespace equidem

@@ -23,7 +23,4 @@ bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const Pa
 /// one larger than that half-axis occurs without a contact before. \return nullptr: no error
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
 
-/// \throws Error (computation_failed) if an ellipse moves to the inside of an arc, within reach of it
-void refuse_ellipses_in_bowls(const GrainSystem& system);
-
 }  // namespace equidem

@@ -31,7 +31,7 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
   }
   const Ellipse e_i{part_i.a, part_i.b, system.shapes.axes[i]}, e_j{part_j.a, part_j.b, system.shapes.axes[j]};
   if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) {
-    const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch, system.options.ellipse_law);
+    const EllipseContact contact = contact_by_enlarged_ellipse(e_i, e_j, branch);
     if (!contact.is_contact()) return {};
     return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
   }
@@ -50,25 +50,6 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
           sunk_j};
 }
 
-/// From outside, where refuse_ellipses_in_bowls keeps it: against the whole circle where that is met on the arc, else
-/// against the nearer end, a point.
-EllipseContact contact_with_arc(const GrainSystem& system, std::int32_t grain, const Ellipse& ellipse, const Wall& wall,
-                                Vec2 displacement) {
-  const Vec2 position = system.bodies.motions[static_cast<std::size_t>(grain)].position;
-  const Vec2 middle = wall.point + displacement, to_middle = middle - position;
-  if (nearest(wall, displacement, position).distance > ellipse.a) return {EllipseState::apart, 1, {}, {}, {}};
-  const EllipseContact whole = contact_of_ellipses(ellipse, {wall.radius, wall.radius, {1, 0}}, to_middle);
-  if (whole.gap > 0) return whole;
-  const Vec2 beyond = middle + 2 * whole.arm_j;
-  if (std::abs(nearest(wall, displacement, beyond).distance - wall.radius) <= 1e-12 * wall.radius) return whole;
-  EllipseContact nearer{EllipseState::apart, 1, {}, {}, {}};
-  for (const double angle : {wall.from, wall.to}) {
-    const EllipseContact end = contact_of_ellipses(ellipse, {0, 0, {1, 0}}, to_middle + wall.radius * axis_at(angle));
-    if (end.gap < nearer.gap) nearer = end;
-  }
-  return nearer;
-}
-
 EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, const GrainPart& part,
                                  std::int32_t wall_index, Vec2 last_normal) {
   const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
@@ -76,15 +57,8 @@ EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, 
   const Vec2 displacement = system.walls.places[w].displacement;
   const Ellipse ellipse{part.a, part.b, system.shapes.axes[i]};
   const Vec2 to_point = wall.point + displacement - system.bodies.motions[i].position;
-  switch (wall.shape) {
-    case Wall::Shape::line:
-      return contact_with_line(ellipse, to_point, wall.normal);
-    case Wall::Shape::segment:
-      return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
-    case Wall::Shape::arc:
-      break;
-  }
-  return contact_with_arc(system, grain, ellipse, wall, displacement);
+  if (wall.shape == Wall::Shape::line) return contact_with_line(ellipse, to_point, wall.normal);
+  return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
 }
 
 /// Surely, without a root.
@@ -119,8 +93,7 @@ PartGeometry meeting_of_part_with_wall(const GrainSystem& system, const Candidat
 
 }  // namespace
 
-EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch,
-                                           GrainOptions::EllipseLaw law) {
+EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   struct Symmetric {
     double xx, xy, yy;
   };
@@ -139,9 +112,7 @@ EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, V
   };
   const double room = 1 - product(branch, branch);
   if (!(room >= 0)) return {EllipseState::apart, -room, {}, {}, {}};
-  const AngleReading reading =
-      law == GrainOptions::EllipseLaw::enlarged_as_printed ? AngleReading::printed : AngleReading::mended;
-  const EnlargedEllipseContact contact = enlarged_ellipse_contact(i, j, branch, reading);
+  const EnlargedEllipseContact contact = enlarged_ellipse_contact(i, j, branch);
   const double square = product(contact.normal, contact.normal), half = product(contact.normal, branch);
   const double root = std::sqrt(half * half + square * room);
   EllipseContact result;

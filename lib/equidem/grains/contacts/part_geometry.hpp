@@ -41,7 +41,6 @@ Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t pa
 /// mean, that is the root of a quadratic equation. (The thesis sums the normal relative displacement from the step on
 /// in which the test first holds, (4.50).) The normal is not the gradient of this overlap: such contacts do not
 /// conserve energy. \return is_contact() where the test holds, else gap > 0 alone
-EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch,
-                                           GrainOptions::EllipseLaw law);
+EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch);
 
 }  // namespace equidem

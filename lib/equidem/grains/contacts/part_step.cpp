@@ -154,7 +154,7 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
       if (!candidate.touching) continue;
       if (verlet) {
         const TouchPlace place = place_before(candidate, pair);
-        end_contact<Law>(system, candidate, place, drift_of(system, candidate, place, place), sums.sums());
+        end_contact<Law>(system, candidate, place.arm_i, drift_of(system, candidate, place, place), sums.sums());
       } else {
         forget_contact(candidate, sums.lost);
       }
@@ -169,14 +169,10 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
           drift_of(system, candidate, place, candidate.steps > 0 ? place_before(candidate, pair) : place);
       pair.arm_i = geometry.arm_i;
       pair.arm_j = geometry.arm_j;
-      const auto others = [&] {
-        const double inverse_mass = inverse_tangential_mass(contact, 0);
-        return SlipByOthers{gain_of_slip(system, contact, inverse_mass), inverse_mass};
-      };
       push(system.bodies.impulses, contact,
            step_contact<Law, friction>(system, candidate, place, -dot(relative, geometry.normal),
                                        dot(relative, contact.tangent()), drift, sliding_of(candidate, pair, contact),
-                                       others, sums.sums()));
+                                       sums.sums()));
       continue;
     }
     const double closing = -dot(relative, geometry.normal);

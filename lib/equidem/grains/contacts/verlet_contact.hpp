@@ -4,7 +4,8 @@
 ///
 /// The kick J of an instant does work half with the velocity of the drift before it and half with that of the drift
 /// after it: the loss of a contact in a drift is 0.5 (J_before + J_now) times its speed, less the energy stored in its
-/// springs. No prediction is needed.
+/// springs. No prediction is needed. A contact that begins or ends within a drift has one of the two kicks: the ledger
+/// is of the first order of the step there.
 #pragma once
 
 #include <algorithm>
@@ -24,11 +25,6 @@ struct TouchPlace {
 struct ContactDrift {
   double closing = 0, slip = 0;  ///< m/s
   double overlap = 0;            ///< m
-};
-
-/// Change of slip velocity in a step by all forces but the contact's own, m/s, and 1/tangential mass, 1/kg.
-struct SlipByOthers {
-  double gain = 0, inverse_mass = 0;
 };
 
 /// Impulse of the spring in a whole kick, N s.
@@ -55,38 +51,30 @@ inline void push_wall_in_drift(const GrainSystem& system, const Candidate& candi
   push_wall(system, candidate.j, point, 0.5 * kicks, passed_velocity(system, candidate), sums);
 }
 
-/// End a contact without further loss.
+/// End a contact: its last kick does half its work with the velocity of the drift in which it ends.
 template <class Law>
-void end_contact(const GrainSystem& system, Candidate& candidate, const TouchPlace& place, const ContactDrift& drift,
+void end_contact(const GrainSystem& system, Candidate& candidate, Vec2 arm, const ContactDrift& drift,
                  ContactSums sums) {
-  TouchInstant end;
-  end.i = candidate.i;
-  end.j = candidate.j;
-  end.normal = place.normal;
-  end.arm_i = place.arm_i;
-  end.arm_j = place.arm_j;
-  end.closing = drift.closing;
-  end.slip = drift.slip;
-  end.part = part_of_drift(drift.overlap, -drift.closing, system.dt());
-  end.spring = spring_impulse<Law>(system, candidate, drift.overlap);
-  end.dashpot = candidate.impulse - end.spring;
-  end.tangential = candidate.tangential_impulse;
-  end.stored = 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-  end.pulls = candidate.attraction;
-  if (candidate.j < 0) push_wall_in_drift(system, candidate, place.arm_i, impulse_of(candidate), sums);
-  end_within_drift(system, end, sums);
+  const double spring = spring_impulse<Law>(system, candidate, drift.overlap);
+  if (candidate.impulse != 0) {
+    sums.lost.lost_dashpot += 0.5 * (candidate.impulse - spring) * drift.closing;
+  } else {  // the dashpot takes what the spring holds: k d^(p + 1)/(p + 1)
+    sums.lost.lost_dashpot += spring * drift.overlap / ((1 + Law::spring_power) * system.dt());
+  }
+  sums.lost.lost_release += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch -
+                            0.5 * candidate.tangential_impulse * drift.slip;
+  if (candidate.j < 0) push_wall_in_drift(system, candidate, arm, impulse_of(candidate), sums);
   candidate.stretch = 0;
   forget_contact(candidate, sums.lost);
 }
 
 /// One step of a contact; its state is stored in `candidate`.
 /// \param closing, slip velocities for the law, m/s
-/// \param others returns SlipByOthers: friction without a spring stops a slip but does not reverse it
 /// \return impulse on j
-template <class Law, bool friction, class Others>
+template <class Law, bool friction>
 [[gnu::always_inline]] inline Vec2 step_contact(const GrainSystem& system, Candidate& candidate, const TouchPlace& now,
                                                 double closing, double slip, const ContactDrift& drift,
-                                                const Sliding& sliding, const Others& others, ContactSums sums) {
+                                                const Sliding& sliding, ContactSums sums) {
   const double dt = system.dt();
   const bool begins = !candidate.touching;
   const double depth = now.overlap / system.length, sigma = closing * dt / system.length;
@@ -95,46 +83,27 @@ template <class Law, bool friction, class Others>
   const double spring = spring_impulse<Law>(system, candidate, now.overlap);
   const Vec2 pushed_before = begins ? Vec2{} : impulse_of(candidate);
 
-  const double part = begins ? part_of_drift(now.overlap, drift.closing, dt) : 1;
   double tangential = 0;
   SlidingStep slide;
   const double stretch_before = candidate.stretch;
   if constexpr (friction) {
     if (sliding.coefficient > 0) {
-      if (begins && system.options.integrator == GrainOptions::Integrator::corrected_verlet) {
-        candidate.stretch -= (1 - part) * slip * dt;
-      }
       const double normal_force = std::max(impulse, 0.0) / dt;
-      if (is_rigid(sliding)) {
-        const SlipByOthers by_others = others();
-        slide = sliding_step_midpoint(sliding, 0, slip + by_others.gain, by_others.inverse_mass, normal_force, dt);
-      } else {
-        // where bodies of parts begin to touch, or a simulation, no place before is known
-        slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt,
-                             (candidate.steps > 0 ? drift.slip : slip) * dt);
-      }
+      // where bodies of parts begin to touch, or a simulation, no place before is known
+      slide = sliding_step(sliding, candidate.stretch, slip, normal_force, dt,
+                           (candidate.steps > 0 ? drift.slip : slip) * dt);
       tangential = slide.force * dt;
       candidate.stretch = slide.stretch;
     }
   }
   if (begins) {
-    TouchInstant begin;
-    begin.i = candidate.i;
-    begin.j = candidate.j;
-    begin.normal = now.normal;
-    begin.arm_i = now.arm_i;
-    begin.arm_j = now.arm_j;
-    begin.closing = drift.closing;
-    begin.slip = drift.slip;
-    begin.part = part;
-    begin.spring = spring;
-    begin.dashpot = impulse - spring;
-    begin.decay = Law::dashpot(candidate.dissipation, depth);
-    begin.tangential = tangential;
-    begin.tangential_dashpot = slide.slides ? 0 : -sliding.dashpot * slip * dt;
-    begin.stored = 0.5 * sliding.stiffness * candidate.stretch * candidate.stretch;
-    begin.slides = slide.slides;
-    begin_within_drift(system, begin, sums);
+    sums.lost.lost_dashpot += 0.5 * (impulse - spring) * drift.closing;
+    if (slide.slides) {
+      sums.lost.lost_slip -=
+          0.5 * tangential * drift.slip + 0.5 * sliding.stiffness * candidate.stretch * candidate.stretch;
+    } else {
+      sums.lost.lost_tangential_dashpot += 0.5 * sliding.dashpot * slip * dt * drift.slip;
+    }
   } else {
     const double spring_before = spring_impulse<Law>(system, candidate, drift.overlap);
     sums.lost.lost_dashpot += 0.5 * drift.closing * ((candidate.impulse - spring_before) + (impulse - spring));
@@ -143,9 +112,7 @@ template <class Law, bool friction, class Others>
           0.5 * sliding.stiffness * (stretch_before - candidate.stretch) * (stretch_before + candidate.stretch);
       const double taken = released - 0.5 * (candidate.tangential_impulse + tangential) * drift.slip;
       if (slide.slides) {
-        const double drag = sliding.cap == FrictionCap::spring_alone ? sliding.dashpot * slip * drift.slip * dt : 0;
-        sums.lost.lost_slip += taken - drag;
-        sums.lost.lost_tangential_dashpot += drag;
+        sums.lost.lost_slip += taken;
       } else if (sliding.dashpot > 0) {
         sums.lost.lost_tangential_dashpot += taken;
       }

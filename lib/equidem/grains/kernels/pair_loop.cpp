@@ -7,7 +7,6 @@
 #include "equidem/grains/kernels/lane_sums.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
-#include "equidem/grains/kernels/touch_lanes.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem {
@@ -22,9 +21,8 @@ constexpr std::size_t groups_at_once = 8;
 /// Compile-time properties of a loop.
 struct PairLoopKind {
   bool friction = false;
-  bool equal = false;   ///< one law for all pairs, where the dashpot rests while contacts slide
+  bool equal = false;   ///< one law for all pairs
   bool verlet = false;  ///< friction by the explicit step, else by the midpoint rule
-  bool rigid = false;   ///< friction without springs
 };
 
 template <class Lanes>
@@ -32,9 +30,7 @@ struct LoopNumbers {
   LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
-  bool corrected = false;
   bool record = false;
-  const GrainSystem* system = nullptr;
   BlockSums* block = nullptr;
 };
 
@@ -46,7 +42,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, 
     const Lanes spring = load<Lanes>(laws->tangential_stiffness);
     const Lanes compliance = 1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1));
     return law_lanes(load<Lanes>(laws->stiffness), load<Lanes>(laws->least), load<Lanes>(laws->friction), spring,
-                     compliance, load<Lanes>(laws->beyond_cap), numbers.dt);
+                     compliance, numbers.dt);
   }
 }
 
@@ -101,7 +97,7 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
   } else {
     found.middle_opening = m[4] * nx + m[5] * ny;
   }
-  if constexpr (kind.friction && (kind.rigid || !kind.verlet)) {
+  if constexpr (kind.friction && !kind.verlet) {
     found.middle_slip = m[5] * nx - m[4] * ny;
     found.middle_rims = m[6];
   }
@@ -120,25 +116,7 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const 
   return 0.5 * (now + (geometry.along - rims * square) * inverse);
 }
 
-/// The levers of the contacts, for count_instants().
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE void add_levers(const GrainSystem& system, const PairGroup& group,
-                                      const Geometry<Lanes>& geometry, Touches<Lanes>& touches) {
-  PairLanes radius;
-  for (std::size_t k = 0; k < lanes_of_pairs; ++k)
-    radius[k] = system.bodies.constants[static_cast<std::size_t>(group.i[k])].radius;
-  const Lanes lever = load<Lanes>(radius) / load<Lanes>(group.reach) * geometry.distance;
-  const Lanes other = lever - geometry.distance;
-  touches.nx = geometry.nx;
-  touches.ny = geometry.ny;
-  touches.arm_i_x = lever * geometry.nx;
-  touches.arm_i_y = lever * geometry.ny;
-  touches.arm_j_x = other * geometry.nx;
-  touches.arm_j_y = other * geometry.ny;
-}
-
-/// A lane apart gives zeros: its impulse and its stretch are zero, and so is the yield of friction. What
-/// dashpots beyond a cap do is chosen in every step, the rest where contacts begin or end.
+/// A lane apart gives zeros: its impulse and its stretch are zero, and so is the yield of friction.
 template <class Law, PairLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geometry<Lanes>& geometry, PairGroup& group,
                                    PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums<Lanes>& sums,
@@ -181,19 +159,14 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
     outcome.normal_loss = (impulse - elastic) * mean_closing;
   }
   sums.deepest = larger(deep, sums.deepest);
-  Lanes slip{}, tangential_kick{}, sticking_dashpot{}, kept{};
-  Bits<Lanes> slides{};
   Lanes px = impulse * nx, py = impulse * ny;
   if constexpr (kind.friction) {
-    Lanes stretch{}, slip_dashpot{};
-    if constexpr (!kind.rigid) {
-      stretch = load<Lanes>(slips->stretch);
-      slip_dashpot = load<Lanes>(slips->dashpot);
-    }
+    auto stretch = load<Lanes>(slips->stretch);
+    const auto slip_dashpot = load<Lanes>(slips->dashpot);
     const auto tangential_before = load<Lanes>(slips->impulse);
     const Lanes& share = geometry.share;
     Lanes velocity, mean_slip{}, mobility{};
-    if constexpr (kind.rigid || !kind.verlet) {
+    if constexpr (!kind.verlet) {
       mobility = half_mobility + load<Lanes>(slips->half_turning) * geometry.square;
       // without this contact's own part in it
       velocity = geometry.middle_slip - share * geometry.middle_rims - mobility * tangential_before;
@@ -201,24 +174,14 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
     if constexpr (kind.verlet) {
       const Lanes rims = share * geometry.rims;
       const Lanes now = geometry.along - rims;
-      velocity = kind.rigid ? 2 * velocity - now : now;
+      velocity = now;
       mean_slip = mean_slip_of(geometry, rims, now, mean_closing, dt);
-      if (!kind.rigid && (changes || numbers.now == 0)) [[unlikely]]  // as of parts, whose places before are not known
+      if (changes || numbers.now == 0) [[unlikely]]  // as of parts, whose places before are not known
         stretch += only(numbers.now == 0 ? touch : begun, (velocity - mean_slip) * dt);
-      if (!kind.rigid && changes && numbers.corrected) [[unlikely]] {
-        const Lanes way = mean_closing * dt;
-        const Lanes before_touch = only(begun & negative(overlap - way), 1 - overlap / way);
-        stretch -= before_touch * velocity * dt;
-      }
     }
     const Lanes yield = law.friction * larger(impulse, zero);
-    Tangent<Lanes> tangent;
-    if constexpr (kind.rigid) {
-      tangent = slide_without_spring<kind.verlet>(law, velocity, mean_slip, mobility, tangential_before, yield);
-    } else {
-      tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
-                                               tangential_before, yield, dt);
-    }
+    Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
+                                                            tangential_before, yield, dt);
     if constexpr (!kind.equal) tangent.impulse = only(touch, tangent.impulse);
     const Lanes tangential = -tangent.impulse;
     if (changes || !kind.equal) {
@@ -227,17 +190,18 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
       tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
     }
     if (changes) [[unlikely]] {
+      const Lanes stored = law.half_spring * stretch * stretch;
       if constexpr (kind.verlet) {
-        slip = mean_slip;
-        slides = tangent.slides;
-        tangential_kick = choose(begun, tangential, tangential_before);
-        sticking_dashpot = only(begun & ~slides, -slip_dashpot * velocity);
-        kept = choose(begun, tangent.stretch, stretch);
+        const FirstSlip<Lanes> first =
+            first_slip_of(law, tangent, slip_dashpot * velocity, tangential, mean_slip, begun);
+        tangent.slip_loss += first.slip_loss;
+        tangent.dashpot_loss += first.dashpot_loss;
+        add_release(only(ended, stored - 0.5 * tangential_before * mean_slip), sums);
       } else {
-        add_release(only(ended, law.half_spring * stretch * stretch), sums);
+        add_release(only(ended, stored), sums);
       }
     }
-    if constexpr (!kind.rigid) store(tangent.stretch, slips->stretch);
+    store(tangent.stretch, slips->stretch);
     store(tangential, slips->impulse);
     outcome.slip_loss = tangent.slip_loss;
     outcome.dashpot_loss = tangent.dashpot_loss;
@@ -248,24 +212,9 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
   outcome.px = px;
   outcome.py = py;
   if constexpr (kind.verlet) {
-    if (changes) [[unlikely]] {
-      Touches<Lanes> touches{.begun = begun,
-                             .ended = ended,
-                             .slides = slides,
-                             .closing = mean_closing,
-                             .slip = slip,
-                             .deep = choose(begun, deep, deep_before),
-                             .spring = choose(begun, elastic, elastic_before),
-                             .impulse = choose(begun, impulse, impulse_before),
-                             .dashpot = dashpot,
-                             .mobility = 2 * half_mobility,
-                             .least = law.least,
-                             .tangential = tangential_kick,
-                             .tangential_dashpot = sticking_dashpot,
-                             .stored = law.half_spring * kept * kept};
-      add_levers(*numbers.system, group, geometry, touches);
-      count_instants(*numbers.system, group.i, group.j, touches, *numbers.block);
-    }
+    if (changes) [[unlikely]]
+      outcome.normal_loss += normal_loss_at_ends<Law>(begun, ended, mean_closing, impulse - elastic, impulse_before,
+                                                      elastic_before, deep_before, dt);
   }
   if (numbers.record) {
     store(overlap, records->overlap);
@@ -328,13 +277,8 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const PairLaw& law = near.law;
   const LoopNumbers<Lanes> numbers{
       law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
-                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), Lanes{}, system.dt()),
-      system.dt(),
-      system.step + (system.options.verlet() ? 0 : 1),
-      system.options.integrator == GrainOptions::Integrator::corrected_verlet,
-      near.record,
-      &system,
-      &system.bodies.sums[b]};
+                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
+      system.dt(), system.step + (system.options.verlet() ? 0 : 1), near.record, &system.bodies.sums[b]};
   block.records.resize(near.record ? block.groups.size() : 0);
   LaneSums<Lanes> sums;
   const PairBody* bodies = near.bodies.data();
@@ -371,10 +315,6 @@ NearPairs::Loop choose_pair_loop() {
 
 template <class Law, bool equal>
 NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
-  if (system.contacts.near.rigid) {
-    return system.options.verlet() ? choose_pair_loop<Law, PairLoopKind{true, equal, true, true}>()
-                                   : choose_pair_loop<Law, PairLoopKind{true, equal, false, true}>();
-  }
   if (system.options.verlet()) {
     return system.friction ? choose_pair_loop<Law, PairLoopKind{true, equal, true}>()
                            : choose_pair_loop<Law, PairLoopKind{false, equal, true}>();

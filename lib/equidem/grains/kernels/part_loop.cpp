@@ -7,7 +7,6 @@
 #include "equidem/grains/kernels/lane_sums.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
-#include "equidem/grains/kernels/touch_lanes.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem {
@@ -25,8 +24,7 @@ struct PartLoopNumbers {
   LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
-  bool corrected = false, record = false;
-  const GrainSystem* system = nullptr;
+  bool record = false;
   BlockSums* block = nullptr;
   std::int32_t end = 0;  ///< of the bodies of the block
 };
@@ -50,8 +48,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbe
     const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
     return law_lanes(column<Lanes>(group, PartGroup::stiffness), column<Lanes>(group, PartGroup::least),
                      column<Lanes>(group, PartGroup::friction), spring,
-                     1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)),
-                     column<Lanes>(group, PartGroup::beyond_cap), numbers.dt);
+                     1 / choose(negative(Lanes{} - spring), spring, all<Lanes>(1)), numbers.dt);
   }
 }
 
@@ -127,6 +124,9 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     deep_before = larger(column<Lanes>(group, PartGroup::overlap), Lanes{});
     elastic_before = Law::spring(law.stiffness, deep_before);
     normal_loss = only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before) + (impulse - elastic)));
+    if (changes) [[unlikely]]
+      normal_loss += normal_loss_at_ends<Law>(begun, ended, mean_closing, impulse - elastic, impulse_before,
+                                              elastic_before, deep_before, dt);
   } else {
     // of the mean over the step the part of this contact is known, not only that of the last step
     const Lanes mobility = inverse_mass + across_i * across_i * turning_i + across_j * across_j * turning_j;
@@ -137,8 +137,6 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
   sums.deepest = larger(deep, sums.deepest);
   Vectors<Lanes> push = impulse * n;
   Lanes torque_i = impulse * across_i, torque_j = impulse * across_j;
-  Lanes mean_slip{}, tangential_kick{}, sticking_dashpot{}, stored{};
-  Bits<Lanes> slides{};
   if constexpr (kind.friction) {
     const Lanes along_i = dot(at.arm_i, n), along_j = dot(at.arm_j, n);
     const Lanes rim_i = along_i + at.sunk_i, rim_j = along_j - at.sunk_j;
@@ -146,79 +144,46 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
     const Lanes slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / at_rim);
     const auto tangential_before = column<Lanes>(group, PartGroup::tangential_impulse);
     const Lanes yield = law.friction * larger(impulse, Lanes{});
-    auto stretch = column<Lanes>(group, PartGroup::stretch);
-    Lanes velocity, mobility{};
+    const auto stretch = column<Lanes>(group, PartGroup::stretch);
+    Lanes velocity, mobility{}, mean_slip{};
     if constexpr (kind.verlet) {
       velocity = dot(s.velocity, t) + (s.spin_j * along_j - s.spin_i * along_i);
       const Bits<Lanes> first = numbers.now == 0 ? touch : begun;  // no place before is known
       mean_slip = choose(first, velocity, slip_of(s, normal_before, arm_i_before, arm_j_before));
       mean_slip = choose(ended, mean_slip, 0.5 * (velocity + mean_slip));
-      if (changes && numbers.corrected) [[unlikely]] {
-        const Lanes way = mean_closing * dt;
-        const Lanes before_touch = only(begun & negative(deep - way), 1 - deep / way);
-        stretch -= before_touch * velocity * dt;
-      }
     } else {
       mobility = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
       // without this contact's own part in it
       velocity =
           dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i) - mobility * tangential_before;
     }
-    const Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip,
-                                                                  mobility, tangential_before, yield, dt);
+    Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
+                                                            tangential_before, yield, dt);
     const Lanes tangential = only(touch, -tangent.impulse);
     store(only(touch, tangent.stretch), group.numbers[PartGroup::stretch]);
     store(tangential, group.numbers[PartGroup::tangential_impulse]);
-    Bits<Lanes> lasting = touch;
-    if constexpr (kind.verlet) {
-      lasting = touch & alive;
-      slides = tangent.slides;
-      tangential_kick = choose(begun, tangential, tangential_before);
-      sticking_dashpot = only(begun & ~slides, -slip_dashpot * velocity);
-      const Lanes kept = choose(begun, tangent.stretch, stretch);
-      stored = law.half_spring * kept * kept;
-    } else if (changes) {
-      add_release(only(ended, law.half_spring * stretch * stretch), sums);
+    const Bits<Lanes> lasting = kind.verlet ? touch & alive : touch;
+    tangent.slip_loss = only(lasting, tangent.slip_loss);
+    tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
+    if (changes) [[unlikely]] {
+      const Lanes stored = law.half_spring * stretch * stretch;
+      if constexpr (kind.verlet) {
+        const FirstSlip<Lanes> first =
+            first_slip_of(law, tangent, slip_dashpot * velocity, tangential, mean_slip, begun);
+        tangent.slip_loss += first.slip_loss;
+        tangent.dashpot_loss += first.dashpot_loss;
+        add_release(only(ended, stored - 0.5 * tangential_before * mean_slip), sums);
+      } else {
+        add_release(only(ended, stored), sums);
+      }
     }
-    add_losses(normal_loss, only(lasting, tangent.slip_loss), only(lasting, tangent.dashpot_loss), sums);
+    add_losses(normal_loss, tangent.slip_loss, tangent.dashpot_loss, sums);
     push = push + tangential * t;
     torque_i += tangential * along_i;
     torque_j += tangential * along_j;
   } else {
     store(Lanes{}, group.numbers[PartGroup::tangential_impulse]);  // the friction of an earlier stage may have left one
     add_losses(normal_loss, sums);
-  }
-  if constexpr (kind.verlet) {
-    if (changes) [[unlikely]] {
-      std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
-      for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-        i[k] = body_of_part[group.i[k]];
-        j[k] = body_of_part[group.j[k]];
-      }
-      const Vectors<Lanes> normal = choose(begun, n, normal_before);
-      const Vectors<Lanes> arm_i = choose(begun, at.arm_i, arm_i_before), arm_j = choose(begun, at.arm_j, arm_j_before);
-      const Touches<Lanes> touches{.begun = begun,
-                                   .ended = ended,
-                                   .slides = slides,
-                                   .nx = normal.x,
-                                   .ny = normal.y,
-                                   .arm_i_x = arm_i.x,
-                                   .arm_i_y = arm_i.y,
-                                   .arm_j_x = arm_j.x,
-                                   .arm_j_y = arm_j.y,
-                                   .closing = mean_closing,
-                                   .slip = mean_slip,
-                                   .deep = choose(begun, deep, deep_before),
-                                   .spring = choose(begun, elastic, elastic_before),
-                                   .impulse = choose(begun, impulse, impulse_before),
-                                   .dashpot = dashpot,
-                                   .mobility = inverse_mass,
-                                   .least = law.least,
-                                   .tangential = tangential_kick,
-                                   .tangential_dashpot = sticking_dashpot,
-                                   .stored = stored};
-      count_instants(*numbers.system, i, j, touches, *numbers.block);
-    }
   }
   if (kind.verlet || numbers.record) {
     store(at.overlap, group.numbers[PartGroup::overlap]);
@@ -254,12 +219,10 @@ void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, st
   const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
   const PartLoopNumbers<Lanes> numbers{
       law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
-                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), Lanes{}, system.dt()),
+                all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
       system.dt(),
       system.step + (kind.verlet ? 0 : 1),
-      system.options.integrator == GrainOptions::Integrator::corrected_verlet,
       system.contacts.near.record,
-      &system,
       &system.bodies.sums[block],
       static_cast<std::int32_t>(system.bodies.blocks.end(block))};
   LaneSums<Lanes> sums;

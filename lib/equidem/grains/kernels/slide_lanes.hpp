@@ -17,17 +17,15 @@ struct LawLanes {
   Lanes spring;       ///< k_T dt, N s/m
   Lanes rate;         ///< k_T dt²/2, kg
   Lanes slack;        ///< 1/(k_T dt), m/(N s); finite without a spring, too
-  Lanes beyond_cap;   ///< as in PairLaw
 };
 
 /// \param tangential k_T, N/m
 /// \param compliance 1/k_T, m/N
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_lanes(const Lanes& stiffness, const Lanes& least, const Lanes& friction,
-                                                const Lanes& tangential, const Lanes& compliance,
-                                                const Lanes& beyond_cap, double dt) {
-  return {dt * stiffness,        least,     friction, 0.5 * tangential, dt * tangential, (0.5 * dt * dt) * tangential,
-          (1 / dt) * compliance, beyond_cap};
+                                                const Lanes& tangential, const Lanes& compliance, double dt) {
+  return {dt * stiffness,       least, friction, 0.5 * tangential, dt * tangential, (0.5 * dt * dt) * tangential,
+          (1 / dt) * compliance};
 }
 
 template <class Lanes>
@@ -37,7 +35,7 @@ struct Tangent {
 };
 
 /// sliding_step (verlet) and sliding_step_midpoint for contacts that have a spring, or no friction.
-/// \tparam equal the dashpot is inactive while contacts slide, and all have a spring
+/// \tparam equal all have a spring
 /// \param dashpot times dt, kg
 /// \param velocity slip at the start of the step; midpoint rule: with half the change by other forces
 /// \param mean_slip Verlet schemes: mean over the drift before, which stretches the spring
@@ -56,46 +54,50 @@ EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide(const LawLanes<Lanes>& law, const Lan
   } else {
     resistance = law.spring * (stretch + mean_slip * dt) + dashpot * velocity;
   }
-  Lanes capped = resistance;
-  if constexpr (!equal) {
-    if constexpr (!verlet) mean = velocity - mobility * resistance;
-    capped -= law.beyond_cap * dashpot * mean;
-  }
-  const Bits<Lanes> slides = negative(yield - magnitude(capped));
-  const Lanes friction = equal ? within(resistance, yield) : choose(slides, with_sign(yield, capped), resistance);
-  Lanes drag{}, impulse = friction;
+  const Bits<Lanes> slides = negative(yield - magnitude(resistance));
+  const Lanes friction = equal ? within(resistance, yield) : choose(slides, with_sign(yield, resistance), resistance);
   if constexpr (!verlet) mean = velocity - mobility * friction;
-  if constexpr (!equal) {
-    if constexpr (!verlet) {
-      mean = choose(slides, mean / (1 + law.beyond_cap * mobility * dashpot), mean);
-    }
-    drag = only(slides, law.beyond_cap * dashpot * mean);
-    impulse += drag;
-  }
   const Lanes moved = stretch + (verlet ? mean_slip : mean) * dt;
   Lanes end = choose(slides, within(moved, yield * law.slack), moved);
   if constexpr (!equal) end = only(negative(Lanes{} - law.spring), end);
   const Lanes released = law.half_spring * (stretch - end) * (stretch + end);
   if constexpr (!verlet) {
-    const Lanes dragged = equal ? only(~slides, dashpot * mean) : choose(slides, drag, dashpot * mean);
-    return {impulse, end, only(slides, friction * mean + released), dragged * mean, slides};
+    const Lanes dragged = only(~slides, dashpot * mean);
+    return {friction, end, only(slides, friction * mean + released), dragged * mean, slides};
   }
   // half of the kicks before and after the drift, less the energy stored in the spring
-  const Lanes loss = 0.5 * mean_slip * (impulse - before) + released;
-  const Lanes dragged = drag * mean_slip;
-  return {impulse, end, only(slides, loss - dragged), choose(slides, dragged, only(negative(Lanes{} - dashpot), loss)),
-          slides};
+  const Lanes loss = 0.5 * mean_slip * (friction - before) + released;
+  return {friction, end, only(slides, loss), only(~slides & negative(Lanes{} - dashpot), loss), slides};
 }
 
-/// Tangential law of contacts without a spring: the impulse that stops the slip within the step, limited by friction.
-/// \param velocity,mobility as for the midpoint rule, in every scheme
-template <bool verlet, class Lanes>
-EQUIDEM_ALWAYS_INLINE Tangent<Lanes> slide_without_spring(const LawLanes<Lanes>& law, const Lanes& velocity,
-                                                          const Lanes& mean_slip, const Lanes& mobility,
-                                                          const Lanes& before, const Lanes& yield) {
-  const Lanes impulse = within(velocity / (2 * mobility), yield);
-  const Lanes loss = verlet ? 0.5 * mean_slip * (impulse - before) : impulse * (velocity - mobility * impulse);
-  return {impulse, Lanes{}, loss, Lanes{}, negative(Lanes{} - law.friction)};
+/// Losses of the tangential law in the drift in which contacts begin, where their first kick does half its work.
+template <class Lanes>
+struct FirstSlip {
+  Lanes slip_loss, dashpot_loss;
+};
+
+/// \param drag impulse of the dashpot \param tangential impulse on j
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE FirstSlip<Lanes> first_slip_of(const LawLanes<Lanes>& law, const Tangent<Lanes>& tangent,
+                                                     const Lanes& drag, const Lanes& tangential, const Lanes& mean_slip,
+                                                     const Bits<Lanes>& begun) {
+  const Lanes stored = law.half_spring * tangent.stretch * tangent.stretch;
+  return {only(begun & tangent.slides, -(0.5 * tangential * mean_slip + stored)),
+          only(begun & ~tangent.slides, 0.5 * drag * mean_slip)};
+}
+
+/// Losses of normal dashpots in the drift in which contacts begin or end, with one kick of the two. Where a dashpot has
+/// cut the force before the end it takes what the spring holds, k d^(p + 1)/(p + 1).
+/// \param viscous impulse of the dashpot now
+template <class Law, class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes normal_loss_at_ends(const Bits<Lanes>& begun, const Bits<Lanes>& ended,
+                                                const Lanes& mean_closing, const Lanes& viscous,
+                                                const Lanes& impulse_before, const Lanes& elastic_before,
+                                                const Lanes& deep_before, double dt) {
+  const Bits<Lanes> given = negative(impulse_before) | negative(Lanes{} - impulse_before);
+  const Lanes last = choose(given, 0.5 * mean_closing * (impulse_before - elastic_before),
+                            elastic_before * deep_before / ((1 + Law::spring_power) * dt));
+  return only(begun, 0.5 * mean_closing * viscous) + only(ended, last);
 }
 
 }  // namespace equidem::eight

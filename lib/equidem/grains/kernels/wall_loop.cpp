@@ -149,12 +149,8 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
     if constexpr (friction) {
       Lanes stiffness, tangential_stiffness, dashpot, coefficient;
       columns_of(springs, stiffness, tangential_stiffness, dashpot, coefficient);
-      PairLanes beyond_cap;
-      for (std::size_t k = 0; k < lanes_of_pairs; ++k)
-        beyond_cap[k] = near.contact[k]->sliding.cap == FrictionCap::spring_alone ? 1 : 0;
       const Lanes compliance = 1 / choose(negative(zero - tangential_stiffness), tangential_stiffness, all<Lanes>(1));
-      const LawLanes<Lanes> law =
-          law_lanes(zero, zero, coefficient, tangential_stiffness, compliance, load<Lanes>(beyond_cap), dt);
+      const LawLanes<Lanes> law = law_lanes(zero, zero, coefficient, tangential_stiffness, compliance, dt);
       const Lanes mobility = 0.5 * (inverse_mass + radius * radius * inverse_moment);
       // at the middle of the step as other forces make it: half of what the last step did
       const Lanes middle_u = wall_u - body[4] - half_fall.x, middle_v = wall_v - body[5] - half_fall.y;
@@ -201,24 +197,10 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
   for (const double one : deep) sums.deepest = std::max(sums.deepest, one);
 }
 
-/// Whether friction at a wall has a spring wherever there is any, as slide() needs.
-bool have_springs(const GrainScene& scene) {
-  std::vector<bool> met(static_cast<std::size_t>(scene.kinds));
-  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
-  for (const Wall& wall : scene.walls) {
-    for (int kind = 0; kind < scene.kinds; ++kind) {
-      const PairProperties& pair = scene.between(kind, wall.kind);
-      if (met[static_cast<std::size_t>(kind)] && pair.friction > 0 && pair.tangential_ratio == 0) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 CandidateLoop wall_loop(const GrainSystem& system) {
   if (!system.contacts.near.active || !system.shapes.parts.empty() || system.options.verlet()) return nullptr;
-  if (system.friction && !have_springs(system.scene)) return nullptr;
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
     if constexpr (Law::kind == LawKind::force) {
       const auto choose = [&]<bool friction>() {

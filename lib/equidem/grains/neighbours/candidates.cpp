@@ -62,7 +62,6 @@ void set_constants(const GrainSystem& system, Candidate& candidate) {
   if (system.friction && properties.friction > 0) {
     candidate.sliding.coefficient = properties.friction;
     candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * length_factor;
-    candidate.sliding.cap = properties.cap;
     // of bodies that just touch: it must not depend on where they were when they were found
     const ContactGeometry geometry{0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[other].radius : 0};
     const double mass = 1 / inverse_tangential_mass(system, candidate, geometry);

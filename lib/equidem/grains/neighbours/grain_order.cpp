@@ -16,7 +16,7 @@ auto place(const Grain& grain) {
 
 auto place(const Wall& wall) {
   return std::tuple(static_cast<int>(wall.shape), wall.point.x, wall.point.y, wall.normal.x, wall.normal.y, wall.end.x,
-                    wall.end.y, wall.radius, wall.from, wall.to, wall.kind);
+                    wall.end.y, wall.kind);
 }
 
 /// Clumps in one place differ by their discs, not by the caller's number of them.

@@ -20,8 +20,7 @@ constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
 PairLaw law_of(const Candidate& candidate) {
   return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
-          candidate.sliding.coefficient, candidate.sliding.stiffness,
-          candidate.sliding.cap == FrictionCap::spring_alone ? 1.0 : 0.0};
+          candidate.sliding.coefficient, candidate.sliding.stiffness};
 }
 
 /// All kinds except those of walls only.
@@ -37,19 +36,6 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
     }
   }
   return pairs;
-}
-
-/// Which pairs of grains with friction there are.
-struct FrictionKinds {
-  bool with_springs = false, without_springs = false;
-};
-
-FrictionKinds friction_kinds(const GrainScene& scene) {
-  FrictionKinds found;
-  for (const PairProperties* pair : pairs_of_grains(scene)) {
-    if (pair->friction > 0) (pair->tangential_ratio > 0 ? found.with_springs : found.without_springs) = true;
-  }
-  return found;
 }
 
 /// The lists of a block as they come to be, from lanes of the lists before and from new pairs.
@@ -123,7 +109,6 @@ class PairLists {
       laws.least[k] = law.least;
       laws.friction[k] = law.friction;
       laws.tangential_stiffness[k] = law.tangential_stiffness;
-      laws.beyond_cap[k] = law.beyond_cap;
     }
   }
 
@@ -167,7 +152,7 @@ class PairLists {
     }
     if (!equal_) {
       copy(laws_[g], from, near_.laws.back(), to, &PairLaws::stiffness, &PairLaws::least, &PairLaws::friction,
-           &PairLaws::tangential_stiffness, &PairLaws::beyond_cap);
+           &PairLaws::tangential_stiffness);
     }
     if (!records_.empty()) {
       copy(records_[g], from, near_.records.back(), to, &PairRecords::overlap, &PairRecords::closing,
@@ -239,15 +224,10 @@ std::size_t NearPairs::bytes() const {
   return sum;
 }
 
-bool eight_at_a_time(const GrainSystem& system) {
-  return gives_force(system.options.law) && !friction_kinds(system.scene).without_springs;
-}
-
 std::optional<PairLaw> common_law(const GrainSystem& system) {
   const std::vector<const PairProperties*> pairs = pairs_of_grains(system.scene);
   const bool equal = std::all_of(pairs.begin(), pairs.end(), [&](const PairProperties* pair) {
-    const bool plain =
-        pair->stiffness > 0 && (!system.friction || (pair->friction > 0 && pair->cap == FrictionCap::whole_force));
+    const bool plain = pair->stiffness > 0 && (!system.friction || pair->friction > 0);
     return plain && *pair == *pairs[0];
   });
   if (!equal) return {};
@@ -267,10 +247,7 @@ void prepare_near_pairs(GrainSystem& system) {
   const std::vector<Grain>& grains = system.scene.grains;
   const auto discs =
       std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (discs < 2 || !gives_force(system.options.law)) return;
-  const FrictionKinds kinds_of_friction = friction_kinds(system.scene);
-  if (kinds_of_friction.without_springs && (kinds_of_friction.with_springs || !system.shapes.parts.empty())) return;
-  near.rigid = kinds_of_friction.without_springs;
+  if (discs < 2 || !gives_force(system.options.law) || system.options.one_by_one) return;
   near.active = true;
   if (const std::optional<PairLaw> law = common_law(system)) {
     near.equal = true;

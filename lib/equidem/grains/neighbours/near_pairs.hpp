@@ -63,10 +63,9 @@ struct PairLaw {
   double least = 0;                 ///< least normal impulse: 0, or minus infinity if contacts may attract
   double friction = 0;              ///< mu
   double tangential_stiffness = 0;  ///< N/m
-  double beyond_cap = 0;            ///< share of the dashpot force that is added to the friction limit: 0 or 1
 };
 struct alignas(64) PairLaws {
-  PairLanes stiffness, least, friction, tangential_stiffness, beyond_cap;
+  PairLanes stiffness, least, friction, tangential_stiffness;
 };
 
 /// Data of the last step for contacts().
@@ -96,7 +95,6 @@ struct NearPairs {
 
   bool active = false;  ///< the scene has such pairs
   bool equal = false;   ///< one law for all pairs
-  bool rigid = false;   ///< friction without any tangential spring
   bool record = false;  ///< record the present step for contacts()
   PairLaw law;          ///< law of all pairs, if equal
   Loop loop = nullptr;
@@ -108,11 +106,7 @@ struct NearPairs {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Whether contacts of parts can be vectorized: a force law, no contact that always slides.
-bool eight_at_a_time(const GrainSystem& system);
-
-/// The law of all pairs of grains, where they have the same one, contacts stick by a spring if there is friction, and
-/// dashpots rest while contacts slide.
+/// The law of all pairs of grains, where they have the same one, and contacts stick by a spring if there is friction.
 std::optional<PairLaw> common_law(const GrainSystem& system);
 
 /// Margin of near lists, for bodies of a size (discs: the radius) that move by about `reach` in a step.

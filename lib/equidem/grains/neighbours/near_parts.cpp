@@ -90,7 +90,6 @@ class NewList {
     set(PartGroup::tangential_stiffness, candidate.sliding.stiffness);
     set(PartGroup::tangential_damping,
         2 * system_.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness));
-    set(PartGroup::beyond_cap, candidate.sliding.cap == FrictionCap::spring_alone ? 1 : 0);
     set(PartGroup::normal_x, apart.x);
     set(PartGroup::normal_y, apart.y);
   }
@@ -275,8 +274,8 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 }
 
 void prepare_near_parts(GrainSystem& system) {
-  if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !eight_at_a_time(system)) return;
-  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
+  if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !gives_force(system.options.law)) return;
+  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact || system.options.one_by_one) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.law = common_law(system);

@@ -59,7 +59,6 @@ struct alignas(64) PartGroup {
     least,      ///< least normal impulse: 0, or minus infinity if contacts may attract
     friction,
     tangential_stiffness,
-    beyond_cap,  ///< share of the dashpot force that is added to the friction limit: 0 or 1
     // set if NearPairs::record
     overlap,
     closing,

@@ -23,7 +23,7 @@ double longest_turn(const GrainSystem& system);
 
 /// Pairs of parts that come nearer than the margin, in their order.
 std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j);
-/// Pairs of the parts of a body with a wall that come nearer than the margin; ellipses at a segment or an arc by their
+/// Pairs of the parts of a body with a wall that come nearer than the margin; ellipses at a segment by their
 /// bounding circle.
 std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall);
 

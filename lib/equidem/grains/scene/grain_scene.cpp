@@ -66,6 +66,11 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
                           pair.tangential_ratio, pair.tangential_damping),
               "negative ones would feed the motion", "Give 0 or more");
   }
+  if (gives_force(options.law) && pair.friction > 0 && !(pair.tangential_ratio > 0)) {
+    bad_input(fmt::format("friction {} is given without a tangential spring", pair.friction),
+              fmt::format("contacts by {} stick by one", to_string(options.law)),
+              "Give tangential_ratio > 0, such as 2/7, or friction 0");
+  }
   if (pair.tangential_damping > 0 && !(pair.tangential_ratio > 0)) {
     bad_input("tangential damping is given without a tangential spring", "it is measured by that spring",
               "Give tangential_ratio > 0");
@@ -246,10 +251,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_laws_of_shapes(scene, options);
   if (!gives_force(options.law) && options.verlet()) {
-    bad_input(fmt::format("{} is asked for with the law \"{}\"",
-                          options.integrator == GrainOptions::Integrator::velocity_verlet ? "velocity_verlet"
-                                                                                          : "corrected_verlet",
-                          to_string(options.law)),
+    bad_input(fmt::format("velocity_verlet is asked for with the law \"{}\"", to_string(options.law)),
               "that law makes the step itself", "Leave the scheme out, or use " + names_of_laws(LawKind::force));
   }
   if (!std::isfinite(scene.gravity.x + scene.gravity.y)) {

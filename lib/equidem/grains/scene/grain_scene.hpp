@@ -84,11 +84,10 @@ struct PairProperties {
   double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_step.hpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
-  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). With friction > 0 and a value of 0 the contact always slides:
-  /// Coulomb's law regularized only by the step.
+  /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). Laws that give a force need more than 0 with
+  /// friction; with 0 other laws have contacts that always slide.
   double tangential_ratio = 0;
   double tangential_damping = 0;  ///< zeta_T: dashpot 2 zeta_T sqrt(m kT), m the effective tangential mass
-  FrictionCap cap = FrictionCap::whole_force;
   bool operator==(const PairProperties&) const = default;
 };
 
@@ -108,14 +107,12 @@ struct GrainScene : AnyScene {
 };
 
 struct GrainOptions {
-  NormalLaw law = NormalLaw::exact_flow;
+  NormalLaw law = NormalLaw::linear_dashpot;
   /// Integrator of the force laws; exact_flow and the maps have their own step.
   enum class Integrator {
     semi_implicit_euler,  ///< v' = v + a(x, v) dt, x' = x + v' dt; gravity is added after the contact force (the
                           ///< paper's runs)
     velocity_verlet,      ///< half kick, drift, force with the velocities of the half step, half kick (LAMMPS)
-    corrected_verlet,     ///< velocity_verlet, corrected for contacts that begin or end within a drift
-                          ///< (touch_instants.hpp)
   } integrator = Integrator::semi_implicit_euler;
   [[nodiscard]] bool verlet() const { return integrator != Integrator::semi_implicit_euler; }
   double time_step = 0;         ///< s, > 0
@@ -123,18 +120,13 @@ struct GrainOptions {
   double margin = 0;            ///< margin of the neighbour lists, m; 0: chosen from speeds and density
   /// Contact detection of two ellipses, or of an ellipse and a disc.
   enum class EllipseLaw {
-    exact,                ///< closest points and common normal (ellipse_contact.hpp)
-    enlarged_as_printed,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
-    enlarged_mended,      ///< as enlarged_as_printed, with the quadrants of the angles corrected
+    exact,     ///< closest points and common normal (ellipse_contact.hpp)
+    enlarged,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
   } ellipse_law = EllipseLaw::exact;
-  /// Integration of the dashpots of bonds over a step.
-  enum class BondStep {
-    exact,  ///< decay exp(-C t/m) of each bond under the mean of all other forces, bond after bond: no step limit
-    explicit_euler,  ///< velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): step limit (bond_step.hpp)
-  } bond_step = BondStep::exact;
   /// Bodies of a block, the work that a thread does at a time (body_blocks.hpp); 0: chosen from the number of bodies,
   /// one block of few. The order of sums, and so the last bits, depend on it.
   std::size_t bodies_per_block = 0;
+  bool one_by_one = false;      ///< contacts one by one instead of eight at a time: an oracle for tests
   bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
 };
 
@@ -143,23 +135,14 @@ struct EnumNames<GrainOptions::Integrator> {
   using enum GrainOptions::Integrator;
   static constexpr const char* what = "integrator";
   static constexpr NamedValue<GrainOptions::Integrator> list[] = {{semi_implicit_euler, "semi_implicit_euler"},
-                                                                  {velocity_verlet, "velocity_verlet"},
-                                                                  {corrected_verlet, "corrected_verlet"}};
+                                                                  {velocity_verlet, "velocity_verlet"}};
 };
 
 template <>
 struct EnumNames<GrainOptions::EllipseLaw> {
   using enum GrainOptions::EllipseLaw;
   static constexpr const char* what = "contact of ellipses";
-  static constexpr NamedValue<GrainOptions::EllipseLaw> list[] = {
-      {exact, "exact"}, {enlarged_mended, "enlarged"}, {enlarged_as_printed, "enlarged_as_printed"}};
-};
-
-template <>
-struct EnumNames<GrainOptions::BondStep> {
-  using enum GrainOptions::BondStep;
-  static constexpr const char* what = "step of bonds";
-  static constexpr NamedValue<GrainOptions::BondStep> list[] = {{exact, "exact"}, {explicit_euler, "explicit"}};
+  static constexpr NamedValue<GrainOptions::EllipseLaw> list[] = {{exact, "exact"}, {enlarged, "enlarged"}};
 };
 
 /// d_c, m: options.reference_length, or twice the largest radius if that is 0.

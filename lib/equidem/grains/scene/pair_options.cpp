@@ -89,17 +89,11 @@ void check_use(const PairOptions& options, const LawDescription& law, Body body)
     bad_input_at("restitution", "restitution is missing", "no default says how contacts rebound",
                  "Add restitution = ... from 0 to 1, or damping = ... of the dashpots");
   std::visit(StiffnessCheck(options, law, body), options.stiffness);
-  if (options.contact_end && !law.has_dashpot)
-    bad_input_at("contact_end", fmt::format("{} has no use for contact_end", law.name), "it has no dashpot",
-                 "Remove it");
   if (!std::holds_alternative<DashpotDamping>(options.rebound)) return;
   if (!law.has_dashpot || law.spring_power != 1)
     bad_input_at("damping", fmt::format("{} has no use for damping", law.name),
                  "it is h of the dashpots 2 h sqrt(m k) of linear springs",
                  "Give restitution, or the law " + linear_laws_with_dashpot());
-  if (options.contact_end == ContactEnd::at_zero_overlap)
-    bad_input_at("contact_end", "contact_end = \"zero_overlap\" with damping",
-                 "with a strong dashpot the overlap never comes back to zero", "Remove it, or give restitution");
 }
 
 /// The restitution, and zeta of the tangential dashpot where no other is given.
@@ -120,11 +114,10 @@ void check_restitution(NormalLaw law, const PairProperties& pair) {
   if (!describe(law).has_dashpot || pair.end == ContactEnd::at_zero_overlap || pair.restitution >= least) return;
   bad_input_at("restitution", fmt::format("restitution = {} for contacts that end at zero force", pair.restitution),
                "it would need an infinite dashpot, or one too strong for numbers to resolve",
-               fmt::format("Give {} or more, or contact_end = \"zero_overlap\", or the law energy_map", least));
+               fmt::format("Give {} or more, or the law energy_map", least));
 }
 
 void set_friction(const PairOptions& options, NormalLaw law, double tangential_zeta, PairProperties& properties) {
-  properties.cap = options.friction_cap;
   properties.friction = options.friction;
   if (!(options.friction > 0)) return;
   const auto* waves = std::get_if<WaveSpeedStiffness>(&options.stiffness);
@@ -135,6 +128,10 @@ void set_friction(const PairOptions& options, NormalLaw law, double tangential_z
   } else if (properties.tangential_ratio > 0) {
     properties.tangential_damping = tangential_zeta;
   }
+  if (gives_force(law) && properties.tangential_ratio == 0)
+    bad_input_at("tangential_ratio", "friction is given without a tangential spring",
+                 fmt::format("contacts by {} stick by one", to_string(law)),
+                 "Give tangential_ratio > 0, such as 2/7, or friction = 0");
   if (properties.tangential_damping > 0 && properties.tangential_ratio == 0)
     bad_input_at("tangential_damping", "tangential damping is given without a tangential spring",
                  "it is measured by that spring", "Give tangential_ratio > 0");
@@ -181,7 +178,7 @@ class StiffnessOf {
 PairContact contact_of(const PairOptions& options, NormalLaw law, const MeetingBodies& bodies) {
   check_use(options, describe(law), bodies.body);
   PairContact contact{.properties = {}, .closing_speed = options.closing_speed};
-  contact.properties.end = options.contact_end.value_or(describe(law).usual_end);
+  contact.properties.end = describe(law).usual_end;
   const double tangential_zeta = set_rebound(options.rebound, bodies, contact.properties);
   set_friction(options, law, tangential_zeta, contact.properties);
   check_restitution(law, contact.properties);

@@ -61,8 +61,6 @@ using ReboundOptions = std::variant<std::monostate, Restitution, DashpotDamping>
 struct PairOptions {
   StiffnessOptions stiffness = {};
   ReboundOptions rebound = {};
-  /// Laws with a dashpot; none: LawDescription::usual_end.
-  std::optional<ContactEnd> contact_end = {};
   double closing_speed = 0;  ///< closing speed of the fastest impact expected, m/s; 0: not known
   double friction = 0;       ///< mu
   /// kT/kN with friction; none: 2/7; with WaveSpeedStiffness the ratio of the wave speeds; 0 for the maps, which apply
@@ -70,7 +68,6 @@ struct PairOptions {
   std::optional<double> tangential_ratio = {};
   /// zeta of the tangential dashpot, with a tangential spring; none: 0, or with DashpotDamping its damping ratio.
   std::optional<double> tangential_damping = {};
-  FrictionCap friction_cap = FrictionCap::whole_force;
 };
 
 /// Data of the two kinds of bodies in contact.

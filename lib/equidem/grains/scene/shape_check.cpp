@@ -39,17 +39,6 @@ void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
   }
 }
 
-/// In a bowl an ellipse may touch in two points at once.
-void check_arcs(const GrainScene& scene, const Grain& grain, std::size_t i) {
-  for (const Wall& wall : scene.walls) {
-    if (wall.shape != Wall::Shape::arc) continue;
-    const Vec2 middle = wall.point + wall.displacement(0);
-    if (norm(grain.position - middle) >= wall.radius) continue;
-    bad_input(fmt::format("grain {}, an ellipse, starts at the inside of the arc \"{}\"", i, wall.name),
-              "there it may touch in two points at once, which one contact cannot tell", "Make the arc of segments");
-  }
-}
-
 /// \param branch from the centre of p to that of q
 bool run_through_one_another(const GrainPart& p, Vec2 axis_p, const GrainPart& q, Vec2 axis_q, Vec2 branch) {
   const double skew = cross(axis_p, axis_q);
@@ -70,7 +59,6 @@ void check_shape(const GrainScene& scene, std::size_t i) {
               "an ellipse has both above 0, the long one along x at angle 0",
               "Exchange them and add a quarter turn to the angle, or give 0 for a disc");
   }
-  if (grain.shape() == GrainShape::ellipse) check_arcs(scene, grain, i);
   if (grain.clump < 0) {
     if (grain.clump == -1) return;
   } else if (grain.short_half_axis > 0) {

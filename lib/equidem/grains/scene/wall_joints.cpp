@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/part_geometry.hpp"
@@ -15,22 +14,16 @@ namespace equidem {
 namespace {
 
 Vec2 end_of(const Wall& wall, int end) {
-  if (wall.shape == Wall::Shape::segment) return end == 1 ? wall.point : wall.end;
-  const double angle = end == 1 ? wall.from : wall.to;
-  return wall.point + wall.radius * Vec2{std::cos(angle), std::sin(angle)};
+  return end == 1 ? wall.point : wall.end;
 }
 
 double length_of(const Wall& wall) {
   if (wall.shape == Wall::Shape::line) return std::numeric_limits<double>::infinity();
-  return wall.shape == Wall::Shape::arc ? wall.radius * (wall.to - wall.from) : norm(wall.end - wall.point);
-}
-
-bool is_closed(const Wall& wall) {
-  return wall.shape == Wall::Shape::arc && wall.to - wall.from >= 2 * std::numbers::pi * (1 - 1e-15);
+  return norm(wall.end - wall.point);
 }
 
 bool has_ends(const Wall& wall) {
-  return wall.shape != Wall::Shape::line && !is_closed(wall);
+  return wall.shape == Wall::Shape::segment;
 }
 
 /// Largest gap at which two walls join.
@@ -79,15 +72,8 @@ bool move_alike(const Wall& a, const Wall& b) {
   return a.move_x == b.move_x && a.move_y == b.move_y && !a.servo && !b.servo;
 }
 
-/// Moves the end of a segment to a point; lets an arc end as near to it as it can.
 void put_end(Wall& wall, int end, Vec2 point) {
-  if (wall.shape == Wall::Shape::segment) {
-    (end == 1 ? wall.point : wall.end) = point;
-    return;
-  }
-  double& angle = end == 1 ? wall.from : wall.to;
-  const Vec2 now = end_of(wall, end) - wall.point, then = point - wall.point;
-  angle += std::atan2(cross(now, then), dot(now, then));
+  (end == 1 ? wall.point : wall.end) = point;
 }
 
 /// Transfer of the state of a contact to another one at the same point.
@@ -114,10 +100,7 @@ std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<co
   };
   const auto lies_on = [&](const Wall& a, const Wall& b) {
     if (a.shape == line) return b.shape == line && is_on(a.point, b) && norm(a.normal - b.normal) <= 1e-9;
-    if (a.shape == arc)
-      return b.shape == arc && a.point == b.point && a.radius == b.radius && a.from == b.from && a.to == b.to;
     const bool first = is_on(a.point, b), second = is_on(a.end, b);
-    if (b.shape == arc) return false;  // a chord
     if (first && second) return true;
     if (b.shape == line || first == second) return false;
     // one end of a is on b: check whether they continue in the same direction
@@ -149,11 +132,7 @@ std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
   };
   std::vector<End> ends;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    Wall& wall = walls[w];
-    if (wall.shape == Wall::Shape::arc && !is_closed(wall) && wall.to - wall.from > std::numbers::pi &&
-        norm(end_of(wall, 1) - end_of(wall, 2)) <= gap_between(wall, wall, tolerance))
-      wall.from = 0, wall.to = 2 * std::numbers::pi;
-    if (has_ends(wall)) ends.insert(ends.end(), {{w, 1}, {w, 2}});
+    if (has_ends(walls[w])) ends.insert(ends.end(), {{w, 1}, {w, 2}});
   }
   for (std::size_t e = 0; e < ends.size(); ++e) {
     if (ends[e].placed) continue;
@@ -174,10 +153,7 @@ std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
       widest = std::max(widest, gap);
     }
     if (meeting.size() == 1) continue;
-    Vec2 common = sum / static_cast<double>(meeting.size());
-    const auto arc =
-        std::ranges::find_if(meeting, [&](const End* end) { return walls[end->wall].shape == Wall::Shape::arc; });
-    if (arc != meeting.end()) common = end_of(walls[(*arc)->wall], (*arc)->number);
+    const Vec2 common = sum / static_cast<double>(meeting.size());
     for (End* end : meeting) {
       end->placed = true;
       if (widest > rounding * tolerance) put_end(walls[end->wall], end->number, common);
@@ -185,7 +161,7 @@ std::vector<Wall> joined_walls(std::span<const Wall> given, double tolerance) {
   }
   for (const End& end : ends) {
     Wall& wall = walls[end.wall];
-    for (std::size_t k = 0; k < walls.size() && !end.placed && wall.shape == Wall::Shape::segment; ++k) {
+    for (std::size_t k = 0; k < walls.size() && !end.placed; ++k) {
       const Vec2 point = end_of(wall, end.number);
       const WallContact foot = nearest(walls[k], {}, point);
       const double gap = std::abs(foot.distance);

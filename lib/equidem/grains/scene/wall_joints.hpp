@@ -32,9 +32,8 @@ struct WallJoint {
 /// Joints of the first and of the second end of a wall.
 using WallJoints = std::array<std::vector<WallJoint>, 2>;
 
-/// Ends that nearly meet end in one point: that of an arc among them, else their mean; ends that nearly lie on another
-/// wall end there. An arc whose ends nearly meet is a whole circle. What lies together to rounding stays as it is. Two
-/// arcs end where their circles are nearest to each other, and may keep a part of their gap.
+/// Ends that nearly meet end in one point, their mean; ends that nearly lie on another wall end there. What lies
+/// together to rounding stays as it is.
 /// \param tolerance largest gap of walls that join, m
 std::vector<Wall> joined_walls(std::span<const Wall> walls, double tolerance);
 
@@ -42,7 +41,7 @@ std::vector<Wall> joined_walls(std::span<const Wall> walls, double tolerance);
 /// \return one for each wall; empty if no walls join
 std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance);
 
-/// Walls that coincide over some length, where every contact would be counted twice; parts of arcs are not checked.
+/// Walls that coincide over some length, where every contact would be counted twice.
 std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const Wall> walls, double tolerance);
 
 /// A sentence for each pair of ends that do not join, although their gap is less than a fifth of the smallest radius: a

@@ -12,26 +12,24 @@ namespace equidem {
 struct WallContact {
   double distance = 0;  ///< from the wall to the centre; line: signed, negative behind the wall
   Vec2 normal;          ///< unit, from the wall to the centre
-  int end = 0;          ///< 1, 2: the point is the first or second end of a segment or an arc, or next to it
+  int end = 0;          ///< 1, 2: the point is the first or second end of a segment, or next to it
 };
 
-/// nearest() for a segment or an arc, without displacement.
-WallContact nearest_of_bounded(const Wall& wall, const Vec2& centre);
+/// nearest() for a segment, without displacement.
+WallContact nearest_of_segment(const Wall& wall, const Vec2& centre);
 
-/// Line: the foot of the perpendicular. Segment or arc: the nearest point, ends included. Never NaN for a wall that
-/// passes `check`: for a centre on a thin wall the normal is the wall's own; at the centre of an arc, equidistant from
-/// all its points, the nearest point is the middle of the arc.
+/// Line: the foot of the perpendicular. Segment: the nearest point, ends included. Never NaN for a wall that passes
+/// `check`: for a centre on a segment the normal is the wall's own.
 /// \param displacement present displacement of the wall, m
 inline WallContact nearest(const Wall& wall, const Vec2& displacement, const Vec2& centre) {
   const Vec2 relative = centre - displacement;
   if (wall.shape == Wall::Shape::line) return {dot(wall.normal, relative - wall.point), wall.normal, 0};
-  return nearest_of_bounded(wall, relative);
+  return nearest_of_segment(wall, relative);
 }
 
 /// Whether a centre that moves straight from `before` to `after` (both relative to the wall: less its displacement)
-/// passes through the wall: changes side on it, ends included, or crosses an arc and comes back. A path that touches an
-/// arc from outside and turns away does not. If two successive paths meet on the wall and lead through it, exactly one
-/// of them passes.
+/// passes through the wall: changes side on it, ends included. If two successive paths meet on the wall and lead
+/// through it, exactly one of them passes.
 bool passes_through(const Wall& wall, const Vec2& before, const Vec2& after);
 
 }  // namespace equidem

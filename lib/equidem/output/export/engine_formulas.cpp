@@ -48,17 +48,6 @@ std::string formula_of(const Schedule& schedule, const std::string& time) {
         sum += fmt::format("+{}*{}", negative(slope_of(k)), between(schedule.times[k], schedule.times[k + 1]));
       }
       break;
-    case Schedule::Kind::smooth_table:
-      // Hermite's cubic of each interval, 0 before it: s (v0 + s (a + s b)).
-      sum = exact(schedule.values.front());
-      for (std::size_t k = 0; k + 1 < schedule.times.size(); ++k) {
-        const double length = schedule.times[k + 1] - schedule.times[k];
-        const double first = schedule.rates[k], last = schedule.rates[k + 1];
-        sum += fmt::format("+{0}*({1}+{0}*({2}+{0}*{3}))", between(schedule.times[k], schedule.times[k + 1]),
-                           negative(first), negative((3 * slope_of(k) - 2 * first - last) / length),
-                           negative((first + last - 2 * slope_of(k)) / squared(length)));
-      }
-      break;
   }
   return sum;
 }

@@ -238,9 +238,6 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
         add(model.found, strong_dashpots, fmt::format("damping ratio {:.6g}", zeta));
       if (pair.friction > 0) {
         add(model.found, friction_levers, fmt::format("with the coefficient {:.6g}", pair.friction));
-        if (pair.tangential_ratio == 0) add(model.found, rigid_friction, "");
-        if (pair.cap != FrictionCap::whole_force && pair.tangential_damping > 0)
-          add(model.found, friction_of_spring, "");
         if (pair.tangential_damping > 0) add(model.found, tangential_dashpots, "");
         if (pair.tangential_damping > 0 && zeta == 0 && !equal_masses(model))
           add(model.found, dashpots_along_alone, "");

@@ -22,18 +22,6 @@ std::string discs_in_a_cell(const Clump& clump) {
   return joined(clump.discs, numbers, "; ");
 }
 
-/// The drifts, i < j, in the order of the bonds; a roll is that of the second disc against the first.
-std::vector<BondDrift> drifts_of(std::span<const GrainBond> bonds, std::span<const BondDrift> drifts) {
-  std::map<std::pair<std::size_t, std::size_t>, const BondDrift*> by_pair;
-  for (const BondDrift& drift : drifts) by_pair[{drift.i, drift.j}] = &drift;
-  std::vector<BondDrift> ordered;
-  for (const GrainBond& bond : bonds) {
-    BondDrift& drift = ordered.emplace_back(*by_pair.at(std::minmax(bond.i, bond.j)));
-    if (bond.j < bond.i) drift.roll = -drift.roll;
-  }
-  return ordered;
-}
-
 }  // namespace
 
 void write_disc_csv(const std::filesystem::path& path, const AssemblyState& state, bool overwrite) {
@@ -134,10 +122,8 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
 }
 
 void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
-                    std::span<const BondDrift> drifts, const ContactStrengths& strengths, bool overwrite) {
-  assert(drifts.empty() || drifts.size() == bonds.size());
+                    const ContactStrengths& strengths, bool overwrite) {
   Table table;
-  const std::vector<BondDrift> of_rows = drifts.empty() ? std::vector<BondDrift>() : drifts_of(bonds, drifts);
   table.add("i", bonds, &GrainBond::i).add("j", bonds, &GrainBond::j);
   table.add("normal_dashpot", bonds, &GrainBond::normal_dashpot);
   table.add("tangential_dashpot", bonds, &GrainBond::tangential_dashpot);
@@ -147,10 +133,6 @@ void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond
   table.add("bending_spring", bonds, &GrainBond::bending_spring);
   if (!strengths.tension.empty())
     table.add("tension", strengths.tension, std::identity()).add("shear", strengths.shear, std::identity());
-  if (!drifts.empty()) {
-    table.add("distance_drift", of_rows, &BondDrift::distance).add("slip_drift", of_rows, &BondDrift::slip);
-    table.add("roll_rad", of_rows, &BondDrift::roll);
-  }
   write_csv(path, table, overwrite);
 }
 

@@ -52,12 +52,11 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
                              std::span<const Wall> walls, Body body, bool overwrite);
 
 /// One row per bond: i, j, normal_dashpot, tangential_dashpot, rolling_dashpot, normal_spring, tangential_spring,
-/// bending_spring (units: GrainBond), tension and shear (N/m) where `strengths` are given, and where `drifts` are what
-/// each has drifted since the start: distance_drift, slip_drift (over the sum of the radii), roll_rad. A case file
-/// reads it back with [bonds] path; springs are then unstretched in that file's configuration.
-/// \param drifts of the same bonds in any order, or none; \param strengths in the order of the bonds, or none
+/// bending_spring (units: GrainBond), tension and shear (N/m) where `strengths` are given. A case file reads it back
+/// with [bonds] path; springs are then unstretched in that file's configuration.
+/// \param strengths in the order of the bonds, or none
 /// \throws Error (bad_input) as write_file does
 void write_bond_csv(const std::filesystem::path& path, std::span<const GrainBond> bonds,
-                    std::span<const BondDrift> drifts, const ContactStrengths& strengths, bool overwrite);
+                    const ContactStrengths& strengths, bool overwrite);
 
 }  // namespace equidem

@@ -91,7 +91,6 @@ const std::vector<AnswersOfVerb>& all_answers() {
         {"bonds", "bonds of the assembly"}},
        {{"largest_overlap", "largest overlap, of the smaller radius"},
         {"unbalanced_force_ratio", "unbalanced force, of the mean contact force"},
-        {"static_motion_over_overlap", "motion to the static equilibrium, of the mean overlap"},
         {"energy_error", "error of the energy balance, of the energy lost"},
         {"rattlers", "rattlers"}}},
       {"quasistatic",

@@ -39,7 +39,7 @@ struct GrainAnimation {
 /// \throws Error (bad_input) as grain_animation_html
 std::string grain_animation_player(const GrainAnimation& animation);
 
-/// The page. The view holds all bodies, segments and arcs at all times; of a line what crosses it. Bodies are left out
+/// The page. The view holds all bodies, segments at all times; of a line what crosses it. Bodies are left out
 /// of the frames in which they have fallen out of the scene (near_the_scene), unless all have in all frames. Places are
 /// rounded to 1/4096 of the view, angles to 1/4096 of a turn.
 /// \throws Error (bad_input) without grains or frames, on frames of another number of bodies, on places that are not

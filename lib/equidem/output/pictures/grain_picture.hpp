@@ -30,7 +30,7 @@ struct GrainPicture {
 };
 
 /// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs (picture.hpp) are drawn. The view
-/// holds grains, their paths, segments and arcs; lines are clipped to it. Without paths, grains are
+/// holds grains, their paths, segments; lines are clipped to it. Without paths, grains are
 /// left out that have fallen out of the scene (near_the_scene), unless all have. The caption tells how many are shown.
 /// \throws Error (bad_input) without grains, on places that are not finite, and as write_file does
 std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,

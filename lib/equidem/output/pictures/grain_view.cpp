@@ -48,17 +48,9 @@ std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const G
   return near;
 }
 
-std::vector<Vec2> outline(const Wall& wall, double time) {
-  const Vec2 moved = wall.displacement(time);
-  if (wall.shape == Wall::Shape::segment) return {wall.point + moved, wall.end + moved};
-  std::vector<Vec2> points;
-  constexpr int per_turn = 180;
-  const int pieces = std::max(2, static_cast<int>(std::ceil(per_turn * (wall.to - wall.from) / 6.28)));
-  for (int k = 0; k <= pieces; ++k) {
-    const double angle = wall.from + (wall.to - wall.from) * k / pieces;
-    points.push_back(wall.point + moved + wall.radius * Vec2{std::cos(angle), std::sin(angle)});
-  }
-  return points;
+std::vector<Vec2> outline(const Wall& segment, double time) {
+  const Vec2 moved = segment.displacement(time);
+  return {segment.point + moved, segment.end + moved};
 }
 
 }  // namespace equidem

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/packing/outline.hpp"
-#include "equidem/packing/overlaps.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
@@ -33,25 +30,6 @@ std::vector<Vec2> staggered_grid(std::span<const double> radii, double width, Ra
   return places;
 }
 
-/// Down without inertia and friction: contacts soft at first, so that forces are felt far, then as hard as they are.
-void relax_down(const PackingOptions& options, const UnitBody& shape, Bodies& bodies, std::int64_t& work) {
-  const auto count = static_cast<double>(bodies.size());
-  const double mean = std::accumulate(bodies.radii.begin(), bodies.radii.end(), 0.0) / count;
-  const double mean_mass = options.settling.density * area_of(options.shape, bodies.radii) / count;
-  const double hard = mean_mass * options.settling.gravity / (options.settling.springs.kN * mean);
-  PairFinder finder;
-  Progress progress("relaxing");
-  constexpr double softest = 1e-4, factor = 10;
-  for (double weight = std::max(softest, hard);; weight = std::max(weight / factor, hard)) {
-    const bool last = weight <= hard;
-    const auto report = push_apart(
-        options.box, shape, {.unbalanced = last ? 1e-8 : 1e-3, .weight = {0, -weight}, .most = 200000}, finder, bodies);
-    work += report.evaluations;
-    progress.update(last ? 1 : 0.5);
-    if (last) return;
-  }
-}
-
 Bodies bodies_above(const PackingOptions& options, const UnitBody& shape) {
   Random random(options.seed);
   std::vector<double> reaches;
@@ -74,18 +52,9 @@ GrainScene scene_of(const PackingOptions& options, const Bodies& bodies, GrainPa
 
 }  // namespace
 
-SettlingEstimate estimate_falling(const PackingOptions& options) {
-  check(options);
-  GrainPacking packing;
-  return estimate_settling(scene_of(options, bodies_above(options, unit_body_of(options.shape)), packing),
-                           options.settling);
-}
-
 void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
   const UnitBody shape = unit_body_of(options.shape);
-  Bodies bodies = bodies_above(options, shape);
-  if (options.settling.relax_first) keep_failure(packing, [&] { relax_down(options, shape, bodies, packing.work); });
-  GrainScene scene = scene_of(options, bodies, packing);
+  GrainScene scene = scene_of(options, bodies_above(options, shape), packing);
   SettledBodies settled = settle(std::move(scene), options.settling);
   packing.work += settled.report.steps;
   packing.grains = std::move(settled.grains);

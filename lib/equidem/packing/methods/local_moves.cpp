@@ -34,20 +34,6 @@ Crowding crowding(const PlacedBodies& placed, std::int32_t body, Placement there
   return sum;
 }
 
-/// Centres of the cells of a grid with cells about as wide as high.
-std::vector<Vec2> grid_of(const PackingBox& box, std::size_t bodies) {
-  const auto number = static_cast<double>(bodies);
-  const double columns = std::max(1.0, std::round(std::sqrt(number * box.size.x / box.size.y)));
-  const double rows = std::ceil(number / columns);
-  std::vector<Vec2> places;
-  for (std::size_t k = 0; k < bodies; ++k) {
-    const double row = std::floor(static_cast<double>(k) / columns);
-    places.push_back(
-        {(static_cast<double>(k) - row * columns + 0.5) * box.size.x / columns, (row + 0.5) * box.size.y / rows});
-  }
-  return places;
-}
-
 }  // namespace
 
 /// Monte Carlo without temperature: a random move of a body that overlaps is taken where it overlaps less afterwards,
@@ -60,10 +46,8 @@ void fill_by_local_moves(const PackingOptions& options, GrainPacking& packing) {
   std::vector<double> radii = options.radii;
   for (double& radius : radii) radius *= 1 + spare;
   PlacedBodies placed(options.box, unit_body_of(options.shape), radii);
-  const std::vector<Vec2> grid = options.from_grid ? grid_of(options.box, radii.size()) : std::vector<Vec2>{};
   for (std::size_t k = 0; k < radii.size(); ++k) {
-    Placement there = placement_at_random(options, placed.shape(), options.radii[k], random);
-    if (options.from_grid) there.place = grid[k];
+    const Placement there = placement_at_random(options, placed.shape(), options.radii[k], random);
     placed.add(there.place, radii[k], there.turns);
   }
   Progress progress("moving");

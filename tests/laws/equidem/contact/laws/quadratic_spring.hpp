@@ -31,7 +31,6 @@ struct QuadraticSpring {
   [[gnu::always_inline]] static Number dashpot(const Number& /*c*/, const Number& /*d*/) {
     return Number{};
   }
-  static DriftShares shares_of_drift(double part) { return shares_of_power_law<QuadraticSpring>(part); }
 
   static double length_factor(double length) { return length; }
   /// W = k d³/3
