@@ -50,8 +50,6 @@ int main(int argc, char** argv) {
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
                  {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
-                    "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
-                   {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",
-                    "Use 'equidem-papers PAPER [OPTIONS]'; 'equidem-papers --help' lists the papers"}}};
+                    "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"}}};
   return run_program(program, argc, argv);
 }
