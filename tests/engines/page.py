@@ -41,5 +41,4 @@ and the same checks are tests with the label `engines`; they are skipped where a
   ten with loads a tenth; LAMMPS loses digits of small angles then). A support of LAMMPS is driven by the force that
   puts it into its place in each step.
 - Walls that move: the speed of a wall acts on dashpots; LAMMPS takes the difference of two places over a step.
-- PFC is not free: its commands are not run here.
 '''

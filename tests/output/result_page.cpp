@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/page/answers.hpp"
-#include "equidem/output/page/inline_svg.hpp"
 #include "equidem/output/page/page.hpp"
 #include "equidem/output/page/trust.hpp"
-#include "equidem/output/pictures/canvas.hpp"
 
+#include "output/states.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -100,45 +100,22 @@ TEST_CASE("an_answer_has_the_prefix_of_its_unit_and_its_error") {
   CHECK(answers_of("no verb", results).main.empty());
 }
 
-TEST_CASE("a_drawing_keeps_its_shapes_in_fewer_bytes") {
-  Canvas canvas(PageFormat::svg, 400, 300, 1);
-  canvas.fill_circle({100, 120}, 30.125, {1, 0, 0.5});
-  canvas.stroke_circle({200, 120}, 10, 2, {0, 0, 0});
-  canvas.fill_ellipse({300, 120}, {20, 10}, 0.3, {0, 1, 0});
-  canvas.line({10, 20.5}, {30, 40}, 3, {0, 0, 1});
-  canvas.text("a < b", {50, 250}, 20, TextAnchor::left, {0, 0, 0});
-  const std::string file = canvas.finish(), svg = inline_svg(file, "f7-", "a < b & \"c\"");
-  INFO(svg);
-  CHECK(svg.starts_with("<svg viewBox=\"0 0 400 300\" role=\"img\" aria-label=\"a &lt; b &amp; &quot;c&quot;\">"));
-  CHECK(svg.find("<circle cx=\"100\" cy=\"120\" r=\"30.1") != std::string::npos);
-  CHECK(svg.find("fill=\"#ff0080\"") != std::string::npos);
-  CHECK(svg.find("<circle cx=\"200\" cy=\"120\" r=\"10\"") != std::string::npos);
-  CHECK(svg.find("d=\"M10 20.5L30 40\"") != std::string::npos);
-  CHECK(svg.find("r=\"20\"") == std::string::npos);  // an ellipse is no circle
-  CHECK(svg.find("http") == std::string::npos);
-  CHECK(svg.find("id=\"f7-") != std::string::npos);
-  CHECK(svg.find("href=\"#f7-") != std::string::npos);
-  CHECK(svg.size() < file.size());
-}
-
-TEST_CASE("drawings_that_differ_in_names_only_are_the_same_in_a_page") {
-  const auto drawing = [](int k) {
-    return fmt::format(
-        "<svg viewBox=\"0 0 9 9\"><g id=\"a-{0}\"/><clipPath id='b-{0}'></clipPath><use xlink:href=\"#a-{0}\"/>"
-        "<g clip-path=\"url(#b-{0})\"/></svg>",
-        k);
+TEST_CASE("figures_are_embedded_as_they_are") {
+  const TemporaryFolder folder;
+  ResultPage page{
+      .verb = "solve", .status = "solved", .version = "1", .command = "", .case_text = "", .report = "", .results = {}};
+  const auto shown = [&](const char* name, const std::string& bytes, const std::string& address) {
+    write_file(folder / name, bytes, true);
+    page.figures = {{.name = name, .title = "a < b", .file = folder / name}};
+    const std::string html = result_page_html(page);
+    CAPTURE(html, address);
+    return html.find("<img alt=\"a &lt; b\" src=\"data:image/" + address + "\">") != std::string::npos;
   };
-  const std::string first = inline_svg(drawing(1), "f-", "x");
-  CHECK(first == inline_svg(drawing(500), "f-", "x"));
-  CHECK(first.ends_with(
-      "<g id=\"f-1\"/><clipPath id='f-2'></clipPath><use href=\"#f-1\"/><g clip-path=\"url(#f-2)\"/></svg>"));
-}
-
-TEST_CASE("a_png_is_embedded_as_it_is") {
-  CHECK(inline_png("Man", "x").find("base64,TWFu\"") != std::string::npos);
-  CHECK(inline_png("Ma", "x").find("base64,TWE=\"") != std::string::npos);
-  CHECK(inline_png("M", "x").find("base64,TQ==\"") != std::string::npos);
-  CHECK(inline_png("\xff\xfe\xfd", "x").find("base64,//79\"") != std::string::npos);
+  CHECK(shown("a.png", "Man", "png;base64,TWFu"));
+  CHECK(shown("a.png", "Ma", "png;base64,TWE="));
+  CHECK(shown("a.png", "M", "png;base64,TQ=="));
+  CHECK(shown("a.png", "\xff\xfe\xfd", "png;base64,//79"));
+  CHECK(shown("a.svg", "<svg/>", "svg+xml;base64,PHN2Zy8+"));
 }
 
 TEST_CASE("a_page_stays_below_its_size_and_names_what_it_lacks") {

@@ -9,7 +9,7 @@ import unittest
 
 from program import CASES, SOURCE, TENSION, ProgramTest, equidem, parse_json
 
-FILES = {"lammps": {"in.equidem", "assembly.data", "load_x.txt"}, "yade": {"run_equidem.py"}, "pfc": {"equidem.dat"}}
+FILES = {"lammps": {"in.equidem", "assembly.data", "load_x.txt"}, "yade": {"run_equidem.py"}}
 ENGINES = tuple(FILES)
 GRAINS = '''schema = "equidem/1"
 [grains]
@@ -87,7 +87,7 @@ class ExportTest(ProgramTest):
                 out = f"refused_{engine}_{len(list(self.folder.iterdir()))}"
                 done = self.export(case, engine, out=out)
                 if engine in engines:
-                    name = {"lammps": "LAMMPS", "yade": "YADE", "pfc": "PFC"}[engine]
+                    name = {"lammps": "LAMMPS", "yade": "YADE"}[engine]
                     self.check_error(done, 2, f"the export to {name} does not carry", *words)
                     self.assertEqual(list((self.folder / out).glob("*")), [])
                 else:
@@ -145,6 +145,7 @@ class Folders(ExportTest):
 
     def test_formats_and_options_that_are_missing_or_unknown(self):
         self.check_error(self.export(TENSION, "lamps"), 2, "'lamps'", 'mean "lammps"')
+        self.check_error(self.export(TENSION, "pfc"), 2, "'pfc'", "lammps", "yade")
         self.check_error(equidem("export", TENSION, "--to", "yade"), 2, "--out")
         self.check_error(equidem("export", TENSION, "--out", self.folder / "x"), 2, "--to")
         self.check_error(self.export(CASES / "pack_jammed.toml", "yade"), 2, "assembly")
@@ -166,11 +167,6 @@ class Models(ExportTest):
         atom = data.split("Atoms # bpm/sphere\n\n")[1].split()
         volume = 4 / 3 * math.pi * (float(atom[3]) / 2)**3
         self.assertAlmostEqual(float(atom[4]) * volume, mass, delta=1e-14 * mass)
-        commands = (self.exported(case, "pfc", out="pfc") / "equidem.dat").read_text()
-        self.assertIn("model linearcbond property kn 1000000000 ks 500000000 lin_mode 1", commands)
-        density = float(re.search(r"density (\S+)", commands).group(1))
-        self.assertAlmostEqual(density, 2500, delta=1e-10)
-        self.assertNotIn("fish", commands)
 
     def test_lammps_has_a_bond_type_for_each_pair_of_springs(self):
         out = self.exported(self.weighted(), "lammps")
@@ -206,7 +202,7 @@ class Refusals(ExportTest):
     """What an engine does not carry is named, with what to do."""
 
     def test_negative_tangential_springs(self):
-        self.check_refused(self.bonds(kT=-1e8), ENGINES, "negative kT", "here contact 0", "equidem solve")
+        self.check_refused(self.bonds(kT=-1e8), ENGINES, "here negative kT of contact 0", "equidem solve")
 
     def test_contact_points_off_the_middle(self):
         discs = [[0, 0, 2.0], [3, 0, 1.0], [1.5, 2.6, 1.0]]
@@ -234,7 +230,7 @@ group = "head"
 force = [0.0, -1.0]
 ''')
         (self.folder / "three.json").write_text(json.dumps(text))
-        self.check_refused(case, ["lammps"], "off the middle", "contact 0", "Export to yade or pfc")
+        self.check_refused(case, ["lammps"], "off the middle", "contact 0", "Export to yade")
         text["levers"][2] = [0.3 * lengths[2], 0.7 * lengths[2]]
         (self.folder / "three.json").write_text(json.dumps(text))
         for engine in ENGINES:
@@ -300,17 +296,17 @@ force = [0.0, 1.0]
         self.assertTrue(1e-4 < abs(bulk["halfway"] / bulk["radii"] - 1) < 1e-2, bulk)
 
     def test_ellipses_and_clumps(self):
-        self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "ellipses and clumps", "here grain 1")
+        self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "neither discs nor spheres", "here grain 1, an ellipse")
 
     def test_laws_of_collision(self):
         case = self.grains()
         case.write_text(case.read_text().replace("linear_dashpot", "exact_flow"))
-        self.check_refused(case, ENGINES, "laws of collision other than linear_dashpot, here exact_flow")
+        self.check_refused(case, ENGINES, "laws of contact other than one linear spring", "here the law exact_flow")
 
     def test_dashpots_and_friction(self):
         self.check_refused(self.grains(restitution=0.5), [])
-        self.check_refused(self.grains(restitution=0.5, radius=0.008), ["yade"], "restitution below 1 of bodies of unequal", "lammps")
-        self.check_refused(self.grains(restitution=0.5, collisions="[collisions.walls]\nrestitution = 0.9"), ["yade", "pfc"],
+        self.check_refused(self.grains(restitution=0.5, radius=0.008), ["yade"], "restitution below 1", "of bodies of unequal masses", "lammps")
+        self.check_refused(self.grains(restitution=0.5, collisions="[collisions.walls]\nrestitution = 0.9"), ["yade"],
                            "pair to pair")
 
     def test_friction_is_exported_only_where_its_levers_are_accepted(self):
@@ -332,8 +328,8 @@ force = [0.0, 1.0]
             given = self.grains(text)
             given.write_text(given.read_text().replace("[run]\n", moving + "[run]\n"))
             return given
-        self.check_refused(case(schedule.format("ramp") + "end = 1e-3\n"), ["pfc"], "walls that move", "lammps or yade")
-        self.check_refused(case(schedule.format("sine") + "frequency = 50.0\n"), ["pfc"], "walls that move")
+        for kind in ("ramp", "sine"):
+            self.check_refused(case(schedule.format(kind) + ("end = 1e-3\n" if kind == "ramp" else "frequency = 50.0\n")), [])
         points = f"times = {[1e-5 * k for k in range(60)]}\nvalues = {[1e-4 * k for k in range(60)]}\n"
         self.check_refused(case(schedule.format("table") + points), ENGINES, "does not carry", "wall 'floor'")
 
@@ -342,11 +338,11 @@ force = [0.0, 1.0]
 
     def test_schedules_and_moments(self):
         schedule = '[[schedule]]\nname = "slow"\nkind = "ramp"\nend = 1e-3\n[run]\nduration = 1e-3\n'
-        self.check_refused(self.bonds(schedule, load='schedule = "slow"'), ["pfc"], "follow a schedule", "load on 'top'")
+        self.check_refused(self.bonds(schedule, load='schedule = "slow"'), [])
         rest = schedule.replace("duration = 1e-3", "until_rest = 1e-6")
         self.check_refused(self.bonds(rest, load='schedule = "slow"'), ENGINES, "does not carry")
         turning = schedule + '[[support]]\ngroup = "top"\nrotation = 1e-3\nschedule = "slow"\n'
-        self.check_refused(self.bonds(turning), ["lammps", "pfc"], "rotations that follow a schedule", "support of 'top'")
+        self.check_refused(self.bonds(turning), ["lammps"], "rotations that follow a schedule", "support of 'top'")
         long = schedule.replace('"ramp"\nend = 1e-3', f'"table"\ntimes = {[1e-5 * k for k in range(60)]}\nvalues = {[0.0] * 60}')
         self.check_refused(self.bonds(long, load='schedule = "slow"'), ENGINES, "does not carry", "load on 'top'")
         self.check_refused(self.bonds(load="moment = 1.0"), ["lammps"], "moments as loads", "yade")
@@ -355,26 +351,26 @@ force = [0.0, 1.0]
         for table in ("[strength]\ntension = 1.0\nshear = 2.0\n", '[[dead_load]]\ngroup = "top"\nforce = [0.0, 1.0]\n',
                       "[[notch]]\nfrom = [0.0, 0.0]\nto = [0.01, 0.0]\n"):
             with self.subTest(table):
-                self.check_refused(self.bonds(table), ENGINES, "strengths, notches and dead loads")
+                self.check_refused(self.bonds(table), ENGINES, "strengths, notches or dead loads")
 
     def test_damping(self):
         run = "[run]\nduration = 1e-3\ndamping = {{ {} }}\n"
         self.check_refused(self.bonds(run.format("mass = 10.0")), ENGINES, "damping proportional to mass", "local")
-        self.check_refused(self.bonds(run.format("contact = 0.1")), ["yade", "pfc"], "dashpots in bonds")
+        self.check_refused(self.bonds(run.format("contact = 0.1")), ["yade"], "dashpots in bonds")
         self.check_refused(self.bonds(run.format("local = 0.1")), [])
 
     def test_periodic_cells(self):
         cell = self.bonds(assembly="periodic = true").read_text()
         cell = cell[:cell.index("[[support]]")].replace("rows = 4", "rows = 8").replace("columns = 4", "columns = 8")
         (self.folder / "cell.toml").write_text(cell + "[run]\nduration = 1e-4\n")
-        self.check_refused(self.folder / "cell.toml", ["pfc"], "periodic cells", "lammps or yade")
+        self.check_refused(self.folder / "cell.toml", [])
         small = self.folder / "small.toml"
         small.write_text((self.folder / "cell.toml").read_text().replace("columns = 8", "columns = 2"))
-        self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry")
+        self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry", "a cell that is too short")
 
     def test_spheres_and_springs_that_differ(self):
-        self.check_refused(self.bonds(assembly='body = "sphere"'), ["pfc"], "spheres")
-        self.check_refused(self.weighted(), ["pfc"], "springs that differ", "yade")
+        self.check_refused(self.bonds(assembly='body = "sphere"'), [])
+        self.check_refused(self.weighted(), [])
 
     def test_several_load_cases(self):
         case = self.bonds('case = "a"\n[[load]]\ngroup = "top"\nforce = [0.0, 1.0]\ncase = "b"\n')
@@ -385,7 +381,7 @@ class Pages(ExportTest):
     def test_the_page_shows_the_table_of_the_program(self):
         table = self.check_done(equidem("help", "engines")).stdout.strip()
         self.assertIn(table, (SOURCE / "docs" / "how_to" / "engines.md").read_text())
-        self.assertGreater(table.count("\n"), 25)
+        self.assertGreater(table.count("\n"), 12)
 
 
 if __name__ == "__main__":

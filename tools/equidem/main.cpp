@@ -24,7 +24,7 @@ constexpr const char* footer = R"(Examples:
   equidem help case          every key of the case file; with --markdown as a page
   equidem help case springs  the keys of one table
   equidem help result        numbers of result.json, their units and meanings
-  equidem help engines       what LAMMPS, YADE and PFC carry of a model
+  equidem help engines       what LAMMPS and YADE carry of a model
   equidem help man solve     the page of man(1) on a verb; 'help man' alone: on the program
   equidem help completion bash    completion for the shell
 
@@ -48,10 +48,8 @@ int main(int argc, char** argv) {
       .verbs = verbs,
       .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page, describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
-                 {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
+                 {"engines", "what LAMMPS and YADE carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
-                    "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
-                   {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",
-                    "Use 'equidem-papers PAPER [OPTIONS]'; 'equidem-papers --help' lists the papers"}}};
+                    "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"}}};
   return run_program(program, argc, argv);
 }

@@ -28,7 +28,7 @@ inline constexpr std::array verbs{
     Verb{"pack", "make an assembly: bodies in a box, at random or at rest", declare_pack, true},
     Verb{"run", "dynamics: bonded discs stepped in time or relaxed to rest, or bodies that collide", declare_run, true},
     Verb{"quasistatic", "contacts that break one after another under a growing load", declare_quasistatic, true},
-    Verb{"export", "the model as input of LAMMPS, YADE or PFC, or its equations as matrices", declare_export},
+    Verb{"export", "the model as input of LAMMPS or YADE, or its equations as matrices", declare_export},
     Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
 };

@@ -100,7 +100,7 @@ std::vector<Key<Probe>> probe_keys(BodyFamily family) {
   std::vector<Key<Probe>> keys{
       key("name", &Probe::name, required, "begins the names of its columns"),
       key("group", &Probe::group, or_instead({"bodies"}, "they say whose history it is"), "a group"),
-      key("bodies", &Probe::bodies, optional, formerly("grains"), "counted from 0; those of a file first"),
+      key("bodies", &Probe::bodies, optional, "counted from 0; those of a file first"),
       key("quantities", &Probe::quantities, choices(std::move(words)), first,
           refused({{"energy", "the energies of the whole scene are in every history", "Remove it"}}),
           family == BodyFamily::bonded

@@ -29,7 +29,7 @@ const File<SpringsFile>& springs_file_format() {
 std::vector<Key<SpringsTable>> springs_keys() {
   using S = SpringsTable;
   return {key("kN", &S::constants, &SpringConstants::kN, required, unit("Pa"), positive, "normal spring"),
-          key("kT", &S::constants, &SpringConstants::kT, required, unit("Pa"), formerly("ks"),
+          key("kT", &S::constants, &SpringConstants::kT, required, unit("Pa"),
               "tangential spring; 0: none; negative: a static answer exists for small ones only"),
           key("weighting", &S::weighting,
               "uniform: the same at every contact; contact_density: k/psi(theta), Abe (11), (21); "

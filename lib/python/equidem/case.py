@@ -264,7 +264,7 @@ class Case:
         Parameters
         ----------
         to
-            "lammps", "yade", "pfc" or "matrix-market": what ``equidem export --to`` takes.
+            "lammps", "yade" or "matrix-market": what ``equidem export --to`` takes.
         options
             Those of the verb; ``accept="friction"`` exports what the program computes otherwise, as its refusal says.
 

@@ -79,11 +79,10 @@ CaseModel bonded_model(const ExportOptions& options, Engine engine) {
   model.to_rest = !run || run->until_rest;
   if (resolved.strength || !problem->assembly.contact_tension.empty() || !resolved.notches.empty() ||
       !resolved.dead_loads.empty())
-    model.found.emplace(EngineFeature::breakage, "");
+    model.found.emplace(EngineFeature::bonds, "strengths, notches or dead loads");
   if (model.to_rest && (!model.motions.empty() || !model.timed_loads.empty()))
-    model.found.emplace(EngineFeature::schedules_to_rest, "");
-  if (!model.to_rest && model.found.contains(EngineFeature::given_displacements))
-    model.found.emplace(EngineFeature::given_at_start, model.found.at(EngineFeature::given_displacements));
+    model.found.emplace(EngineFeature::schedules, "in a run until rest");
+  if (model.to_rest) model.found.erase(EngineFeature::given_at_start);
   if (model.to_rest && model.local_damping == 0) model.local_damping = settings.damping.local = damping_to_rest;
   if (run) model.duration = run->duration.value_or(0);
   finish(model, engine, options, resolved.document.where(), [&] {
@@ -148,10 +147,6 @@ Exported export_to_lammps(const ExportOptions& options) {
 
 Exported export_to_yade(const ExportOptions& options) {
   return export_to(options, Engine::yade, yade_files);
-}
-
-Exported export_to_pfc(const ExportOptions& options) {
-  return export_to(options, Engine::pfc, pfc_files);
 }
 
 }  // namespace equidem

@@ -43,7 +43,6 @@ using ExportFunction = Exported (*)(const ExportOptions& options);
 
 Exported export_to_lammps(const ExportOptions& options);
 Exported export_to_yade(const ExportOptions& options);
-Exported export_to_pfc(const ExportOptions& options);
 Exported export_to_matrix_market(const ExportOptions& options);
 
 struct ExportFormat {
@@ -55,7 +54,6 @@ struct ExportFormat {
 inline constexpr std::array export_formats{
     ExportFormat{"lammps", "in.equidem and its data file", export_to_lammps},
     ExportFormat{"yade", "run_equidem.py", export_to_yade},
-    ExportFormat{"pfc", "equidem.dat, commands of PFC 2D", export_to_pfc},
     ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx), solve.py", export_to_matrix_market},
 };
 

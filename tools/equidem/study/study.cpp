@@ -228,7 +228,7 @@ int run_verb(const StudyVerb& verb) {
   times.add("study", watch.seconds());
   const auto plots = study_plots(report);
   const auto draw = [](const std::filesystem::path& into, const auto& named, bool overwrite) {
-    std::visit([&](const auto& plot) { write_plot(into, named.first, plot, overwrite); }, named.second);
+    write_plot(into, named.first, named.second, overwrite);
   };
   std::vector<OutputPart> parts;
   if (folder) {

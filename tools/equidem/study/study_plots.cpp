@@ -158,29 +158,6 @@ Plot time_plot(const StudyReport& report, const std::string& problem) {
   return plot;
 }
 
-/// A bar for each setting, of its processor time with quartiles.
-BarChart time_chart(const StudyReport& report, const std::string& problem) {
-  const Study& study = report.study;
-  const double pieces = study.pieces > 0 ? study.pieces : 1;
-  double longest = 0;
-  for (const StudyRow& row : report.result.rows)
-    if (row.setting.problem == problem) longest = std::max(longest, row.time.processor_median / pieces);
-  const auto [unit, scale] = longest < 1e-6   ? std::pair{"ns", 1e9}
-                             : longest < 1e-3 ? std::pair{"µs", 1e6}
-                                              : std::pair{"ms", 1e3};
-  BarChart chart{
-      .title = problem.empty() ? study.title : study.title + ": " + problem,
-      .axis = study.pieces > 0 ? fmt::format("{} per {}", unit, study.piece) : fmt::format("processor time, {}", unit)};
-  for (const StudyRow& row : report.result.rows) {
-    if (row.setting.problem != problem || row.time.repetitions == 0) continue;
-    chart.bars.push_back({.label = row.setting.label(),
-                          .value = scale / pieces * row.time.processor_median,
-                          .low = scale / pieces * row.time.processor_lower_quartile,
-                          .high = scale / pieces * row.time.processor_upper_quartile});
-  }
-  return chart;
-}
-
 std::string size_plot_name(const Study& study, double error) {
   return fmt::format("{}_time_to_{}", study.name, plain(fmt::format("{:g}", error)));
 }
@@ -239,8 +216,8 @@ std::vector<std::string> study_plot_names(const Study& study) {
   return names;
 }
 
-std::vector<std::pair<std::string, StudyPlot>> study_plots(const StudyReport& report) {
-  std::vector<std::pair<std::string, StudyPlot>> plots;
+std::vector<std::pair<std::string, Plot>> study_plots(const StudyReport& report) {
+  std::vector<std::pair<std::string, Plot>> plots;
   for (const StudyFront& front : report.result.fronts)
     plots.emplace_back(name_of(report.study, front.problem, report.study.quantities[front.quantity].name),
                        error_plot(report, front));
@@ -250,12 +227,8 @@ std::vector<std::pair<std::string, StudyPlot>> study_plots(const StudyReport& re
   }
   if (!all_facts(report.study)) return plots;
   for (const std::string& problem : problems_of(report.study)) {
-    if (by_method(report, problem).empty()) continue;
-    const std::string name = name_of(report.study, problem, "time");
-    if (varies_nothing(report, problem))
-      plots.emplace_back(name, time_chart(report, problem));
-    else
-      plots.emplace_back(name, time_plot(report, problem));
+    if (by_method(report, problem).empty() || varies_nothing(report, problem)) continue;
+    plots.emplace_back(name_of(report.study, problem, "time"), time_plot(report, problem));
   }
   return plots;
 }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "equidem/output/files/csv.hpp"
@@ -38,10 +37,9 @@ Results study_results(const StudyReport& report);
 /// assured error.
 Table study_table(const StudyReport& report);
 
-using StudyPlot = std::variant<Plot, BarChart>;
 /// Name and plot: error against time with its front, for each problem and quantity, and time against the size of the
-/// problem; where nothing has an error, time against what is varied, or a bar for each setting where nothing is.
-std::vector<std::pair<std::string, StudyPlot>> study_plots(const StudyReport& report);
+/// problem; where nothing has an error, time against what is varied.
+std::vector<std::pair<std::string, Plot>> study_plots(const StudyReport& report);
 /// The names that study_plots will use, known before.
 std::vector<std::string> study_plot_names(const Study& study);
 

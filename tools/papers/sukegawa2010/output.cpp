@@ -67,7 +67,6 @@ int reproduce(const CommonOptions& options, bool quick) {
                           .tables = any ? Named<Table>{{"runs", table}} : Named<Table>{},
                           .plots = any ? plots(result, options.out) : Named<Plot>{},
                           .status = result.complete() ? "done" : "incomplete"});
-    if (options.out) write_sheets(result, *options.out);
   }
   if (!stopped) return 0;
   throw Error(

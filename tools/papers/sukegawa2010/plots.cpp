@@ -6,7 +6,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/fields/spectrum.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/picture_sheet.hpp"
 
 #include "sukegawa2010/sukegawa2010.hpp"
 #include "tables.hpp"
@@ -100,7 +99,6 @@ Plot resonance_plot(const Reproduction& result) {
     liquid.x.push_back(0.01 * k);
     liquid.y.push_back(std::min(50.0, liquid_amplification(liquid.x.back(), width, depth)));
   }
-  plot.mark_points_outside = false;
   plot.series = {liquid, with_points(
                              {.label = "discs", .style = SeriesStyle::points, .colour = PlotColour::blue}, runs,
                              [](const Done& d) { return 1 / d.run.shaking->frequency; }, amplification_of)};
@@ -216,52 +214,6 @@ bool has_points(const Plot& plot) {
 }
 
 }  // namespace
-
-namespace {
-
-/// Pictures of the nine shakings, as far as they were done.
-std::vector<SheetPicture> shakings_of(const Reproduction& result, Shape shape, const std::filesystem::path& folder) {
-  std::vector<SheetPicture> pictures;
-  for (const double frequency : {10, 2, 1}) {
-    for (const double acceleration : {400, 800, 1200}) {
-      for (const Done& done : mapped(result, shape)) {
-        const Shaking& shaking = *done.run.shaking;
-        const auto file = folder / (done.run.name() + "_during.png");
-        if (shaking.frequency == frequency && shaking.gal == acceleration && std::filesystem::exists(file))
-          pictures.push_back({file, fmt::format("{:g} gal, {:g} Hz", acceleration, frequency)});
-      }
-    }
-  }
-  return pictures;
-}
-
-/// Plots of the nine grains along x, along y and in rotation, while the box is filled or shaken.
-std::vector<SheetPicture> histories_of(Shape shape, const char* stage, const std::filesystem::path& folder) {
-  std::vector<SheetPicture> pictures;
-  for (const char* component : {"x", "y", "angle"}) {
-    const auto file = folder / fmt::format("{}_{}_{}.png", plural_of(shape), stage, component);
-    if (std::filesystem::exists(file)) pictures.push_back({file});
-  }
-  return pictures;
-}
-
-}  // namespace
-
-void write_sheets(const Reproduction& result, const std::filesystem::path& folder) {
-  const auto write = [&](Shape shape, const char* name, const std::string& title,
-                         const std::vector<SheetPicture>& pictures) {
-    if (pictures.empty()) return;
-    write_picture_sheet(folder / fmt::format("{}_{}.png", plural_of(shape), name), title, pictures, 3, true);
-  };
-  for (const Shape shape : {Shape::disc, Shape::ellipse, Shape::bonded_pair, Shape::rigid_pair}) {
-    const std::string bodies = words(plural_of(shape));
-    write(shape, "shakings", "Largest displacement of the centre of mass: " + bodies,
-          shakings_of(result, shape, folder));
-    write(shape, "falling", "Nine of the " + bodies + " while the box is filled",
-          histories_of(shape, "falling", folder));
-    write(shape, "shaken", "Nine of the " + bodies + " under 400 gal, 10 Hz", histories_of(shape, "shaken", folder));
-  }
-}
 
 Named<Plot> plots(const Reproduction& result, const Folder& folder) {
   Named<Plot> all;

@@ -269,8 +269,5 @@ double liquid_amplification(double period, double width, double depth);
 std::string verdicts(const Reproduction& result);
 std::string report(const Reproduction& result);
 Named<Plot> plots(const Reproduction& result, const Folder& folder);
-/// A sheet a shape of the pictures of its nine shakings (Figs. 8.33 to 8.51), and of the plots of its nine grains while
-/// it falls (Figs. 8.4, 8.13, 8.22) and while it is shaken; of the files that are in the folder.
-void write_sheets(const Reproduction& result, const std::filesystem::path& folder);
 
 }  // namespace equidem::sukegawa2010

@@ -95,10 +95,6 @@ inline auto between(double low, double high) {
 inline auto unit(std::string text) {
   return [text](KeySpec& key) { key.unit = text; };
 }
-/// An earlier name of the key, refused with the present one.
-inline auto formerly(std::string name) {
-  return [name](KeySpec& key) { key.former = name; };
-}
 inline auto refused(std::vector<RefusedWord> words) {
   return [words](KeySpec& key) { key.refused = words; };
 }

@@ -3,6 +3,7 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/removed_keys.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
@@ -146,10 +147,9 @@ class Checker {
 
   [[noreturn]] void fail_unknown(const std::string& path, const TomlValue& table, const std::string& name,
                                  const TomlValue& value) const {
-    for (const KeySpec& key : spec_.keys)
-      if (path == key.table && name == key.former)
-        fail_at(value, key_path(path, name), fmt::format("{} is called {} now", name, key.name),
-                "a key has one name for all kinds of bodies", fmt::format("Write {} instead", key.name));
+    if (const RemovedKey* removed = removed_key(path, name))
+      fail_at(value, key_path(path, name), fmt::format("{} is of an earlier version", name),
+              fmt::format("the {} has it no longer", spec_.noun), std::string(removed->remedy));
     const std::vector<std::string> here = names_below(path, table);
     std::string remedy = fmt::format("Known here: {}", joined(here));
     const std::vector<const KeySpec*> elsewhere = keys_elsewhere([&](const KeySpec& key) { return key.name == name; });

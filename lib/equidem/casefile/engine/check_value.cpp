@@ -7,6 +7,7 @@
 
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/removed_keys.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
@@ -133,6 +134,9 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
   if (std::ranges::find(key.choices, value.text) != key.choices.end()) return;
   const std::string problem =
       fmt::format("{} is {} {}", value.shown(), key.type == KeyType::words ? "none of the" : "no known", key.name);
+  if (const RemovedKey* removed = removed_key(key.table, key.name, value.text))
+    fail_at(value, key.path(), fmt::format("{} is of an earlier version", value.shown()),
+            fmt::format("{} takes it no longer", key.name), std::string(removed->remedy));
   const auto refused = std::ranges::find(key.refused, value.text, &RefusedWord::word);
   if (refused != key.refused.end()) fail_at(value, key.path(), problem, refused->why, refused->remedy);
   const auto meant = nearest(value.text, key.choices);

@@ -84,7 +84,6 @@ struct KeySpec {
   std::vector<KeyRelation> relations = {};
   std::string help = {};
   std::vector<RefusedWord> refused = {};
-  std::string former = {};  ///< an earlier name, which is an error that says the present one
 
   static constexpr const char* required = "required";
   static constexpr const char* none = "none";

@@ -28,7 +28,7 @@ void bind_run(File<GrainTables>& file) {
                  "of an automatic step; left out: 50 for laws that give a force, 10 for the maps, pi (that is omega "
                  "dt = 1) for exact_flow"),
              key_in<T>(
-                 "integrator", &GrainCase::options, &GrainOptions::integrator, optional, formerly("scheme"),
+                 "integrator", &GrainCase::options, &GrainOptions::integrator, optional,
                  "of laws that give a force; semi_implicit_euler (default): first order, contacts that stick do not "
                  "creep; velocity_verlet: second order, as LAMMPS steps")});
   bind_motion(file, BodyFamily::colliding, &GrainCase::probes);

@@ -35,7 +35,7 @@ void require_carried(const FoundFeatures& found, Engine engine, const std::vecto
 std::string engine_features_table() {
   const auto names = names_of<Engine>();
   std::string text =
-      fmt::format("| part of a model | {} | why it is refused |\n|---|---|---|---|---|\n", joined(names, " | "));
+      fmt::format("| part of a model | {} | why it is refused |\n|---|---|---|---|\n", joined(names, " | "));
   for (const EngineFeatureRow& row : EnumNames<EngineFeature>::list) {
     std::vector<std::string> cells;
     for (const auto& engine : EnumNames<Engine>::list) {

@@ -11,27 +11,11 @@ namespace equidem {
 namespace {
 
 const char* start_of(Engine engine) {
-  switch (engine) {
-    case Engine::lammps:
-      return "lmp -in in.equidem";
-    case Engine::yade:
-      return "yade -n -x run_equidem.py";
-    case Engine::pfc:
-      return "program call 'equidem.dat'";
-  }
-  return "";
+  return engine == Engine::lammps ? "lmp -in in.equidem" : "yade -n -x run_equidem.py";
 }
 
 const char* results_of(Engine engine) {
-  switch (engine) {
-    case Engine::lammps:
-      return "end.dump";
-    case Engine::yade:
-      return "end.txt";
-    case Engine::pfc:
-      return "equidem.sav";
-  }
-  return "";
+  return engine == Engine::lammps ? "end.dump" : "end.txt";
 }
 
 }  // namespace

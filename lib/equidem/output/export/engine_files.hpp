@@ -26,10 +26,6 @@ std::vector<EngineFile> lammps_files(const EngineModel& model);
 /// \param model carried by YADE
 std::vector<EngineFile> yade_files(const EngineModel& model);
 
-/// PFC 2D (6 or later): equidem.dat, commands without FISH. Bonds: contact bonds of the linear model.
-/// \param model carried by PFC
-std::vector<EngineFile> pfc_files(const EngineModel& model);
-
 /// README: model, units and depth, how to start.
 EngineFile readme_of(const EngineModel& model, Engine engine);
 

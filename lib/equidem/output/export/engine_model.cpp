@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/assembly/touching.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/loop_choice.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
@@ -72,69 +71,30 @@ void find_features_of_contacts(const Scene& scene, FoundFeatures& found) {
     const double distance = norm(assembly.branch(c));
     longest = std::max(longest, distance);
     pairs.emplace_back(std::minmax(c.i, c.j));
-    if (std::abs(c.lever_i + c.lever_j - distance) > lever_tolerance * distance) add(found, levers_with_gaps, name);
-    if (std::abs(c.lever_i - 0.5 * distance) > lever_tolerance * distance) add(found, levers_by_radii, name);
-    if (scene.springs[k].kT < 0) add(found, negative_tangential, name);
-    if (scene.springs.bending(k) > 0) add(found, bending_bonds, name);
-    if (scene.springs[k].kN != scene.springs[0].kN || scene.springs[k].kT != scene.springs[0].kT)
-      add(found, unequal_springs, name);
+    if (std::abs(c.lever_i + c.lever_j - distance) > lever_tolerance * distance)
+      add(found, contact_points_of_no_radii, "the levers of " + name + ", which do not add up to the distance");
+    if (std::abs(c.lever_i - 0.5 * distance) > lever_tolerance * distance) add(found, contact_points, name);
+    if (scene.springs[k].kT < 0) add(found, bonds, "negative kT of " + name);
+    if (scene.springs.bending(k) > 0) add(found, bonds, "bending springs of " + name);
   }
   std::ranges::sort(pairs);
   if (const auto twice = std::ranges::adjacent_find(pairs); twice != pairs.end())
-    add(found, double_contacts, fmt::format("discs {} and {}", twice->first, twice->second));
-  if (!assembly.periodic()) return;
-  add(found, periodic_cell, "");
-  if (std::min(assembly.period->x, assembly.period->y) <= 2 * longest) add(found, small_cell, "");
-}
-
-void find_features_of_inertia(EngineModel& model) {
-  if (model.lever_radii.empty()) return;
-  for (std::size_t k = 0; k < model.bodies.size(); ++k) {
-    const Inertia& inertia = model.bodies[k].inertia;
-    const double expected = 0.5 * inertia.mass * squared(model.lever_radii[k]);
-    if (std::abs(inertia.moment - expected) <= lever_tolerance * expected) continue;
-    add(model.found, other_inertia, fmt::format("disc {}", k));
-    return;
-  }
-}
-
-/// The gap of bonds, by the radii that place their contact points, beyond which PFC is to bond nothing: that of the
-/// longest. Another pair with a smaller gap would be bonded too.
-void find_largest_gap(EngineModel& model) {
-  if (model.lever_radii.empty() || model.period) return;
-  std::vector<std::pair<std::int32_t, std::int32_t>> bonded;
-  for (const EngineBond& bond : model.bonds) {
-    bonded.emplace_back(std::minmax(bond.i, bond.j));
-    model.largest_gap =
-        std::max(model.largest_gap, bond.length - model.lever_radii[bond.i] - model.lever_radii[bond.j]);
-  }
-  std::ranges::sort(bonded);
-  model.largest_gap += lever_tolerance * *std::ranges::max_element(model.lever_radii);
-  Assembly near;
-  near.radii = model.lever_radii;
-  for (const EngineBody& body : model.bodies) near.centres.push_back(body.position);
-  const double tolerance = std::max(0.0, model.largest_gap) / (2 * *std::ranges::min_element(near.radii));
-  if (tolerance > 1) return add(model.found, bonds_by_no_gap, "gaps wider than a disc");
-  for (const Contact& c : touching_discs(near, tolerance)) {
-    const double gap = norm(near.branch(c)) - near.radii[c.i] - near.radii[c.j];
-    if (gap > model.largest_gap || std::ranges::binary_search(bonded, std::pair(c.i, c.j))) continue;
-    return add(model.found, bonds_by_no_gap, fmt::format("discs {} and {} are as near", c.i, c.j));
-  }
+    add(found, bonds, fmt::format("two contacts of discs {} and {}", twice->first, twice->second));
+  if (assembly.periodic() && std::min(assembly.period->x, assembly.period->y) <= 2 * longest)
+    add(found, cells, "a cell that is too short");
 }
 
 void find_features_of_schedule(const Schedule& schedule, const std::string& name, FoundFeatures& found) {
-  if (schedule.times.size() > most_points_of_schedule) add(found, long_tables, name);
+  if (schedule.times.size() > most_points_of_schedule) add(found, EngineFeature::schedules, "that of " + name);
 }
 
 /// Walls of either kind of scene.
 void find_features_of_walls(const std::vector<Wall>& walls, FoundFeatures& found) {
   for (const Wall& wall : walls) {
     const std::string name = "wall '" + wall.name + "'";
-    if (wall.shape != Wall::Shape::line) add(found, shaped_walls, name);
-    if (wall.moves()) add(found, moving_walls, name);
-    if (wall.servo) add(found, servo_walls, name);
+    if (wall.shape != Wall::Shape::line || wall.servo) add(found, shaped_walls, name);
     for (const Schedule* move : {&wall.move_x, &wall.move_y}) find_features_of_schedule(*move, name, found);
-    if (wall.normal.x != 0 && wall.normal.y != 0) add(found, oblique_walls, name);
+    if (wall.normal.x != 0 && wall.normal.y != 0) add(found, some_walls, "oblique " + name);
   }
 }
 
@@ -147,10 +107,10 @@ void hold(EngineModel& model, const Scene& scene) {
       const std::string name = "support of '" + support.group + "'";
       const std::vector<std::int32_t>& discs = group(scene.assembly, support.group).discs;
       const double at_start = component->at(0);
-      if (at_start != 0) add(model.found, given_displacements, name);
+      if (at_start != 0) add(model.found, given_at_start, name);
       for (const std::int32_t disc : discs) model.bodies[disc].held[k] = at_start;
       if (!component->changes()) continue;
-      add(model.found, k == 2 ? turning_schedules : schedules, name);
+      if (k == 2) add(model.found, turning, "the rotation by the " + name);
       find_features_of_schedule(*component, name, model.found);
       model.motions.push_back({k, *component, discs});
     }
@@ -162,9 +122,8 @@ void load(EngineModel& model, const Scene& scene) {
     const Load& given = timed.load;
     const std::string name = "load on '" + given.group + "'";
     const bool changes = timed.factor.changes();
-    if (given.moment != 0) add(model.found, load_moments, name);
+    if (given.moment != 0) add(model.found, turning, "the " + name);
     if (changes) {
-      add(model.found, schedules, name);
       find_features_of_schedule(timed.factor, name, model.found);
       model.timed_loads.push_back({timed.factor, {}});
     }
@@ -214,7 +173,7 @@ void set_stiffness(EngineModel& model, double time_step) {
     for (int b = 0; b < model.kinds; ++b) {
       PairProperties& pair = model.pairs[static_cast<std::size_t>(a * model.kinds + b)];
       if (pair.stiffness > 0) continue;
-      if (!equal) add(model.found, stiffness_by_mass, "");
+      if (!equal) add(model.found, other_laws, "stiffness that follows from unequal masses");
       const bool two = of_bodies[static_cast<std::size_t>(a)] && of_bodies[static_cast<std::size_t>(b)];
       pair.stiffness = pair.dimensionless * reduced_mass(body, two ? &body : nullptr) / squared(time_step);
     }
@@ -224,28 +183,31 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
   std::vector<char> of_bodies(static_cast<std::size_t>(model.kinds), 0);
   for (const EngineBody& each : model.bodies) of_bodies[static_cast<std::size_t>(each.kind)] = 1;
   const PairProperties* first = nullptr;
-  bool damped = false;
+  bool damped = false, differ = false;
   for (int a = 0; a < model.kinds; ++a)
     for (int b = 0; b < model.kinds; ++b) {
       if (!of_bodies[static_cast<std::size_t>(a)] && !of_bodies[static_cast<std::size_t>(b)]) continue;
       const PairProperties& pair = model.between(a, b);
       const double zeta = damping_ratio(law, pair);
       const std::string restitution = fmt::format("restitution {:.6g}", pair.restitution);
+      const bool equal = equal_masses(model), along = pair.friction > 0 && pair.tangential_damping > 0;
       damped = damped || zeta > 0;
-      if (zeta > 0 && !equal_masses(model)) add(model.found, unequal_dashpots, restitution);
-      if (zeta > 0 && pair.end != ContactEnd::at_zero_force) add(model.found, pulling_dashpots, restitution);
-      if (zeta >= 1 && !equal_masses(model))
-        add(model.found, strong_dashpots, fmt::format("damping ratio {:.6g}", zeta));
+      if (zeta > 0 && !equal) add(model.found, dashpots, restitution + " of bodies of unequal masses");
+      if (zeta > 0 && pair.end != ContactEnd::at_zero_force)
+        add(model.found, dashpots, restitution + " of contacts that may pull");
+      if (along) add(model.found, dashpots, "tangential_damping");
+      model.graded_dashpots = model.graded_dashpots || (zeta > 0 && !equal) || along;
+      if (zeta >= 1 && !equal)
+        add(model.found, other_laws, fmt::format("the damping ratio {:.6g} of bodies of unequal masses", zeta));
+      if (along && zeta == 0 && !equal)
+        add(model.found, other_laws, "tangential dashpots without normal ones, of bodies of unequal masses");
       if (pair.friction > 0) {
         add(model.found, friction_levers, fmt::format("with the coefficient {:.6g}", pair.friction));
-        if (pair.tangential_damping > 0) add(model.found, tangential_dashpots, "");
-        if (pair.tangential_damping > 0 && zeta == 0 && !equal_masses(model))
-          add(model.found, dashpots_along_alone, "");
       }
       if (first == nullptr) first = &pair;
-      if (!(pair == *first)) add(model.found, unequal_pairs, "");
+      differ = differ || !(pair == *first);
     }
-  if (damped && model.found.contains(unequal_pairs)) add(model.found, dashpots_by_pair, "");
+  if (damped && differ) add(model.found, dashpots, "restitution that differs from pair to pair");
 }
 
 }  // namespace
@@ -268,15 +230,14 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
   EngineModel model;
   model.bonded = true;
   model.body = body;
-  if (body == Body::sphere) add(model.found, spheres, "");
   model.gravity = scene.gravity;
   model.period = assembly.period;
   model.local_damping = options.damping.local;
   if (options.damping.mass != 0) add(model.found, mass_damping, "");
-  const bool dashpots = options.damping.dashpots();
-  if (dashpots) add(model.found, bond_dashpots, "");
-  if (!on_lines_of_centres(assembly)) add(model.found, off_line_contacts, "");
-  if (!assembly.sections.empty()) add(model.found, sections, "");
+  const bool damped = options.damping.dashpots();
+  if (damped) add(model.found, bond_dashpots, "");
+  if (!on_lines_of_centres(assembly)) add(model.found, contact_points_of_no_radii, "some off the line of centres");
+  if (!assembly.sections.empty()) add(model.found, EngineFeature::shapes, "sections of other shapes");
   const bool restrained = options.rotation == Rotation::restrained;
   for (std::size_t k = 0; k < assembly.size(); ++k) {
     EngineBody disc{.position = assembly.centres[k], .radius = assembly.radii[k], .inertia = scene.inertia[k]};
@@ -291,21 +252,19 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
                            .springs = scene.springs[k],
                            .shift_x = c.shift_x,
                            .shift_y = c.shift_y});
-    if (dashpots)
+    if (damped)
       model.bonds.back().dashpots =
           dashpots_of(options.damping, scene.springs[k], scene.inertia[c.i].mass, scene.inertia[c.j].mass);
   }
   find_features_of_contacts(scene, model.found);
   model.lever_radii = radii_of_levers(assembly);
-  if (model.lever_radii.empty()) add(model.found, levers_of_no_radii, "");
-  find_features_of_inertia(model);
-  find_largest_gap(model);
+  if (model.lever_radii.empty()) add(model.found, contact_points_of_no_radii, "");
   hold(model, scene);
   load(model, scene);
   set_velocities(model, scene);
   model.walls = scene.walls;
   find_features_of_walls(scene.walls, model.found);
-  if (!scene.walls.empty()) add(model.found, walls_of_bonds, "wall '" + scene.walls.front().name + "'");
+  if (!scene.walls.empty()) add(model.found, some_walls, "wall '" + scene.walls.front().name + "'");
   return model;
 }
 
@@ -318,7 +277,9 @@ EngineModel engine_model(const GrainScene& scene, const GrainOptions& options, B
   model.pairs = scene.pairs;
   for (std::size_t k = 0; k < scene.grains.size(); ++k) {
     const Grain& grain = scene.grains[k];
-    if (grain.shape() != GrainShape::disc) add(model.found, shapes, fmt::format("grain {}", k));
+    if (grain.shape() != GrainShape::disc)
+      add(model.found, shapes,
+          fmt::format("grain {}, {}", k, grain.shape() == GrainShape::ellipse ? "an ellipse" : "a clump"));
     model.bodies.push_back({.position = grain.position,
                             .radius = grain.radius,
                             .inertia = grain.inertia,
@@ -326,12 +287,11 @@ EngineModel engine_model(const GrainScene& scene, const GrainOptions& options, B
                             .spin = grain.spin,
                             .kind = grain.kind});
   }
-  if (body == Body::sphere) add(model.found, spheres, "");
-  if (!scene.bonds.empty()) add(model.found, grain_bonds, "");
+  if (!scene.bonds.empty()) add(model.found, bonds, "bonds of bodies that collide");
   find_features_of_walls(scene.walls, model.found);
-  if (scene.cell) add(model.found, cell_of_grains, "");
+  if (scene.cell) add(model.found, cells, "[cell]");
   if (options.law != NormalLaw::linear_dashpot) {
-    add(model.found, other_laws, describe(options.law).name);
+    add(model.found, other_laws, std::string("the law ") + describe(options.law).name);
     return model;
   }
   set_stiffness(model, options.time_step);

@@ -73,10 +73,10 @@ struct EngineModel {
   /// Radii, m, that place the contact point of bodies at a distance d at (d + r_i - r_j)/2 from i, as the bonds have
   /// it; empty: there are none.
   std::vector<double> lever_radii;
-  double largest_gap = 0;  ///< m, of bonded bodies of those radii
   std::vector<Wall> walls;
   int kinds = 0;                      ///< of grains and walls
   std::vector<PairProperties> pairs;  ///< kinds x kinds, row by row
+  bool graded_dashpots = false;       ///< dashpots of bodies of unequal masses, or along the contact
   FoundFeatures found;                ///< that some engine does not carry
 
   [[nodiscard]] const PairProperties& between(int a, int b) const {

@@ -156,8 +156,7 @@ class LammpsWriter {
   /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
   [[nodiscard]] bool by_mass() const {
     if (common_mass(model_)) return !differ_between_bodies();
-    return !model_.found.contains(EngineFeature::unequal_dashpots) &&
-           !model_.found.contains(EngineFeature::tangential_dashpots) && !differ_between_bodies();
+    return !model_.graded_dashpots && !differ_between_bodies();
   }
 
   [[nodiscard]] bool differ_between_bodies() const {

@@ -10,13 +10,12 @@
 namespace equidem {
 
 struct DrawnFigure {
-  std::string name;                ///< of its files, without extension
-  std::string title;               ///< read out in place of the figure
-  std::filesystem::path svg = {};  ///< empty: there is none
-  std::filesystem::path png = {};
-  std::string player = {};   ///< HTML of a moving picture, in place of files
-  std::string missing = {};  ///< the reason why nothing was drawn
-  bool timed_out = false;    ///< it is that gnuplot did not end
+  std::string name;                 ///< of its files, without extension
+  std::string title;                ///< read out in place of the figure
+  std::filesystem::path file = {};  ///< SVG or PNG; empty: there is none
+  std::string player = {};          ///< HTML of a moving picture, in place of files
+  std::string missing = {};         ///< the reason why nothing was drawn
+  bool timed_out = false;           ///< it is that gnuplot did not end
 };
 
 /// While one exists, it lists the figures that are drawn on its thread; the innermost one where there are several.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -12,14 +13,12 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/xml.hpp"
 #include "equidem/output/page/answers.hpp"
-#include "equidem/output/page/inline_svg.hpp"
 #include "equidem/output/page/page_style.hpp"
 #include "equidem/output/page/trust.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr std::size_t most_svg_bytes = 300'000;   ///< of a drawing; larger ones are shown as images
 constexpr std::size_t most_text_bytes = 100'000;  ///< of the case and of the report
 
 /// Marks of lines of the report that a reader must not miss.
@@ -172,35 +171,45 @@ std::string folded(const std::string& summary, std::string text) {
                      escape_xml(text));
 }
 
-/// The figure as SVG where that is small, else as the smaller one of SVG and PNG.
-std::string drawing_of(const DrawnFigure& figure, const std::string& prefix) {
-  std::string html;
-  if (!figure.svg.empty()) html = inline_svg(read_file(figure.svg), prefix, figure.title);
-  if (!figure.png.empty() && (html.empty() || html.size() > most_svg_bytes)) {
-    std::string image = inline_png(read_file(figure.png), figure.title);
-    if (html.empty() || image.size() < html.size()) html = std::move(image);
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[at + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63U] : '=';
   }
-  return html;
+  return text;
+}
+
+/// An image element that holds the bytes of the file.
+std::string image_of(const DrawnFigure& figure) {
+  const bool vector = figure.file.extension() == ".svg";
+  return fmt::format("<img alt=\"{}\" src=\"data:image/{};base64,{}\">", escape_xml(figure.title),
+                     vector ? "svg+xml" : "png", base64(read_file(figure.file)));
 }
 
 /// \param room bytes
 std::string figures_html(const std::vector<DrawnFigure>& figures, std::size_t room) {
   std::string html, missing;
-  std::size_t number = 0, used = 0;
+  std::size_t used = 0;
   for (const DrawnFigure& figure : figures) {
     if (!figure.player.empty()) continue;
     if (!figure.missing.empty()) {
       missing += fmt::format("<li>{}: {}</li>\n", escape_xml(figure.name), escape_xml(figure.missing));
       continue;
     }
-    const std::string drawing = drawing_of(figure, fmt::format("f{}-", ++number));
-    used += drawing.size();
-    if (drawing.empty() || used > room) {
-      used -= drawing.size();
+    const std::string image = image_of(figure);
+    used += image.size();
+    if (used > room) {
+      used -= image.size();
       missing += fmt::format("<li>{}: no room is left on this page; its files hold it</li>\n", escape_xml(figure.name));
       continue;
     }
-    html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", drawing, escape_xml(figure.title));
+    html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", image, escape_xml(figure.title));
   }
   if (!html.empty()) html = fmt::format("<div class=\"figures\">\n{}</div>\n", html);
   return missing.empty() ? html : fmt::format("{}<ul class=\"missing\">\n{}</ul>\n", html, missing);
@@ -249,14 +258,10 @@ std::string result_page_html(const ResultPage& page) {
   const std::size_t used = body.size() + end.size() + reserve;
   body += section("figures", "Figures", figures_html(page.figures, most_page_bytes - std::min(most_page_bytes, used)));
   body += end;
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
-      "<style>\n{1}</style>\n</head>\n<body>\n<header>\n<p class=\"verb\">equidem {2} <span class=\"status "
-      "{3}\">{4}</span>"
-      "</p>\n<h1>{0}</h1>\n</header>\n<main>\n{5}</main>\n<footer><p>equidem {6}</p></footer>\n</body>\n</html>\n",
-      escape_xml(heading), page_style, page.verb, escape_xml(page.status),
-      escape_xml(one_paragraph(page.status == "at_rest" ? "at rest" : page.status)), body, escape_xml(page.version));
+  return fmt::format(page_template, fmt::arg("heading", escape_xml(heading)), fmt::arg("style", page_style),
+                     fmt::arg("verb", page.verb), fmt::arg("status", escape_xml(page.status)),
+                     fmt::arg("state", escape_xml(page.status == "at_rest" ? "at rest" : page.status)),
+                     fmt::arg("body", body), fmt::arg("version", escape_xml(page.version)));
 }
 
 }  // namespace equidem

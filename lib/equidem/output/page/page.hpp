@@ -28,8 +28,8 @@ struct ResultPage {
 };
 
 /// The page: warnings, the answer with its error and residual, checks of a run, the case, what acts and why the rest
-/// does not, figures, the way to repeat it, the report. The same input gives the same bytes. Figures as SVG or, where
-/// that is large, as PNG; those for which no room is left are named.
+/// does not, figures, the way to repeat it, the report. The same input gives the same bytes. Figures are embedded as
+/// they are; those for which no room is left are named.
 /// \throws Error (bad_input) where a file of a figure cannot be read
 std::string result_page_html(const ResultPage& page);
 

@@ -1,9 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The style sheet of pages of results.
+/// The template of pages of results, and their style sheet.
 #pragma once
 
 namespace equidem {
+
+inline constexpr const char* page_template = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{heading}</title>
+<style>
+{style}</style>
+</head>
+<body>
+<header>
+<p class="verb">equidem {verb} <span class="status {status}">{state}</span></p>
+<h1>{heading}</h1>
+</header>
+<main>
+{body}</main>
+<footer><p>equidem {version}</p></footer>
+</body>
+</html>
+)";
 
 /// Light or dark as the reader's system asks; figures, drawn on white, are inverted on dark pages with their hues kept.
 inline constexpr const char* page_style = R"(:root {
@@ -16,7 +37,7 @@ inline constexpr const char* page_style = R"(:root {
     --paper: #14171b; --card: #1c2026; --ink: #e6e8eb; --soft: #9aa4b0; --line: #333a43; --accent: #7db8ea;
     --good: #5fc98f; --doubtful: #e8b04a; --bad: #ff8a80; --warn: #33290f; --warn-line: #a8751c;
   }
-  figure svg, figure img, canvas { filter: invert(1) hue-rotate(180deg); mix-blend-mode: screen; }
+  figure img, canvas { filter: invert(1) hue-rotate(180deg); mix-blend-mode: screen; }
 }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 1rem/1.55 system-ui, sans-serif; }
@@ -82,7 +103,7 @@ code { font-family: ui-monospace, monospace; font-size: 0.9em; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); gap: 1.2rem;
   align-items: start; }
 figure { margin: 0; }
-figure svg, figure img { display: block; width: 100%; height: auto; background: #fff; border-radius: 8px; }
+figure img { display: block; width: 100%; height: auto; background: #fff; border-radius: 8px; }
 figcaption { margin-top: 0.4rem; color: var(--soft); font-size: 0.85rem; }
 .missing { margin-top: 0.8rem; color: var(--soft); font-size: 0.9rem; }
 .player canvas { display: block; max-width: 100%; max-height: 75vh; margin: 0 auto; background: #fff;

@@ -67,26 +67,6 @@ void draw_scale_bar(Canvas& canvas, const PageFrame& frame, double left, double 
   canvas.text(with_unit(length, "m"), {0.5 * (left + right), y - 9}, small_text, TextAnchor::centre, ink);
 }
 
-void draw_force_legend(Canvas& canvas, const PictureScene& scene, double right, double y) {
-  const std::string widest = fmt::format("widest line {}", with_unit(scene.widest_force, "N/m"));
-  double x = right;
-  const auto put_text = [&](const std::string& text, const Colour& colour) {
-    canvas.text(text, {x, y + 0.36 * small_text}, small_text, TextAnchor::right, colour);
-    x -= canvas.text_width(text, small_text) + 8;
-  };
-  const auto put_sample = [&](const Colour& colour) {
-    const double width = std::clamp(scene.widest_line, 1.5, 6.0);
-    canvas.line({x - 24, y}, {x - 2, y}, width, colour);
-    x -= 44;
-  };
-  put_text(widest, grey);
-  x -= 12;
-  put_text("compression", ink);
-  put_sample(compression_colour);
-  put_text("tension", ink);
-  put_sample(tension_colour);
-}
-
 void draw_arrow(Canvas& canvas, Vec2 tail, Vec2 tip) {
   const Vec2 along = tip - tail;
   const double length = norm(along);
@@ -176,7 +156,9 @@ void draw_texts(Canvas& canvas, const PageFrame& frame, const std::string& title
 void draw_legends(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
   if (!scene.values.empty()) draw_colour_bar(canvas, scene);
-  if (scene.force_chains) draw_force_legend(canvas, scene, page_margin + frame.room.x, frame.height - 50.0);
+  if (scene.force_chains)
+    canvas.text("red: tension, blue: compression; widest line " + with_unit(scene.widest_force, "N/m"),
+                {page_margin + frame.room.x, frame.height - 46.0}, small_text, TextAnchor::right, ink);
   draw_texts(canvas, frame, scene.options.title, scene.caption);
 }
 

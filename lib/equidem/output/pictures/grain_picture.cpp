@@ -22,7 +22,7 @@ namespace equidem {
 namespace {
 
 constexpr double smallest_marked = 6;  // units, radius
-constexpr Colour wall_colour{0.25, 0.25, 0.28}, hatch_colour{0.62, 0.62, 0.66};
+constexpr Colour wall_colour{0.25, 0.25, 0.28}, pale_colour{0.62, 0.62, 0.66};
 
 /// Light tones of Okabe and Ito (2008), and the same darker for outlines, marks and paths.
 constexpr std::array fills = {Colour{0.68, 0.83, 0.93}, Colour{0.97, 0.83, 0.58}, Colour{0.66, 0.87, 0.78},
@@ -102,28 +102,15 @@ std::optional<std::array<Vec2, 2>> clipped(const PageFrame& frame, Vec2 point, V
   return std::array{point + from * along, point + to * along};
 }
 
-/// Hatched on the side without grains.
-void draw_line_wall(Canvas& canvas, const PageFrame& frame, const Wall& wall, double time) {
-  const auto ends = clipped(frame, wall.point + wall.displacement(time), perpendicular(wall.normal));
-  if (!ends) return;
-  const Vec2 a = frame.to_page((*ends)[0]), b = frame.to_page((*ends)[1]);
-  const double length = norm(b - a);
-  const Vec2 along = (b - a) / length, behind{-wall.normal.x, wall.normal.y};
-  constexpr double spacing = 14, stroke = 9;
-  for (double at = 0.5 * spacing; at < length; at += spacing) {
-    const Vec2 start = a + at * along;
-    canvas.line(start, start + stroke * (behind + 0.7 * along), 0.8, hatch_colour);
-  }
-  canvas.line(a, b, 2, wall_colour);
-}
-
 void draw_walls(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   for (const Wall& wall : picture.walls) {
-    if (wall.shape == Wall::Shape::line) {
-      draw_line_wall(canvas, frame, wall, picture.time);
-      continue;
+    std::vector<Vec2> points;
+    if (wall.shape != Wall::Shape::line) {
+      points = outline(wall, picture.time);
+    } else if (const auto ends =
+                   clipped(frame, wall.point + wall.displacement(picture.time), perpendicular(wall.normal))) {
+      points.assign(ends->begin(), ends->end());
     }
-    const auto points = outline(wall, picture.time);
     for (std::size_t k = 1; k < points.size(); ++k)
       canvas.line(frame.to_page(points[k - 1]), frame.to_page(points[k]), 2, wall_colour);
   }
@@ -210,7 +197,7 @@ void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
         grain.shape() == GrainShape::disc ? grain.radius : 0.5 * inscribed_radius(grain, picture.clumps);
     const auto first = std::ranges::find_if(picture.paths, [&](const auto& places) { return is_there(places[g]); });
     if (first == picture.paths.end()) continue;
-    canvas.stroke_circle(frame.to_page((*first)[g]), std::max(1.5, size * frame.scale), 0.7, hatch_colour);
+    canvas.stroke_circle(frame.to_page((*first)[g]), std::max(1.5, size * frame.scale), 0.7, pale_colour);
   }
 }
 
@@ -277,16 +264,14 @@ std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::pa
   const PageFrame frame = lay_out(picture);
   std::vector<std::filesystem::path> files{folder / (name + ".png")};
   write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::png), overwrite);
-  DrawnFigure drawn{.name = name,
-                    .title = fmt::format("{}{}{} at t = {:.4g} s", picture.title, picture.title.empty() ? "" : ": ",
-                                         counted(std::ssize(whole.grains), "body", "bodies"), picture.time),
-                    .png = files.back()};
+  DrawnFigures::add({.name = name,
+                     .title = fmt::format("{}{}{} at t = {:.4g} s", picture.title, picture.title.empty() ? "" : ": ",
+                                          counted(std::ssize(whole.grains), "body", "bodies"), picture.time),
+                     .file = files.back()});
   if (picture.grains.size() <= most_drawn_discs) {
     files.push_back(folder / (name + ".svg"));
     write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::svg), overwrite);
-    drawn.svg = files.back();
   }
-  DrawnFigures::add(std::move(drawn));
   return files;
 }
 

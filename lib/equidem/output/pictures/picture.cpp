@@ -74,8 +74,7 @@ PictureResult write_picture(const std::filesystem::path& folder, const std::stri
   write_file(png, draw(scene, PageFormat::png), overwrite);
   DrawnFigures::add({.name = name,
                      .title = fmt::format("{}{}{}", options.title, options.title.empty() ? "" : ": ", scene.caption),
-                     .svg = svg,
-                     .png = png});
+                     .file = png});
   return {.width = options.width,
           .height = pixel_height(scene),
           .displacement_scale = scene.displacement_scale,

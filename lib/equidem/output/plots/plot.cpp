@@ -2,18 +2,21 @@
 #include "equidem/output/plots/plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
 #include <string_view>
 #include <system_error>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/page/drawn_figures.hpp"
-#include "equidem/output/plots/bar_chart.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
-#include "equidem/output/plots/plot_script.hpp"
 
 namespace equidem {
 namespace {
@@ -60,11 +63,6 @@ bool check_series(const Series& series, const Plot& plot) {
                           counted(series.high.size(), "upper end")),
               "each bar has a point and two ends", "Give as many of each, or no bars");
   }
-  if (series.panel >= std::max<std::size_t>(plot.panels.size(), 1)) {
-    bad_input(fmt::format("series '{}' of a plot is in panel {}", series.label, series.panel),
-              fmt::format("panels are counted from 0, and there are {}", plot.panels.size()),
-              "Name another panel, or add it");
-  }
   bool any_point = false;
   for (std::size_t k = 0; k < series.x.size(); ++k) {
     if (!std::isfinite(series.x[k]) || !std::isfinite(series.y[k])) continue;
@@ -85,13 +83,284 @@ void check_plot(const Plot& plot) {
   if (!any_point) bad_input("a plot has no finite point", "there is nothing to draw", "Give it a series");
 }
 
-void check_chart(const BarChart& chart) {
-  if (chart.bars.empty()) bad_input("a chart has no bar", "there is nothing to draw", "Give it a bar");
-  for (const Bar& bar : chart.bars) {
-    if (std::isfinite(bar.value) && bar.value >= 0) continue;
-    bad_input(fmt::format("the bar '{}' of a chart has the value {}", bar.label, bar.value),
-              "the length of a bar is finite and not negative", "Leave it out");
+constexpr std::array<const char*, 8> palette = {"#000000", "#E69F00", "#56B4E9", "#009E73",
+                                                "#F0E442", "#0072B2", "#D55E00", "#CC79A7"};
+
+bool is_letter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// A single-quoted string of gnuplot: nothing in it is expanded (no backslash, no backtick), a quote is doubled.
+std::string gnuplot_string(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    if (c == '>' && result.ends_with("]]")) result += ' ';  // gnuplot leaves it in the SVG, and XML forbids it
+    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
   }
+  return result + "'";
+}
+
+/// "#RRGGBB".
+const char* hex(PlotColour colour) {
+  return palette[static_cast<std::size_t>(colour)];
+}
+
+/// Letters and digits of a label, joined by single underscores.
+std::string column_name(const std::string& label) {
+  std::string name;
+  for (const char c : label) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 0x80) {
+      name += c;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name;
+}
+
+struct AxisRange {
+  double min = 0, max = 1;
+};
+
+/// Outwards to a multiple of a 1-2-5 step near a fiftieth of the span.
+AxisRange rounded(double low, double high) {
+  const double raw = (high - low) / 50;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double step = raw / power < 2 ? 2 * power : raw / power < 5 ? 5 * power : 10 * power;
+  return {step * std::floor(low / step), step * std::ceil(high / step)};
+}
+
+/// The given bounds, else those of the data with a small margin, rounded outwards. Data that differ by round-off alone
+/// are drawn as equal ones.
+AxisRange range_of(const Axis& axis, const std::vector<Series>& series,
+                   std::initializer_list<std::vector<double> Series::*> members) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Series& one : series) {
+    for (const auto member : members) {
+      for (const double v : one.*member) {
+        if (!std::isfinite(v) || (axis.logarithmic && v <= 0)) continue;
+        low = std::min(low, v);
+        high = std::max(high, v);
+      }
+    }
+  }
+  if (axis.logarithmic) {
+    const double margin = low < high ? std::pow(high / low, 0.05) : 2;
+    low /= margin, high *= margin;
+  } else {
+    constexpr double round_off = 1e-12;  // relative
+    const bool differ = high - low > round_off * std::max(std::abs(low), std::abs(high));
+    const double margin = differ ? 0.05 * (high - low) : std::max(0.1 * std::abs(low), 1e-12);
+    const AxisRange padded = rounded(low - margin, high + margin);
+    low = padded.min, high = padded.max;
+  }
+  return {axis.min.value_or(low), axis.max.value_or(high)};
+}
+
+/// The format of labels of a linear axis: six digits, or as many as tell tics apart, of which there are up to ten.
+std::string number_format(const AxisRange& range) {
+  const double largest = std::max(std::abs(range.min), std::abs(range.max));
+  const double wanted = std::floor(std::log10(largest / (range.max - range.min))) + 3;
+  constexpr int usual = 6, most = 15;
+  const int digits = std::isfinite(wanted) ? static_cast<int>(std::clamp<double>(wanted, usual, most)) : usual;
+  return digits == usual ? "%g" : fmt::format("%.{}g", digits);
+}
+
+/// Scale and tic labels. A logarithmic axis shorter than two decades is labelled at 1, 2 and 5, a longer one at
+/// powers of ten.
+std::string axis_scale(char letter, const Axis& axis, const AxisRange& range) {
+  if (!axis.logarithmic) return fmt::format("set format {} '{}'\n", letter, number_format(range));
+  std::string text = fmt::format("set logscale {}\n", letter);
+  if (std::log10(range.max / range.min) > 2 || range.min < 1e-4 || range.max > 1e5) {
+    return text + fmt::format("set format {} '10^{{%T}}'\n", letter);
+  }
+  std::vector<std::string> tics;
+  for (int decade = -5; decade <= 5; ++decade)
+    for (const int digit : {1, 2, 5}) tics.push_back(fmt::format("{}e{}", digit, decade));
+  return text + fmt::format("set format {0} '%g'\nset {0}tics ({1})\n", letter, joined(tics));
+}
+
+std::string vertical_line(const VerticalLine& line, const std::string& plain) {
+  std::string text =
+      fmt::format("set arrow from first {0}, graph 0 to first {0}, graph 1 nohead back lw 1.1 dt (5,4) lc rgb '{1}'\n",
+                  line.x, hex(line.colour));
+  if (!line.label.empty()) {
+    text +=
+        fmt::format("set label {} at first {}, graph 0.985 right rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
+                    gnuplot_string(line.label), line.x, line.label_left ? -1 : 1, hex(line.colour), plain);
+  }
+  return text;
+}
+
+/// gnuplot's point types: open and filled.
+int point_type(Marker marker, bool filled) {
+  switch (marker) {
+    case Marker::circle:
+      return filled ? 7 : 6;
+    case Marker::square:
+      return filled ? 5 : 4;
+    case Marker::triangle:
+      return filled ? 9 : 8;
+    case Marker::diamond:
+      return filled ? 13 : 12;
+  }
+  return 7;
+}
+
+/// The parts of the plot command that draw one series.
+/// \param plain " noenhanced", or nothing
+std::vector<std::string> plot_clauses(const Series& series, const PlotData::Place& place, const std::string& plain) {
+  const std::string rows = place.last ? fmt::format("::{}::{}", place.first, *place.last) : "";
+  const bool line = series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line;
+  const std::string every = line ? " every stride" + rows : rows.empty() ? "" : " every " + rows;
+  const std::string columns = fmt::format("using \"{}\":\"{}\"", place.x, place.y);
+  const std::string title = series.label.empty() ? "notitle" : "title " + gnuplot_string(series.label) + plain;
+  const std::string points = fmt::format("pt {} ps marker", point_type(series.marker, series.filled));
+  const char* colour = hex(series.colour);
+  std::vector<std::string> clauses;
+  if (!series.low.empty()) {
+    clauses.push_back(fmt::format("data{} {}:\"{}\":\"{}\" with yerrorbars pt -1 lw 1.2 lc rgb '{}' notitle",
+                                  rows.empty() ? "" : " every " + rows, columns, place.low, place.high, colour));
+  }
+  std::string look;
+  switch (series.style) {
+    case SeriesStyle::line:
+      look = "lines lw 1.8";
+      break;
+    case SeriesStyle::dashed_line:
+      look = "lines lw 1.8 dt (8,5)";
+      break;
+    case SeriesStyle::points:
+      look = "points lw 1.6 " + points;
+      break;
+    case SeriesStyle::line_with_points:
+      look = "linespoints lw 1.6 " + points;
+      break;
+  }
+  clauses.push_back(fmt::format("data{} {} with {} lc rgb '{}' {}", every, columns, look, colour, title));
+  return clauses;
+}
+
+/// The script of every plot, in gnuplot's order. Each terminal has its own unit for fonts and markers.
+constexpr const char* script_template =
+    R"(# Draws {name}.svg and {name}.png from {name}.csv. Edit it and run, in this folder:  gnuplot {name}.gp
+data = {data}
+set datafile separator comma
+set encoding utf8
+
+set border 3 lw 0.8 lc rgb '#333333'
+set tics out nomirror scale 0.7 tc rgb '#222222'
+set key below horizontal Left reverse samplen 2.2 spacing 1.2 width 1 height 0.4{plain}
+set title {title} offset 0,-0.2{plain}
+set xlabel {x}."\n " offset 0,0.3{plain}
+set ylabel {y}{plain}
+set xrange [{x_min}:{x_max}]
+set yrange [{y_min}:{y_max}]
+{axes}
+set terminal svg size 900,650 enhanced font 'sans-serif,16' background rgb 'white'
+set output {svg}
+marker = 0.72
+stride = {stride}
+{plot}
+set terminal pngcairo size 900,650 enhanced font 'sans-serif,13' background rgb 'white'
+set output {png}
+marker = 1.25
+stride = 1
+{plot}set output
+)";
+
+/// Points of lines that the SVG leaves out, so that it has at most 15,000 of them, less than 300 kB.
+std::size_t svg_stride(const Plot& plot) {
+  std::size_t points = 0;
+  for (const Series& series : plot.series)
+    points += series.style == SeriesStyle::line || series.style == SeriesStyle::dashed_line ? series.x.size() : 0;
+  return points / 15000 + 1;
+}
+
+/// Names without repetition: "nu", "nu_2".
+class UniqueNames {
+ public:
+  std::string add(const std::string& name, const char* fallback) {
+    const std::string wanted = name.empty() ? fallback : name;
+    std::string unique = wanted;
+    for (int k = 2; std::ranges::find(names_, unique) != names_.end(); ++k) unique = fmt::format("{}_{}", wanted, k);
+    names_.push_back(unique);
+    return unique;
+  }
+  [[nodiscard]] const std::vector<std::string>& all() const { return names_; }
+
+ private:
+  std::vector<std::string> names_;
+};
+
+std::string series_name(const Series& series) {
+  return column_name(series.column.empty() ? series.label : series.column);
+}
+
+double finite_or_nan(double value) {
+  return std::isfinite(value) ? value : NAN;
+}
+
+/// A row for each x.
+PlotData wide_table(const Plot& plot) {
+  PlotData data;
+  UniqueNames names;
+  std::vector<const std::vector<double>*> columns;
+  const auto add = [&](const std::vector<double>& values, const std::string& name, const char* fallback) {
+    columns.push_back(&values);
+    return names.add(name, fallback);
+  };
+  for (const Series& series : plot.series) {
+    PlotData::Place& place = data.places.emplace_back();
+    place.x = columns.empty() ? add(series.x, column_name(plot.x.label), "x") : data.places.front().x;
+    place.y = add(series.y, series_name(series), "y");
+    if (series.low.empty()) continue;
+    place.low = add(series.low, place.y + "_low", "low");
+    place.high = add(series.high, place.y + "_high", "high");
+  }
+  const std::size_t rows = columns.empty() ? 0 : columns.front()->size();
+  CsvText text(names.all(), rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (const auto* column : columns) text.cell(finite_or_nan((*column)[row]));
+    text.end_row();
+  }
+  data.csv = text.text();
+  return data;
+}
+
+/// A row for each point.
+PlotData tidy_table(const Plot& plot) {
+  PlotData data;
+  UniqueNames columns, names;
+  columns.add("series", "");
+  const std::string x = columns.add(column_name(plot.x.label), "x"), y = columns.add(column_name(plot.y.label), "y");
+  const bool bars = std::ranges::any_of(plot.series, [](const Series& series) { return !series.low.empty(); });
+  const std::string low = bars ? columns.add("low", "") : "", high = bars ? columns.add("high", "") : "";
+  std::size_t row = 0, total = 0;
+  for (const Series& series : plot.series) total += series.x.size();
+  CsvText text(columns.all(), total);
+  for (const Series& series : plot.series) {
+    const std::string name = names.add(series_name(series), "y");
+    const bool has_bars = !series.low.empty();
+    const std::size_t first = series.x.empty() ? total : row;  // behind all rows: no point
+    row += series.x.size();
+    data.places.push_back({x, y, has_bars ? low : "", has_bars ? high : "", first, series.x.empty() ? first : row - 1});
+    for (std::size_t k = 0; k < series.x.size(); ++k) {
+      text.cell(name);
+      text.cell(finite_or_nan(series.x[k]));
+      text.cell(finite_or_nan(series.y[k]));
+      for (const auto* end : {&series.low, &series.high}) {
+        if (has_bars) text.cell(finite_or_nan((*end)[k]));
+        if (bars && !has_bars) text.empty_cell();
+      }
+      text.end_row();
+    }
+  }
+  data.csv = text.text();
+  return data;
 }
 
 /// A label without the signs of gnuplot's enhanced text.
@@ -136,13 +405,65 @@ PlotResult draw(const std::filesystem::path& folder, const std::string& name, co
   }
   DrawnFigures::add({.name = name,
                      .title = title,
-                     .svg = result.drawn ? path(".svg") : std::filesystem::path(),
+                     .file = result.drawn ? path(".svg") : std::filesystem::path(),
                      .missing = result.drawn ? "" : result.message,
                      .timed_out = run.timed_out});
   return result;
 }
 
 }  // namespace
+
+std::string literal(const std::string& text) {
+  constexpr std::string_view special = "{}^_@&~\\";
+  std::string result;
+  for (const char c : text) {
+    if (special.find(c) != std::string_view::npos) result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string with_symbols(const std::string& text) {
+  struct Symbol {
+    std::string_view word, drawn;
+  };
+  constexpr Symbol symbols[] = {{"kT", "k_T"}, {"kN", "k_N"}, {"nu", "ν"}};
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at;
+    while (end < text.size() && is_letter(text[end])) ++end;
+    const std::string word = text.substr(at, std::max<std::size_t>(end - at, 1));
+    std::string drawn = literal(word);
+    for (const Symbol& symbol : symbols)
+      if (word == symbol.word) drawn = symbol.drawn;
+    result += drawn;
+    at += word.size();
+  }
+  return result;
+}
+
+PlotData plot_data(const Plot& plot) {
+  const bool same_x = std::ranges::all_of(plot.series, [&](const Series& s) { return s.x == plot.series.front().x; });
+  return same_x ? wide_table(plot) : tidy_table(plot);
+}
+
+std::string plot_script(const std::string& name, const Plot& plot, const PlotData& data) {
+  const AxisRange x = range_of(plot.x, plot.series, {&Series::x});
+  const AxisRange y = range_of(plot.y, plot.series, {&Series::y, &Series::low, &Series::high});
+  const std::string plain = plot.enhanced ? "" : " noenhanced";
+  std::string axes = axis_scale('x', plot.x, x) + axis_scale('y', plot.y, y);
+  for (const VerticalLine& line : plot.vertical_lines) axes += vertical_line(line, plain);
+  std::vector<std::string> clauses;
+  for (std::size_t k = 0; k < plot.series.size(); ++k)
+    std::ranges::move(plot_clauses(plot.series[k], data.places[k], plain), std::back_inserter(clauses));
+  return fmt::format(script_template, fmt::arg("name", name), fmt::arg("data", gnuplot_string(name + ".csv")),
+                     fmt::arg("title", gnuplot_string(plot.title)), fmt::arg("x", gnuplot_string(plot.x.label)),
+                     fmt::arg("y", gnuplot_string(plot.y.label)), fmt::arg("plain", plain), fmt::arg("x_min", x.min),
+                     fmt::arg("x_max", x.max), fmt::arg("y_min", y.min), fmt::arg("y_max", y.max),
+                     fmt::arg("axes", axes), fmt::arg("svg", gnuplot_string(name + ".svg")),
+                     fmt::arg("png", gnuplot_string(name + ".png")), fmt::arg("stride", svg_stride(plot)),
+                     fmt::arg("plot", fmt::format("plot {}\n", joined(clauses, ", \\\n     "))));
+}
 
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
   check_name(name);
@@ -152,13 +473,6 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
       fmt::format("{}{}{} against {}", plot.title, plot.title.empty() ? "" : ": ", plot.y.label, plot.x.label);
   return draw(folder, name, plot.enhanced ? without_markup(title) : title, data.csv, plot_script(name, plot, data),
               overwrite);
-}
-
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
-                      bool overwrite) {
-  check_name(name);
-  check_chart(chart);
-  return draw(folder, name, chart.title, bar_data(chart), bar_script(name, chart), overwrite);
 }
 
 }  // namespace equidem

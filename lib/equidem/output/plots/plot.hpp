@@ -17,8 +17,7 @@ enum class Marker { circle, square, triangle, diamond };
 /// The colour-blind-safe palette of Okabe and Ito (2008).
 enum class PlotColour { black, orange, sky_blue, green, yellow, blue, vermilion, purple };
 
-/// One curve. A point that is not finite is a gap. A line that runs along an earlier one is drawn dashed over it, and
-/// the markers of the earlier one are larger, so that both are seen.
+/// One curve. A point that is not finite is a gap.
 struct Series {
   std::string label = {};      ///< in the legend; empty: not in the legend
   std::vector<double> x = {};  ///< one value per y
@@ -26,11 +25,10 @@ struct Series {
   SeriesStyle style = SeriesStyle::line;
   PlotColour colour = PlotColour::black;
   Marker marker = Marker::circle;
-  bool filled = true;       ///< markers: filled, or open with a white face
+  bool filled = true;       ///< markers: filled or open
   std::string column = {};  ///< its name in the data file; empty: made of the label
   /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
   std::vector<double> low = {}, high = {};
-  std::size_t panel = 0;  ///< where the plot has panels
 };
 
 /// A vertical line across the plot with its label written along its upper end.
@@ -41,14 +39,7 @@ struct VerticalLine {
   bool label_left = false;  ///< label left of the line
 };
 
-/// A shaded range of x, behind all else.
-struct Band {
-  double from = 0;
-  double to = 0;
-  std::string label = {};  ///< written at its top; may be empty
-};
-
-/// One axis. The range is that of the data where a bound is not given.
+/// One axis. The range is that of the data where a bound is not given; points outside it are not drawn.
 struct Axis {
   std::string label = {};
   std::optional<double> min = {};
@@ -63,15 +54,9 @@ struct Plot {
   Axis y = {};
   std::vector<Series> series = {};  ///< later ones are drawn on top
   std::vector<VerticalLine> vertical_lines = {};
-  std::vector<Band> bands = {};
   /// Texts use gnuplot's enhanced text: "k_T/k_N", "{/:Italic x}". Text that is the user's goes through literal();
   /// Greek as Unicode, since viewers of SVG lack the font of "{/Symbol n}".
   bool enhanced = false;
-  /// A marker whose y lies outside the given range is shown as a small triangle at that edge, which the legend
-  /// explains.
-  bool mark_points_outside = true;
-  /// Titles of panels beside and below each other, with axes of the same range; series name theirs. Empty: one plot.
-  std::vector<std::string> panels = {};
 };
 
 /// Text for an enhanced plot that is drawn as it is, whatever characters it holds.
@@ -86,32 +71,33 @@ struct PlotResult {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// One bar of a chart.
-struct Bar {
-  std::string label = {};  ///< left of the bar
-  double value = 0;        ///< its length, >= 0
-  double low = 0;          ///< error bar from here to `high`; where both are 0: none
-  double high = 0;
-  PlotColour colour = PlotColour::blue;
-  std::string note = {};  ///< right of the bar, after its value
+/// The data of a plot: its file and where each series lies in it.
+struct PlotData {
+  struct Place {
+    std::string x;  ///< column names
+    std::string y;
+    std::string low, high;                 ///< empty: no error bars
+    std::size_t first = 0;                 ///< row of its first point
+    std::optional<std::size_t> last = {};  ///< row of its last point; none: all rows are of this series
+  };
+  std::string csv;
+  std::vector<Place> places;  ///< per series
 };
 
-/// Horizontal bars, from top to bottom.
-struct BarChart {
-  std::string title = {};
-  std::string axis = {};  ///< label of the axis of values
-  std::vector<Bar> bars = {};
-};
+/// Where all series have the same x, a row for each x and a column for each series; else a row for each point: the name
+/// of its series, x, y and, where any series has error bars, their ends, empty for the others. The name is that of the
+/// column in the other case. A value that is not finite is written "nan", at which gnuplot breaks a line.
+PlotData plot_data(const Plot& plot);
 
-/// Write NAME.csv (the data: plot_data of plot_script.hpp), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws
+/// A script that reads NAME.csv and draws NAME.svg and NAME.png in the folder in which it runs.
+std::string plot_script(const std::string& name, const Plot& plot, const PlotData& data);
+
+/// Write NAME.csv (the data: plot_data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws
 /// again) and, by gnuplot, NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are
 /// still written and the result states the reason. The legend stands below the plot. The SVG draws at most 15,000
 /// points of lines, every n-th.
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
-/// Likewise, a chart of bars. \throws Error (bad_input) without a bar, or where a value is negative or not finite
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
-                      bool overwrite);
 
 }  // namespace equidem
