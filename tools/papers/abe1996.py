@@ -115,7 +115,7 @@ def explain_error(rows, columns, gauge, ratio=1):
     found[size(columns) + ", loads of the uniform state"], edges = uniform_state(columns, rows, ratio, gauge)
     cell = eq.hexagonal(columns=8, rows=8, radius=RADIUS, periodic=True)
     found["periodic cell, homogenized"] = eq.homogenize(cell, (1.0, float(ratio))).poisson_ratio.plane_strain
-    return {"ratio": ratio, "variations": found, **edges}
+    return {"ratio": ratio, "theory": theory_nu(ratio), "variations": found, **edges}
 
 
 def check_stress(rows, columns, gauge):
@@ -276,157 +276,61 @@ def shown(value):
     return 0.0 if abs(value) < 5e-6 else value
 
 
-def table_of_ratios(result):
-    table = Table("kT/kN & nu (35) & (1-r)/4 & difference & plane stress & (1-r)/(3+r) & (36) & (37) & difference & "
-                  "negative pivots & ")
-    for p in result["points"]:
-        nu, stiffness = p["theory_poisson_ratio"], p["theory_stiffness_ratio"]
+def report(r):
+    """tools/papers/abe1996.txt with its numbers."""
+    ratios = Table("kT/kN & nu (35) & (1-r)/4 & difference & plane stress & (1-r)/(3+r) & (36) & (37) & difference & "
+                   "negative pivots & ")
+    for p in r["points"]:
+        found, nu, stiffness = p["poisson_ratio"], p["theory_poisson_ratio"], p["theory_stiffness_ratio"]
         state = "stable" if p["stable"] else f"UNSTABLE by {counted(p['unstable_modes'], 'mode')}"
-        table.add(f"{p['ratio']:>5.2f} & {p['poisson_ratio']:.5f} & {nu:.5f} & {p['poisson_ratio'] - nu:.1e} & "
-                  f"{in_plane_stress(p['poisson_ratio']):.5f} & {in_plane_stress(nu):.5f} & "
-                  f"{p['stiffness_ratio']:.5f} & {stiffness:.5f} & {p['stiffness_ratio'] - stiffness:.1e} & "
-                  f"{p['negative_pivots']} & {state}")
-    return f"""Figs. 7 and 8: the tension test against theory; nu of plane stress is -e22/e11
-{table.text()}In plane stress the relation nu = (1 - r)/4, whose nu the paper replaces by nu/(1 + nu), reads
-nu = (1 - r)/(3 + r): at most 1/3 for kT >= 0.
-"""
-
-
-def table_of_sizes(result):
+        ratios.add(f"{p['ratio']:>5.2f} & {found:.5f} & {nu:.5f} & {found - nu:.1e} & {in_plane_stress(found):.5f} & "
+                   f"{in_plane_stress(nu):.5f} & {p['stiffness_ratio']:.5f} & {stiffness:.5f} & "
+                   f"{p['stiffness_ratio'] - stiffness:.1e} & {p['negative_pivots']} & {state}")
     head, slopes, rows = "rows", "slope", [f"{size:>5}" for size in SIZES]
-    for ratio in sorted({p["ratio"] for p in result["convergence"]}):
-        points = [p for p in result["convergence"] if p["ratio"] == ratio]
+    for ratio in sorted({p["ratio"] for p in r["convergence"]}):
         head += f" & kT/kN = {ratio:.1f}: nu & (36)"
         for key in ("poisson_ratio_error", "stiffness_ratio_error"):
-            errors = [p[key] for p in points]
+            errors = [p[key] for p in r["convergence"] if p["ratio"] == ratio]
             rows = [f"{row} & {error:.1e}" for row, error in zip(rows, errors)]
             slopes += " & round-off" if ratio == 0 else \
                 f" & {math.log(errors[-1] / errors[-2]) / math.log(SIZES[-1] / SIZES[-2]):.2f}"
-    table = Table(head)
-    for row in (*rows, slopes):
-        table.add(row)
-    return "Error against size (n rows of n discs): nu against (22), and (36) against (37), relative\n" + table.text()
-
-
-def causes_of_error(edges):
-    theory = theory_nu(edges["ratio"])
-    table = Table(" & nu & difference from theory")
-    for name, nu in edges["variations"].items():
-        table.add(f"{name} & {shown(nu):.5f} & {nu - theory:.1e}")
-    return f"""Why nu at kT/kN = {edges['ratio']} lies off the line of Fig. 7 (theory {theory:.5f})
-{table.text()}The ends are the cause, not the relation. A uniform state needs {edges['long_row']:.3f} of the load of a row at the\
- ends of long
-rows, {edges['short_row']:.3f} at those of short rows, {edges['corner']:.3f} at the corners, where the diagonal contacts\
- of one side are missing, and
-{edges['total']:.3f} rows' load in all; the paper's loads are equal, on {edges['rows']} rows. The difference between long\
- and short rows decays
-within a spacing. The excess load strains the block uniformly: it is the error of (36) of a long strip and does not
-change nu. The rest is too large at the outer rows and too small between them; it balances itself and
-decays within about one height, in which the gauges of a square block lie: an error of order 1/rows. It vanishes
-with kT, with the length of the block, with its size, and with the loads of the uniform state.
-"""
-
-
-def square_lattice_text(points):
-    table, worst = Table("kT/kN & C11/kN & C12/kN & C66/kN & at 45°: C11/kN & C12/kN & C66/kN & anisotropy & nu, rows & "
-                         "nu, 45° & waves, rows: L & T & waves, 45°: L & T"), 0
-    for p in points:
-        r, c, t = p["ratio"], p["along_rows"], p["turned"]
-        numbers = [c[0, 0], c[0, 1], c[2, 2], t[0, 0], t[0, 1], t[2, 2]]
-        waves = [*p["waves_rows"], *p["waves_diagonal"]]
-        nus = [p["poisson_ratio_rows"], p["poisson_ratio_diagonal"]]
-        table.add(f"{r:.2f} & " + " & ".join(f"{shown(x):.4f}" for x in (*numbers, p["anisotropy"], *nus, *waves)))
-        theory = [1, 0, r / 2, (1 + r) / 2, (1 - r) / 2, 0.5, 1, r / 2, (1 + r) / 2, 0.5]
-        worst = max([worst, *(abs(x - wanted) for x, wanted in zip((*numbers, *waves), theory))])
-    return f"""Section 2.2: the square lattice (periodic, homogenized; waves: gamma c²/kN of long waves)
-{table.text()}  (29): the coefficients 4 gamma/(pi rho) kN = kN and 2 gamma/(pi rho) kT = kT/2 of its operator, with gamma/rho =
-  pi/4, are C11 and C66, by stress and by waves; C12 = 0. At 45 degrees C11 = (kN + kT)/2, C12 = (kN - kT)/2,
-  C66 = kN/2. The largest difference from these formulas is {worst:.0e} kN.
-  (30), (31): isotropic at kN = kT = E alone, where nu = 0 in every direction.
-  The 45 degree remark gives equally spaced contacts as the reason why the lattice has no direction: true of
-  tensors of second order, C'_ij, not of the stiffness. Pulled along the diagonal it contracts with nu = (1 - r)/2
-  (at kT/kN = {points[0]['ratio']:g}: {points[0]['poisson_ratio_diagonal']:.3f}), along the rows it does not.
-  Conclusion (d) holds: for nu other than 0 the lattice is no isotropic body at any kT/kN.
-"""
-
-
-def section_4(s):
-    r = s["ratio"]
-    of_53 = (2 * (1 - r) - (1 + 3 * r)) / (4 * (1 - r))  # (K - G)/(2 K) of (53)
-    return f"""Sections 4.1 and 4.3: macroscopic stress (50) of uniform strain on the periodic lattice, disc by disc
-  Rotation free: the difference from eq. (52) is at most {s['free_rotation_deviation']:.1e} of the largest stress.
-  Rotation restrained: the difference from eq. (55) (its first bracket completed) is at most\
- {s['restrained_rotation_deviation']:.1e}.
-  At kT/kN = {r}, u_2,1 - u_1,2 = {s['spin']}: s_12 - s_21 = {s['asymmetry']:.6g} Pa, eq. (55) gives\
- {s['expected_asymmetry']:.6g} Pa. The cause is the
-  moments that restrain the rotation: {s['moment_density']:.6g} Pa (N m per m² and metre of depth).
-  Eq. (53) matches displacements and waves, but not the stress: the tension test with rotation restrained
-  gives nu = {s['restrained_poisson_ratio']:.5f} at kT/kN = {r}, near (1 - r)/4 = {theory_nu(r):.5f}, where (53) gives\
- {of_53:.5f}. Conclusion (f) holds.
-"""
-
-
-def waves_text(points):
-    table = Table("nu wanted & kN/G (53) & kT/G (53) & waves: G & nu & largest deviation & uniaxial stress: nu & (1-r)/4")
-    for p in points:
-        table.add(f"{p['wanted_poisson_ratio']:.2f} & {p['kN']:.5f} & {p['kT']:.5f} & {p['shear_modulus']:.5f} & "
+    causes, theory = Table(" & nu & difference from theory"), theory_nu(r["edges"]["ratio"])
+    for name, nu in r["edges"]["variations"].items():
+        causes.add(f"{name} & {shown(nu):.5f} & {nu - theory:.1e}")
+    square, worst = Table("kT/kN & C11/kN & C12/kN & C66/kN & at 45°: C11/kN & C12/kN & C66/kN & anisotropy & nu, rows & "
+                          "nu, 45° & waves, rows: L & T & waves, 45°: L & T"), 0
+    for p in r["square_lattice"]:
+        x, c, t = p["ratio"], p["along_rows"], p["turned"]
+        tensor, waves = [c[0, 0], c[0, 1], c[2, 2], t[0, 0], t[0, 1], t[2, 2]], [*p["waves_rows"], *p["waves_diagonal"]]
+        others = [p["anisotropy"], p["poisson_ratio_rows"], p["poisson_ratio_diagonal"]]
+        square.add(f"{x:.2f}" + "".join(f" & {shown(number):.4f}" for number in (*tensor, *others, *waves)))
+        formulas = [1, 0, x / 2, (1 + x) / 2, (1 - x) / 2, 0.5, 1, x / 2, (1 + x) / 2, 0.5]
+        worst = max([worst, *(abs(number - wanted) for number, wanted in zip((*tensor, *waves), formulas))])
+    waves = Table("nu wanted & kN/G (53) & kT/G (53) & waves: G & nu & largest deviation & uniaxial stress: nu & "
+                  "(1-r)/4")
+    for p in r["restrained_waves"]:
+        waves.add(f"{p['wanted_poisson_ratio']:.2f} & {p['kN']:.5f} & {p['kT']:.5f} & {p['shear_modulus']:.5f} & "
                   f"{shown(p['poisson_ratio']):.5f} & {p['deviation']:.0e} & {p['poisson_ratio_of_tension']:.5f} & "
                   f"{theory_nu(p['kT'] / p['kN']):.5f}")
-    return f"""Eq. (53): the hexagonal lattice with rotation restrained, springs for G = 1 Pa and nu; long waves in 12\
- directions
-{table.text()}  From gamma c² of long waves, G (transverse) and K + G (longitudinal), nu = (K - G)/(2 K): the waves have the\
- wanted
-  moduli in all directions. A uniform uniaxial stress has the nu of free rotation.
-"""
-
-
-def unequal_text(points):
-    table = Table("radii & phi & z & nu & mean field: G & K & s11, sd & s22, sd & s12, sd & with pi r²/phi: mean s11 & sd")
-    for p in points:
+    unequal = Table("radii & phi & z & nu & mean field: G & K & s11, sd & s22, sd & s12, sd & "
+                    "with pi r²/phi: mean s11 & sd")
+    for p in r["unequal_radii"]:
         mean = {key: value.mean for key, value in p.items() if key != "spread"}
-        table.add(f"1 to {p['spread']:g} & {mean['solid_fraction']:.4f} & {mean['coordination_number']:.3f} & "
-                  f"{mean['poisson_ratio']:.4f} ± {p['poisson_ratio'].standard_error:.4f} & "
-                  f"{100 * mean['shear_modulus_error']:+.1f} % & {100 * mean['bulk_modulus_error']:+.1f} % & "
-                  f"{mean['scatter_xx']:.3f} & {mean['scatter_yy']:.3f} & {mean['scatter_xy']:.3f} & "
-                  f"{mean['printed_mean_xx']:.3f} & {mean['printed_scatter_xx']:.3f}")
-    def percent(key):
-        return [f"{100 * points[k][key].mean:.0f} %" for k in (0, -1)]
-    (equal, unequal), (equal_printed, unequal_printed) = percent("scatter_xx"), percent("printed_scatter_xx")
-    return f"""End of section 4.2: unequal radii. {UNEQUAL['samples']} periodic Delaunay cells of {UNEQUAL['discs']} discs\
- for each range of radii, Poisson-disc
-points, equal springs, kT/kN = {UNEQUAL['ratio']}, mean uniaxial stress s11 = 1; mean field: (21), (22), over exact, less 1
-{table.text()}  The paper's remark, some scatter but a fair value, holds: the mean of (50) over the discs is the applied\
- stress, with V
-  the cell of each disc and with V = pi r²/phi as printed. The stress of single discs scatters by {equal} of s11 where radii
-  are equal and by {unequal} where they differ up to a factor of {points[-1]['spread']:g}: the random contacts are the cause,\
- more than the radii.
-  With V = pi r²/phi the scatter is {equal_printed} and {unequal_printed}. Theory of nu: (1 - r)/4 =\
- {theory_nu(UNEQUAL['ratio']):.4f}.
-"""
-
-
-def report(r):
-    return f"""Abe (1996): spring constants of discs and the equivalent continuum
-
-Block: {r['rows']} rows of {r['columns']} and {r['columns'] - 1} discs alternately, radius {RADIUS} m, kN = {KN:g} Pa;\
- s11 = {STRESS:g} Pa
-Gauges A-B {r['gauge_length']:g} m along x and C-D {r['gauge_height']:g} m along y; height {r['height']:g} m = rows *\
- sqrt3 a
-(the paper prints neither the size of its block nor gauges and height)
-
-{table_of_ratios(r)}
-The paper's points scatter below kT/kN = -1/3 because the infinite lattice is unstable there (at three points M
-of the Brillouin zone). This block with its free edges becomes unstable sooner, at kT/kN =\
- {r['critical_ratio_block']:.6f}: below it the
-stiffness matrix has more negative eigenvalues than its rotations account for, an eigenvalue passes zero at
-each mode lost, and the strain at the gauges depends on the distance to the nearest such mode.
-
-{table_of_sizes(r)}
-{causes_of_error(r['edges'])}
-{square_lattice_text(r['square_lattice'])}
-{section_4(r['macroscopic_stress'])}
-{waves_text(r['restrained_waves'])}
-{unequal_text(r['unequal_radii'])}"""
+        unequal.add(f"1 to {p['spread']:g} & {mean['solid_fraction']:.4f} & {mean['coordination_number']:.3f} & "
+                    f"{mean['poisson_ratio']:.4f} ± {p['poisson_ratio'].standard_error:.4f} & "
+                    f"{100 * mean['shear_modulus_error']:+.1f} % & {100 * mean['bulk_modulus_error']:+.1f} %" + "".join(
+                        f" & {mean[key]:.3f}" for key in ("scatter_xx", "scatter_yy", "scatter_xy", "printed_mean_xx",
+                                                          "printed_scatter_xx")))
+    scatter, printed_scatter = ([100 * r["unequal_radii"][k][key].mean for k in (0, -1)]
+                                for key in ("scatter_xx", "printed_scatter_xx"))
+    x = r["macroscopic_stress"]["ratio"]
+    of_53 = (2 * (1 - x) - (1 + 3 * x)) / (4 * (1 - x))  # (K - G)/(2 K)
+    return common.filled("abe1996", **r, short_row=r["columns"] - 1, radius=RADIUS, kN=KN, stress=STRESS,
+                         table_of_ratios=ratios, table_of_sizes=Table(head, *rows, slopes), table_of_causes=causes,
+                         table_of_square=square, worst_of_square=worst, table_of_waves=waves, table_of_unequal=unequal,
+                         section4={**r["macroscopic_stress"], "theory": theory_nu(x), "of_53": of_53},
+                         unequal={**UNEQUAL, "theory": theory_nu(UNEQUAL["ratio"])}, scatter=scatter,
+                         printed_scatter=printed_scatter, spread=r["unequal_radii"][-1]["spread"])
 
 
 def points_of(points, key, mark, **look):
