@@ -16,7 +16,7 @@ import sys
 
 from . import _core, plot
 from ._arrays import whole
-from .assembly import Assembly, assembly, delaunay, hexagonal, read, square
+from .assembly import Assembly, assembly, delaunay, hexagonal, read, square, triangulated
 from .case import Case
 from .errors import BadInput, ComputationFailed, EquidemError, Interrupted
 from .result import Result
@@ -32,7 +32,7 @@ __all__ = [
     "Assembly", "BadInput", "Case", "ComputationFailed", "EquidemError", "Factor", "Frame", "Interrupted", "Result",
     "Simulation", "Springs", "assembly", "calibrate", "delaunay", "factorize", "hexagonal", "homogenize", "pack",
     "plot", "read", "run", "set_threads", "show_progress", "simulation", "solve", "square", "stability",
-    "stiffness_matrix", "study", "sweep", "tension_test", "threads",
+    "stiffness_matrix", "study", "sweep", "tension_test", "threads", "triangulated",
 ]
 
 

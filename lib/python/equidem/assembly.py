@@ -291,3 +291,21 @@ def delaunay(**keys: Any) -> Assembly:
     periodic : bool
     """
     return assembly(kind="delaunay", **keys)
+
+
+def triangulated(centres: npt.ArrayLike, radii: npt.ArrayLike, *, cell: tuple[float, float] | None = None) -> Assembly:
+    """Given discs whose contacts are the edges of their Delaunay (or, for different radii, regular) triangulation.
+
+    Parameters
+    ----------
+    centres : array (n, 2)
+        m.
+    radii : array (n,)
+        m.
+    cell : (Lx, Ly), optional
+        m, the period of a periodic cell.
+    """
+    places = floats("centres", centres, (None, 2))
+    sides = None if cell is None else floats("cell", cell, (2,))
+    period = None if sides is None else (float(sides[0]), float(sides[1]))
+    return Assembly._of(_core.triangulated(places, floats("radii", radii, (len(places),)), period))

@@ -73,6 +73,23 @@ Shared from_arrays(const Floats& centres, const Floats& radii, const std::option
   });
 }
 
+/// Discs whose contacts are the edges of their triangulation.
+Shared triangulated(const Floats& centres, const Floats& radii,
+                    const std::optional<std::pair<double, double>>& period) {
+  Assembly assembly;
+  assembly.kind = "delaunay";
+  if (period) assembly.period = Vec2{period->first, period->second};
+  for (py::ssize_t d = 0; d < centres.shape(0); ++d) {
+    assembly.centres.push_back(row_of(centres, d));
+    assembly.radii.push_back(radii.at(d));
+  }
+  return without_lock([&] {
+    triangulate(assembly);
+    check(assembly);
+    return shared(std::move(assembly));
+  });
+}
+
 Shared from_text(std::string text) {
   return without_lock([&] {
     const Given<std::string> given("assembly", std::make_shared<const std::string>(std::move(text)));
@@ -155,6 +172,7 @@ void bind_assembly(py::module_& module) {
 
   module.def("from_arrays", from_arrays);
   module.def("from_json", from_text);
+  module.def("triangulated", triangulated);
   module.def("build_assembly", [](const std::string& case_text) {
     return without_lock([&] { return shared(build_assembly(parse_case(case_text, "case#0", {}))); });
   });

@@ -61,6 +61,7 @@ PYBIND11_MODULE(_core, module) {
   });
   translate_errors();
   bind_assembly(module);
+  bind_collisions(module);
   bind_springs(module);
   bind_factor(module);
   bind_simulation(module);

@@ -25,6 +25,7 @@ inline py::custom_type_setup made_here() {
 /// Errors of the library become exceptions of equidem.errors.
 void translate_errors();
 void bind_assembly(py::module_& module);
+void bind_collisions(py::module_& module);
 void bind_springs(py::module_& module);
 void bind_factor(py::module_& module);
 void bind_simulation(py::module_& module);
