@@ -419,12 +419,12 @@ def begin_worker():
 workers = []
 
 
-def samples_of(task, function, arguments):
-    """function of each argument, in processes side by side, with progress; in order."""
+def samples_of(task, function, arguments, at_once=0):
+    """function of each argument, in processes side by side, `at_once` to a process, with progress; in order."""
     if not workers:
         workers.append(multiprocessing.get_context("spawn").Pool(eq.threads(), begin_worker))
     progress, found = Progress(task), []
-    for one in workers[0].imap(function, arguments, max(1, len(arguments) // 50)):
+    for one in workers[0].imap(function, arguments, at_once or max(1, len(arguments) // 50)):
         found.append(one)
         progress.update(len(found) / len(arguments))
     progress.end()
