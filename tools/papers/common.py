@@ -10,6 +10,7 @@ import dataclasses
 import io
 import json
 import math
+import multiprocessing
 import pathlib
 import re
 import signal
