@@ -34,7 +34,7 @@ RealVector random_vector(std::size_t size, Random& random) {
 /// A symmetric matrix becomes its eigenvectors; their eigenvalues, ascending.
 RealVector diagonalize(RealMatrix& matrix) {
   RealVector values(matrix.rows());
-  dense::use_one_thread_per_call();
+  const dense::OneThreadPerCall one_thread;
   if (dense::find_spectrum(static_cast<std::size_t>(matrix.rows()), matrix.data(), values.data(), true) != 0) {
     computation_failed("the spectrum of a small matrix is not found", "",
                        "Report the case: this happens only where numbers are not finite");

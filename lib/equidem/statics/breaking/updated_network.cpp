@@ -12,8 +12,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
-#include "equidem/statics/choice/solver_choice.hpp"
-#include "equidem/statics/choice/zero_energy_modes.hpp"
+#include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
 

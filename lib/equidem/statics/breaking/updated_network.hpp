@@ -13,7 +13,6 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/linear/degrees_of_freedom.hpp"
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/linear/multifrontal/updated_cholesky.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
