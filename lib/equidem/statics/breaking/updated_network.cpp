@@ -466,10 +466,10 @@ PreciseMotion UpdatedNetwork::driving_motion(std::size_t of_case) const {
 PreciseMotion UpdatedNetwork::motion(std::size_t of_case) const {
   const PreciseMotion& now = motions_[of_case];
   PreciseMotion motion(components());
-  permute_from_elimination<double>(*symbolic_, now.high, motion.high);
+  permute_from_elimination(*symbolic_, now.high, motion.high);
   if (!now.low.empty()) {
     motion.low.resize(components());
-    permute_from_elimination<double>(*symbolic_, now.low, motion.low);
+    permute_from_elimination(*symbolic_, now.low, motion.low);
   }
   return motion;
 }
