@@ -19,11 +19,12 @@ using namespace equidem;
 
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using SparseK = Eigen::SparseMatrix<double>;
 
-Matrix eigen_matrix(const CompressedColumns& k) {
+SparseK eigen_matrix(const CompressedColumns& k) {
   using Long = Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t>;
-  return Matrix(Eigen::Map<const Long>(k.size, k.size, k.first.back(), k.first.data(), k.rows.data(), k.values.data()));
+  return SparseK(
+      Eigen::Map<const Long>(k.size, k.size, k.first.back(), k.first.data(), k.rows.data(), k.values.data()));
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ TEST_CASE("eigen_finds_the_fluctuations_of_a_periodic_cell_under_each_mean_strai
     REQUIRE(system.right_hand_sides.size() == (rotation == Rotation::free ? 3 : 4));
     REQUIRE(system.names.size() == system.right_hand_sides.size());
     const auto k = eigen_matrix(with_upper_triangle(system.stiffness));
-    const Eigen::SparseLU<Matrix> factor(k);
+    const Eigen::SparseLU<SparseK> factor(k);
     for (std::size_t c = 0; c < 3; ++c) {
       const std::vector<double>& given = system.right_hand_sides[c];
       const Eigen::VectorXd f = Eigen::VectorXd::Map(given.data(), static_cast<Eigen::Index>(given.size()));

@@ -379,7 +379,8 @@ Results estimate_results(const SolveEstimate& e, double resident, double memory_
   if (e.factor_nonzeros > 0)
     results.line("work").add("operations", "", e.operations, "multiplications and additions to factorize",
                              {.digits = 3});
-  results.line("method").add("method", "", std::string(to_string(e.method)));
+  results.line("method", to_string(e.method));
+  results.set("method", to_string(e.method));
   return results.block("nothing was solved (--dry-run)\n");
 }
 

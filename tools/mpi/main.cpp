@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <petscsys.h>
-#include <unistd.h>
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/output/quantities.hpp"
 
 #include "mpi_verbs.hpp"
@@ -59,18 +58,6 @@ Words divided(int argc, char** argv) {
   return words;
 }
 
-/// Libraries of linear algebra start threads of their own when they are loaded, beside the other ranks.
-void start_without_threads(char** argv) {
-  constexpr const char* variables[] = {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"};
-  bool missing = false;
-  for (const char* variable : variables) missing = missing || std::getenv(variable) == nullptr;
-  if (!missing) return;
-  for (const char* variable : variables) {
-    if (setenv(variable, "1", 0) != 0) return;
-  }
-  execv("/proc/self/exe", argv);  // returns only where that is not possible: then the program is merely slower
-}
-
 /// Help is printed without MPI: installers ask for manual pages where none can be started.
 bool asks_for_help(int argc, char** argv) {
   constexpr std::string_view words[] = {"help", "--help", "--version"};
@@ -81,7 +68,7 @@ bool asks_for_help(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace equidem;
-  start_without_threads(argv);
+  const dense::OneThreadPerCall one_thread;  // beside the other ranks
   return_freed_memory();
   set_thread_count(1);
   Words words = divided(argc, argv);
