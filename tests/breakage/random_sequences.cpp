@@ -160,14 +160,13 @@ TEST_CASE("random_assemblies_break_as_dense_matrices_say") {
   CHECK(too_soft < 10);
 }
 
-TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew") {
+TEST_CASE("paths_with_an_updated_factor_have_the_events_of_factorizing_anew") {
   std::int64_t events = 0, refused = 0, by_control = 0, loosened = 0;
   double worst_lambda = 0, worst_work = 0, worst_stress = 0, worst_load = 0, worst_residual = 0;
-  int skipping = 0;  // paths that left parts of the network as they were
-  int alone = 0;     // paths whose last networks were solved one by one
+  int alone = 0;  // paths whose last networks were solved one by one
   std::string worst;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    Drawn d = draw(seed, seed % 10 < 3 ? 400 : 40);  // of forty discs hardly any part can be skipped
+    Drawn d = draw(seed, seed % 10 < 3 ? 400 : 40);
     const LoadControl controls[] = {LoadControl::path, LoadControl::load, LoadControl::motion};
     d.path.control = controls[seed % 3];
     if (seed % 5 == 0) d.path.legs = {1.5, -1, 50};
@@ -217,13 +216,11 @@ TEST_CASE("paths_that_skip_what_cannot_break_have_the_events_of_factorizing_anew
       worst_load = std::max(worst_load, std::abs(a.load - b.load) / largest_load);
       CHECK(a.motion == Approx(b.motion).epsilon(1e-8).margin(1e-10));
     }
-    skipping += fast.system().counters().swept < 0.9 ? 1 : 0;
     alone += fast.system().solver_name().find("did not serve") != std::string::npos ? 1 : 0;
     if (slow.run().end() != PathEnd::none) CHECK(fast.run().end() == slow.run().end());
   }
   CAPTURE(events, refused, by_control, loosened, worst, worst_lambda, worst_work, worst_stress, worst_load,
-          worst_residual, skipping, alone);
-  CHECK(skipping > 10);
+          worst_residual, alone);
   CHECK(alone > 0);
   CHECK(events > 3000);
   CHECK(refused < 10);

@@ -14,13 +14,18 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/statics/breaking/updated_equilibrium.hpp"
+#include "equidem/statics/breaking/updated_network.hpp"
 #include "equidem/statics/mechanisms.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/fields.hpp"
 
 namespace equidem::test {
+
+/// Strengths of a contact, N/m.
+struct ContactStrength {
+  double tension = 1, shear = 1;
+};
 
 /// A network with what acts on it.
 struct BreakingScene {
@@ -30,11 +35,8 @@ struct BreakingScene {
   DegreesOfFreedom unknowns;
   std::vector<RightHandSide> cases;
   std::vector<ContactStrength> strengths;
-  double friction = 0;
 
-  [[nodiscard]] UpdatedEquilibrium updated(bool skip = true) const {
-    return {assembly, springs, unknowns, cases, strengths, {.friction = friction, .skip = skip}};
-  }
+  [[nodiscard]] UpdatedNetwork updated() const { return {assembly, springs, unknowns, cases}; }
 };
 
 inline std::vector<ContactStrength> random_strengths(std::size_t contacts, double size, std::uint64_t seed) {
@@ -59,7 +61,7 @@ inline DegreesOfFreedom unknowns_of(const Assembly& assembly, const ContactSprin
 inline BreakingScene pulled(std::string name, const Assembly& assembly, const ContactSprings& springs, bool dead,
                             std::uint64_t seed) {
   const std::vector<Support> supports = {{"left", 0.0, 0.0, std::nullopt}};
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0.3};
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}};
   const auto b = static_cast<std::size_t>(scene.unknowns.per_disc);
   RightHandSide live;
   live.force.resize(assembly.size() * b);
@@ -78,7 +80,7 @@ inline BreakingScene pulled(std::string name, const Assembly& assembly, const Co
 /// A periodic cell under a mean strain.
 inline BreakingScene strained(std::string name, const Assembly& assembly, const ContactSprings& springs,
                               const Tensor2& gradient, std::uint64_t seed) {
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, {}), {}, {}, 0.5};
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, {}), {}, {}};
   scene.cases.resize(1);
   scene.cases[0].gradient = gradient;
   scene.strengths = random_strengths(assembly.contacts.size(), 10, seed);
@@ -89,7 +91,7 @@ inline BreakingScene strained(std::string name, const Assembly& assembly, const 
 inline BreakingScene drawn(std::string name, const Assembly& assembly, const ContactSprings& springs,
                            std::uint64_t seed) {
   const std::vector<Support> supports = {{"left", 0.0, 0.0, 0.0}, {"right", 0.01, 0.0, std::nullopt}};
-  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}, 0};
+  BreakingScene scene{std::move(name), assembly, springs, unknowns_of(assembly, springs, supports), {}, {}};
   scene.cases.resize(1);
   scene.cases[0].prescribed = scene.unknowns.prescribed;
   scene.strengths = random_strengths(assembly.contacts.size(), 1e6, seed);
@@ -163,7 +165,7 @@ inline double residual_length(const BreakingScene& scene, const ContactSprings& 
 }
 
 /// The largest of all right-hand sides, over the forces that act where no free disc moves.
-inline double relative_residual(const BreakingScene& scene, UpdatedEquilibrium& state) {
+inline double relative_residual(const BreakingScene& scene, UpdatedNetwork& state) {
   double largest = 0;
   for (std::size_t p = 0; p < scene.cases.size(); ++p) {
     const RightHandSide& given = scene.cases[p];

@@ -1,31 +1,87 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/breakage/break_search.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
+namespace {
 
-std::optional<NextBreak> next_break_of(const FirstToBreak& first, const LoadFactorSearch& search) {
-  if (first.contact < 0) return {};
-  return NextBreak{search.from + search.direction * first.moment.t, static_cast<std::size_t>(first.contact),
-                   first.moment.in_shear ? BreakMode::shear : BreakMode::tension, first.ties, first.gap};
+constexpr double no_break = std::numeric_limits<double>::infinity();
+
+/// When a contact breaks: t, infinite where it never does, and among those with t = 0 the order.
+struct BreakingMoment {
+  double t = no_break, order = no_break;
+  bool in_shear = false;  ///< tension where both are reached at once
+
+  [[nodiscard]] double key() const { return t > 0 ? t : order; }
+};
+
+/// \param a, b of the criterion a + b t >= 0
+void meet(double a, double b, bool in_shear, bool by_least_load, BreakingMoment& first) {
+  BreakingMoment found{.in_shear = in_shear};
+  if (a > 0 || (a == 0 && b >= 0)) {
+    found.t = 0;
+    found.order = !by_least_load ? 0 : b > 0 ? -a / b : -no_break;
+  } else if (b > 0) {
+    found.t = -a / b;
+  }
+  if (found.t < first.t || (found.t == first.t && found.order < first.order)) first = found;
 }
+
+ContactForce cut(const ContactForce& f, double none) {
+  return {std::abs(f.normal) <= none ? 0 : f.normal, std::abs(f.tangential) <= none ? 0 : f.tangential};
+}
+
+BreakingMoment breaking_moment(const ContactForce& live, const ContactForce& dead, double tension, double shear,
+                               double friction, const LoadFactorSearch& search) {
+  const ContactForce f1 = cut(live, search.no_live), f0 = cut(dead, search.no_dead);
+  BreakingMoment first;
+  if (f0.normal == 0 && f0.tangential == 0 && f1.normal == 0 && f1.tangential == 0) return first;
+  const double n = f0.normal + search.from * f1.normal, s = f0.tangential + search.from * f1.tangential;
+  const double dn = search.direction * f1.normal, ds = search.direction * f1.tangential;
+  meet(n - tension, dn, false, search.by_least_load, first);
+  for (const double sign : {1.0, -1.0})
+    meet(sign * s + friction * n - shear, sign * ds + friction * dn, true, search.by_least_load, first);
+  return first;
+}
+
+}  // namespace
 
 std::optional<NextBreak> next_break(std::span<const ContactForce> pattern, std::span<const ContactForce> dead,
                                     const ContactStrengths& strengths, const LoadFactorSearch& search) {
-  std::vector<BreakingMoment> moments(pattern.size());
-  parallel_ranges(moments.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const ProportionalForce force{dead.empty() ? ContactForce{} : dead[c], pattern[c]};
-      moments[c] = breaking_moment(force, {strengths.tension[c], strengths.shear[c]}, strengths.friction, search);
-    }
+  const auto moment_of = [&](std::size_t c) {
+    return breaking_moment(pattern[c], dead.empty() ? ContactForce{} : dead[c], strengths.tension[c],
+                           strengths.shear[c], strengths.friction, search);
+  };
+  std::vector<double> keys(pattern.size());
+  parallel_ranges(keys.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) keys[c] = moment_of(c).key();
   });
-  const auto first = FirstToBreak::among(
-      moments.size(), [&](std::size_t c) { return moments[c]; },
-      [](std::size_t c) { return static_cast<std::int64_t>(c); }, search);
-  return next_break_of(first, search);
+  double least = no_break, second = no_break;
+  for (const double key : keys) least = std::min(least, key);
+  if (least == no_break) return {};
+  constexpr double same = 1e-10;  // share of lambda: round-off of equal load factors
+  const double reached = search.from + search.direction * least;
+  const double tied = least + (std::isfinite(reached) ? same * std::max(std::abs(reached), std::abs(search.from)) : 0);
+  std::int64_t ties = -1;
+  std::size_t first = keys.size();
+  for (std::size_t c = 0; c < keys.size(); ++c) {
+    if (keys[c] > tied) {
+      second = std::min(second, keys[c]);
+    } else {
+      ++ties;
+      first = std::min(first, c);
+    }
+  }
+  const double gap = reached != 0 && std::isfinite(reached) ? (second - least) / std::abs(reached) : no_break;
+  const BreakingMoment moment = moment_of(first);
+  return NextBreak{search.from + search.direction * moment.t, first,
+                   moment.in_shear ? BreakMode::shear : BreakMode::tension, ties, gap};
 }
 
 }  // namespace equidem

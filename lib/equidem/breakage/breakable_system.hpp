@@ -18,7 +18,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/linear_solver.hpp"
-#include "equidem/statics/breaking/updated_equilibrium.hpp"
+#include "equidem/statics/breaking/updated_network.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
@@ -35,7 +35,6 @@ struct BreakableNetwork {
   /// are divided by the mean radius of `assembly`.
   std::vector<RightHandSide> cases;
   SolverOptions solver;
-  const ContactStrengths* strengths = nullptr;  ///< for which next_break() is prepared; null: for none
 };
 
 struct BreakableCounters {
@@ -44,7 +43,6 @@ struct BreakableCounters {
   std::int64_t mended = 0;          ///< factorizations because round-off of updates had grown
   std::int64_t refinements = 0;     ///< of motions behind a factor that was updated
   double largest_residual = 0;      ///< relative, of all states so far
-  double swept = 1;                 ///< share of the factor that searches swept back through
 };
 
 /// The network after some breaks. Discs that can carry no force (load_bearing.hpp) have left it: they are held at 0 and
@@ -65,10 +63,7 @@ class BreakableSystem {
   /// carried.
   [[nodiscard]] virtual std::optional<NextBreak> next_break(const ContactStrengths& strengths,
                                                             const LoadFactorSearch& search) = 0;
-  /// The contact that the last removal took out, where it was one alone and the state followed from the one before it;
-  /// else null.
-  [[nodiscard]] virtual const OpenedContact* opened() const { return nullptr; }
-  /// Works and sums of the network as it is, where the last removal left them; else null.
+  /// Works and sums of the network as it is, where the system has them; else null.
   [[nodiscard]] virtual const EquilibriumSums* sums() const { return nullptr; }
 
   /// Per contact, N/m; 0 of those that are removed or carry nothing.
@@ -97,7 +92,7 @@ std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network);
 
 /// A factor that is updated where K is positive definite, every disc carries load at first, and no other method is
 /// asked for; else as below. The assembly and the springs must outlive the system.
-/// \throws Error as UpdatedEquilibrium and StiffnessSolver do
+/// \throws Error as UpdatedNetwork and StiffnessSolver do
 std::unique_ptr<BreakableSystem> make_breakable_system(BreakableNetwork network);
 
 /// Factorizes every network anew. The assembly and the springs must outlive the system.

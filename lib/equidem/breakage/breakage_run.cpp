@@ -31,8 +31,7 @@ double round_off_of_motions(const BreakageScene& scene) {
 
 BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
                                    const SolverOptions& solver) {
-  BreakableNetwork network{scene.assembly,       scene.springs, effects,         std::move(supports),
-                           {scene.path.pattern}, solver,        &scene.strengths};
+  BreakableNetwork network{scene.assembly, scene.springs, effects, std::move(supports), {scene.path.pattern}, solver};
   if (scene.path.dead) network.cases.push_back(*scene.path.dead);
   return network;
 }
@@ -236,10 +235,7 @@ void BreakageRun::break_contact(const NextBreak& next) {
   const double moved_before = NetworkResponse::at(response_.loads_by_motions, lambda_);
   if (scene_.path.control != LoadControl::path) hold(held_quantity(lambda_));
   event.loosened = system_.remove({&next.contact, 1});
-  const OpenedContact* const opened = system_.opened();
-  if (opened != nullptr) {
-    follow(response_, *opened, scene_.path);
-  } else if (const EquilibriumSums* const sums = system_.sums()) {
+  if (const EquilibriumSums* const sums = system_.sums()) {
     response_ = response_of(*sums, scene_.path, area_of_stress(scene_.assembly));
   } else {
     response_ = response_of(system_, scene_.assembly, scene_.springs, scene_.path);

@@ -68,27 +68,6 @@ double largest_force(std::span<const ContactForce> forces) {
   return most;
 }
 
-void follow(NetworkResponse& r, const OpenedContact& contact, const LoadPath& path) {
-  const auto& [force, opening, moment] = contact;  // of the pattern, and of dead loads or 0
-  const double pattern_pattern = work_of(force[0], opening[0]), pattern_dead = work_of(force[0], opening[1]);
-  const double dead_pattern = work_of(force[1], opening[0]), dead_dead = work_of(force[1], opening[1]);
-  r.loads_by_motions[0] += dead_dead;
-  r.dead_by_pattern += dead_pattern;
-  if (path.driven_by == DrivenBy::loads) {
-    r.pattern_by_dead += pattern_dead;
-    r.pattern_by_pattern += pattern_pattern;
-  } else {
-    r.imposed[0] -= pattern_dead;
-    r.imposed[1] -= pattern_pattern;
-  }
-  halve_works(r);
-  if (r.area > 0) {
-    r.stress[0] += 1 / r.area * moment[1];
-    r.stress[1] += 1 / r.area * moment[0];
-  }
-  relate(r, path);
-}
-
 NetworkResponse response_of(const BreakableSystem& system, const Assembly& assembly, const ContactSprings& springs,
                             const LoadPath& path) {
   const bool dead = path.dead.has_value();

@@ -38,12 +38,6 @@ struct NetworkResponse {
   }
 };
 
-/// The response behind a break, from that before it: with right-hand sides that a network carries, A and B, and contact
-/// k gone, the work of the loads of B on the change of the motions of A, less that of the imposed motions of B with the
-/// change of the reactions of A, is F_k(B) d_k(A), of the force that k carried under B and the opening of its ends
-/// under A. Energies are works halved (Clapeyron).
-void follow(NetworkResponse& response, const OpenedContact& contact, const LoadPath& path);
-
 /// m², of the assembly; 0: not known, and with it no stress.
 double area_of_stress(const Assembly& assembly);
 

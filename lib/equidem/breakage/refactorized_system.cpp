@@ -12,6 +12,7 @@
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {
@@ -52,8 +53,6 @@ class RefactorizedSystem final : public SolvedStates {
   void solve_cases(const RestOfNetwork& rest, DegreesOfFreedom unknowns);
   RightHandSide on(const RestOfNetwork& rest, const RightHandSide& whole) const;
   bool drives_mechanism(const RightHandSide& given, const RestOfNetwork& rest, const StiffnessSolver& solver);
-  static std::vector<double> without_forces(const RestOfNetwork& rest, const StiffnessSolver& solver,
-                                            std::vector<double> mechanism);
   void take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,
             const RightHandSide& given, const Solution& solution, State& state);
 
@@ -133,21 +132,9 @@ void RefactorizedSystem::solve_cases(const RestOfNetwork& rest, DegreesOfFreedom
 /// Where no spring is negative a mechanism deforms no contact, so that only loads can drive it.
 bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const RestOfNetwork& rest,
                                           const StiffnessSolver& solver) {
-  if (given.force.empty()) return false;
-  const auto works = [&](const std::vector<double>& motion) {
-    double work = 0, largest_motion = 0, load = 0;
-    for (std::size_t k = 0; k < motion.size(); ++k) {
-      work += motion[k] * given.force[k];
-      largest_motion = std::max(largest_motion, std::abs(motion[k]));
-      load += std::abs(given.force[k]);
-    }
-    return std::abs(work) > negligible * largest_motion * load;
-  };
-  for (std::int64_t m = 0; m < solver.factor().report().zero_pivots; ++m) {
-    std::vector<double> motion = solver.factor().null_motion(m);
-    if (!works(motion)) continue;
-    motion = without_forces(rest, solver, std::move(motion));
-    if (!works(motion)) continue;  // the load had worked on what the factor was wrong by
+  for (std::int64_t m = 0; !given.force.empty() && m < solver.factor().report().zero_pivots; ++m) {
+    const std::vector<double> motion = solver.factor().null_motion(m);
+    if (!does_work(given.force, motion, solver.unknowns().per_disc)) continue;
     const std::vector<DiscMotion> of_rest = disc_motions(solver.unknowns(), motion);
     std::vector<DiscMotion> motions(network_.assembly.size());
     for (std::size_t d = 0; d < of_rest.size(); ++d) motions[static_cast<std::size_t>(rest.discs[d])] = of_rest[d];
@@ -155,25 +142,6 @@ bool RefactorizedSystem::drives_mechanism(const RightHandSide& given, const Rest
     return true;
   }
   return false;
-}
-
-/// A mechanism without what its factor is wrong by, from the forces of the contacts that it deforms.
-std::vector<double> RefactorizedSystem::without_forces(const RestOfNetwork& rest, const StiffnessSolver& solver,
-                                                       std::vector<double> mechanism) {
-  constexpr int corrections = 2;
-  const SpringNetwork network{rest.assembly, solver.graph(), rest.springs, solver.unknowns()};
-  std::vector<double> change(mechanism.size());
-  PreciseMotion motion(mechanism.size());
-  for (int step = 0; step < corrections; ++step) {
-    motion.high = mechanism;
-    internal_force(network, motion, {}, change);
-    for (std::size_t k = 0; k < change.size(); ++k) {
-      if (solver.unknowns().held[k] != DegreesOfFreedom::free) change[k] = 0;
-    }
-    solver.factor().solve(change, 1);
-    for (std::size_t k = 0; k < change.size(); ++k) mechanism[k] -= change[k];
-  }
-  return mechanism;
 }
 
 void RefactorizedSystem::take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,

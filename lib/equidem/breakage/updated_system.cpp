@@ -43,9 +43,9 @@ class UpdatedSystem final : public SolvedStates {
         held_(std::move(held)),
         broken_(network_.assembly.contacts.size(), 0),
         ways_(network_.assembly, graph_, network_.springs, broken_, left_),
-        equilibrium_(network_.assembly, network_.springs, unknowns_, network_.cases,
-                     {.memory_limit = network_.solver.memory_limit,
-                      .force_moments = area_of_stress(network_.assembly) > 0}) {
+        equilibrium_(
+            network_.assembly, network_.springs, unknowns_, network_.cases,
+            {.memory_limit = network_.solver.memory_limit, .force_moments = area_of_stress(network_.assembly) > 0}) {
     check_held_free();
     for (const RightHandSide& given : network_.cases) energies_.push_back({.of_driving = energy_of_driving(given)});
     moved_ = std::ranges::all_of(network_.cases[0].force, [](double f) { return f == 0; });
@@ -95,7 +95,9 @@ class UpdatedSystem final : public SolvedStates {
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
     if (alone_) return alone_->forces(k);
-    return states_[k].carried ? equilibrium_.forces(k) : SolvedStates::forces(k);
+    if (states_[k].carried) return equilibrium_.forces(k);
+    take();
+    return SolvedStates::forces(k);
   }
   [[nodiscard]] std::span<const double> motion(std::size_t k) const override {
     if (alone_) return alone_->motion(k);
@@ -175,8 +177,8 @@ class UpdatedSystem final : public SolvedStates {
     const SpringConstants k = network_.springs[found.contact];
     double driving = std::abs(lambda) * std::sqrt(energies_[0].now + energies_[0].of_driving);
     if (energies_.size() > 1) driving += std::sqrt(energies_[1].now + energies_[1].of_driving);
-    const double wrong = equilibrium_.residual() * driving *
-                         std::sqrt(2 * (k.kN * normal * normal + k.kT * tangential * tangential));
+    const double wrong =
+        equilibrium_.residual() * driving * std::sqrt(2 * (k.kN * normal * normal + k.kT * tangential * tangential));
     const double grows = std::abs(lambda * (normal * live.normal + tangential * live.tangential));
     return wrong > 0 ? wrong / grows : 0;
   }
@@ -198,8 +200,7 @@ class UpdatedSystem final : public SolvedStates {
   /// Refinement with a new factor may not serve where hardly anything is left, and round-off of many changes may look
   /// like a mechanism that a load drives. \return discs that leave the network
   std::vector<std::int32_t> judge_residual() {
-    if (driven_ >= 0 || !(equilibrium_.residual() <= UpdatedNetworkOptions{}.claimed_residual))
-      return give_up(false);
+    if (driven_ >= 0 || !(equilibrium_.residual() <= UpdatedNetworkOptions{}.claimed_residual)) return give_up(false);
     measured(equilibrium_.residual());
     return {};
   }
@@ -319,8 +320,8 @@ class UpdatedSystem final : public SolvedStates {
   EquilibriumSums sums_;
   mutable bool taken_ = false;                // whether states_ are those of the network as it is
   std::unique_ptr<BreakableSystem> alone_{};  // that solves every network alone, where the factor does not serve
-  bool found_late_ = false;   // mechanisms by the last search
-  std::int64_t driven_ = -1;  // component held in place of a mechanism on which a load seems to work
+  bool found_late_ = false;                   // mechanisms by the last search
+  std::int64_t driven_ = -1;                  // component held in place of a mechanism on which a load seems to work
   struct Energies {
     double now = 0, first = 0;
     double of_driving = 0;  // energy_of_driving

@@ -17,8 +17,8 @@ std::vector<std::int32_t> loose_discs(const BreakableNetwork& network, std::span
     springs.push_back({laws[c].k.kN, bonded || laws[c].rough() ? laws[c].k.kT : 0});
   }
   const ContactSprings as_they_are(std::move(springs));
-  const BreakableNetwork carrying{network.assembly, as_they_are,    network.effects,  network.supports,
-                                  network.cases,    network.solver, network.strengths};
+  const BreakableNetwork carrying{network.assembly, as_they_are,   network.effects,
+                                  network.supports, network.cases, network.solver};
   const RestOfNetwork rest = load_bearing_rest(carrying, without, held_or_loaded(network));
   const std::vector<std::uint8_t> outside = discs_outside(rest, network.assembly.size());
   std::vector<std::int32_t> discs;

@@ -29,7 +29,7 @@ ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& 
 double moment_to_force(const SpringConstants& k, double kM);
 
 /// How a bond breaks under the forces of its springs, if it does; one that carries nothing does not break, as in
-/// least_load_factor.hpp.
+/// breakage/break_search.hpp.
 /// \param moment of the bending spring, N m; \param tension, shear its strengths, N/m
 std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
                                   double tension, double shear, double friction);

@@ -44,16 +44,6 @@ EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffne
   return turn;
 }
 
-/// Applies the turn of pivot p to the solutions that are followed: L z + w s stays.
-EQUIDEM_INLINE void follow_turn(const PanelChange& change, std::size_t p, std::size_t k, const Turn& turn) {
-  for (std::size_t f = 0; f < change.followed_count; ++f) {
-    double& z = change.followed[f * change.followed_apart + p];
-    double& s = change.followed_by[f * change.changes + k];
-    z = turn.shrink * z + turn.lift * s;
-    s = turn.grow * s - turn.part * z;
-  }
-}
-
 /// Pivots [p, p + N) with K vectors and C right-hand sides.
 template <std::size_t Bytes, std::size_t N, std::size_t K, std::size_t C>
 EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, PanelChangeResult& result) {
@@ -71,7 +61,6 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
       turns[j][k] = turn_at(pivot, w[k * ld + p + j], change.signs[k], change.stiffness[p + j], change.least, vanished,
                             result.share);
       if (vanished) result.vanished.push_back(p + j);
-      follow_turn(change, p + j, k, turns[j][k]);
     }
     for (std::size_t c = 0; c < C; ++c) y[j][c] = b[c * ld + p + j] /= pivot;
     for (std::size_t i = p + j + 1; i < p + N; ++i) {

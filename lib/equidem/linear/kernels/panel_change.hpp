@@ -22,11 +22,6 @@ struct PanelChange {
   std::size_t changes;      ///< <= most_changes
   double* right;            ///< rows x right_sides: y_1 := L_new_11^-1 y_1, y_2 := y_2 - L_new_21 y_1
   std::size_t right_sides;  ///< <= most_right_sides
-  /// Solutions z of L z = q for given q that change with K: q_new = q + sum sign_k w_k s_k with numbers s_k of each.
-  double* followed;            ///< z of the first one, at the pivots
-  std::size_t followed_apart;  ///< numbers from one z to the next
-  std::size_t followed_count;
-  double* followed_by;  ///< s_k, changes for each z: on output those for the rows below the pivots
   /// The square of a pivot that a difference leaves below `least` times the stiffness of that pivot is round-off of
   /// zero. The new matrix is singular there; the stiffness is added to it, which leaves the column no other entries.
   const double* stiffness;  ///< per pivot, > 0

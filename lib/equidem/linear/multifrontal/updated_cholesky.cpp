@@ -40,8 +40,7 @@ std::vector<std::int32_t> UpdatedCholesky::path_of(std::int32_t i, std::int32_t 
   return path;
 }
 
-FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::span<const Load> loads,
-                                   const Followed& followed) {
+FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::span<const Load> loads) {
   const SymbolicFactor& tree = symbolic();
   const auto b = static_cast<std::size_t>(tree.block);
   const std::int32_t i = changes.front().i, j = changes.front().j;
@@ -53,7 +52,7 @@ FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::
   std::iota(ordered.begin(), ordered.end(), std::size_t{0});
   std::stable_sort(ordered.begin(), ordered.end(),
                    [&](std::size_t p, std::size_t q) { return changes[p].stiffness > 0 && changes[q].stiffness < 0; });
-  const std::size_t columns = ordered.size() + loads.size(), unknowns = stiffness_.size();
+  const std::size_t columns = ordered.size() + loads.size();
   std::vector<double> signs;
   std::vector<double> work, next;
   const auto rows_of = [&](std::size_t t) { return tree.pivots(t) + tree.updates(t); };
@@ -82,10 +81,6 @@ FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::
     for (std::size_t c = 0; c < loads.size(); ++c) scatter(ordered.size() + c, 1, loads[c]);
   }
 
-  std::vector<double> followed_by;
-  for (const auto& by : followed.by) {
-    for (const std::size_t k : ordered) followed_by.push_back(std::sqrt(std::abs(changes[k].stiffness)) * by[k]);
-  }
   PanelChangeResult result;
   std::vector<RowRun> runs;
   for (const std::int32_t t : path.fronts) {
@@ -101,10 +96,6 @@ FactorPath UpdatedCholesky::change(std::span<const RankOneChange> changes, std::
                   .changes = ordered.size(),
                   .right = right,
                   .right_sides = loads.size(),
-                  .followed = followed.solutions.data() + (followed.by.empty() ? 0 : node.begin * b),
-                  .followed_apart = unknowns,
-                  .followed_count = followed.by.size(),
-                  .followed_by = followed_by.data(),
                   .stiffness = stiffness_.data() + node.begin * b,
                   .least = least_pivot},
                  result);

@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/factorization.hpp"
 #include "equidem/linear/kernels/panel_change.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 
@@ -37,7 +36,7 @@ struct FactorPath {
 /// K = L L^T with vectors and factors in double precision. A rank-one change K + c v v^T of one contact alters the
 /// columns of the fronts from that which eliminates its first disc up to the root, and no others (Davis & Hager 1999);
 /// panels stay dense.
-class UpdatedCholesky final : public Factorization {
+class UpdatedCholesky {
  public:
   explicit UpdatedCholesky(std::shared_ptr<const SymbolicFactor> symbolic);
 
@@ -49,28 +48,17 @@ class UpdatedCholesky final : public Factorization {
   struct Load {
     std::array<double, 3> at_i{}, at_j{};
   };
-  /// Solutions z of L z = q, for given q that change with K: a change by c v v^T changes them by c v d.
-  struct Followed {
-    std::span<double> solutions;                       ///< one after another, in the order of elimination
-    std::vector<std::array<double, most_changes>> by;  ///< d of each of them, for each change
-  };
   /// Changes of one contact, at most most_changes, and loads on its discs, at most most_right_sides, for which L y = f
   /// is solved with the new factor. Stiffness that is added is added first.
-  FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads, const Followed& followed = {});
+  FactorPath change(std::span<const RankOneChange> changes, std::span<const Load> loads = {});
 
-  void solve(std::span<double> x, int right_hand_sides) const override { factor_.solve(x, right_hand_sides); }
-  [[nodiscard]] const FactorReport& report() const override { return factor_.report(); }
-  /// L^T x = y on one front (CholeskyFactor::backward).
+  void solve(std::span<double> x, int right_hand_sides) const { factor_.solve(x, right_hand_sides); }
+  [[nodiscard]] const FactorReport& report() const { return factor_.report(); }
   using Columns = CholeskyFactor::Columns;
   void forward(const Columns& y) const { factor_.forward(y); }
-  void backward(std::size_t t, const Columns& y) const { factor_.backward(t, y); }
   void backward(const Columns& y) const { factor_.backward(y); }
-  /// The front that eliminates a disc, and those above it.
-  [[nodiscard]] std::vector<std::int32_t> path_of(std::int32_t i, std::int32_t j) const;
   /// The stiffness that is added to a pivot that vanishes, Pa.
   [[nodiscard]] double stiffness_of(std::int64_t component) const;
-  /// Likewise for all components, in the order of elimination.
-  [[nodiscard]] std::span<const double> stiffness_in_order() const { return stiffness_; }
 
   /// Share of its stiffness below which a pivot counts as zero: round-off of thousands of changes leaves less, a
   /// cantilever of a thousand discs more.
@@ -78,6 +66,8 @@ class UpdatedCholesky final : public Factorization {
 
  private:
   [[nodiscard]] const SymbolicFactor& symbolic() const { return factor_.symbolic(); }
+  /// The front that eliminates the first of two discs, and those above it.
+  [[nodiscard]] std::vector<std::int32_t> path_of(std::int32_t i, std::int32_t j) const;
 
   CholeskyFactor factor_;
   std::vector<std::int32_t> front_of_;  // of each disc, by its position in the order of elimination

@@ -69,8 +69,7 @@ void check_network(const ContactSprings& springs, std::size_t cases) {
 std::shared_ptr<const SymbolicFactor> order_of(const SpringNetwork& network, std::size_t cases, double memory_limit) {
   check_network(network.springs, cases);
   const auto& [assembly, graph, springs, unknowns] = network;
-  auto symbolic =
-      std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc));
+  auto symbolic = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph), graph, unknowns.per_disc));
   check_memory(estimate(*symbolic, unknowns, false), memory_limit);
   return symbolic;
 }
@@ -125,8 +124,7 @@ UpdatedNetwork::UpdatedNetwork(const Assembly& assembly, const ContactSprings& s
 }
 
 std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
-  const std::vector<RankOneChange> changes =
-      taken_out({assembly_, graph_, springs_, unknowns_}, number);
+  const std::vector<RankOneChange> changes = taken_out({assembly_, graph_, springs_, unknowns_}, number);
   if (changes.empty()) return {};
   std::vector<UpdatedCholesky::Load> loads(cases_.size());
   for (std::size_t p = 0; p < cases_.size(); ++p) {
@@ -170,8 +168,8 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   return mechanisms;
 }
 
-/// The motions are right to round-off of the energy: a soft network answers a residual of 1e-13 by forces that are wrong
-/// by far more. An error x of a motion has the energy x.K x = |y|² with L y = r.
+/// The motions are right to round-off of the energy: a soft network answers a residual of 1e-13 by forces that are
+/// wrong by far more. An error x of a motion has the energy x.K x = |y|² with L y = r.
 /// \return false where corrections end before that: round-off has spoiled the factor for what is soft
 bool UpdatedNetwork::improve(int least_steps) {
   constexpr double wrong = 1e-12, contracts = 0.5;

@@ -80,8 +80,8 @@ class UpdatedNetwork {
   /// Per component.
   [[nodiscard]] PreciseMotion motion(std::size_t of_case) const;
   [[nodiscard]] EquilibriumSums sums() const;
-  /// Relative, measured, the largest of all right-hand sides, with the round-off of the measurement. Where a load drives
-  /// a mechanism there is no state to claim anything of.
+  /// Relative, measured, the largest of all right-hand sides, with the round-off of the measurement. Where a load
+  /// drives a mechanism there is no state to claim anything of.
   [[nodiscard]] double residual() const;
   /// A motion that deforms no contact, to round-off, and on which the loads of every right-hand side do work: the
   /// network carries none of them.
