@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/statics/harmonic/harmonic_solver.hpp"

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
 
 namespace equidem {
@@ -14,12 +15,6 @@ namespace {
 void clear_held(const DegreesOfFreedom& unknowns, std::vector<double>& x) {
   for (std::size_t k = 0; k < x.size(); ++k)
     if (unknowns.held[k] != 0) x[k] = 0;
-}
-
-double product(const std::vector<double>& x, const std::vector<double>& y) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
-  return sum;
 }
 
 }  // namespace
@@ -39,7 +34,7 @@ double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, co
   clear_held(unknowns, a_x);
   multiply(b, assembly, graph, x, b_x);
   clear_held(unknowns, b_x);
-  return -product(x, a_x) / product(x, b_x);
+  return -dot(x, a_x) / dot(x, b_x);
 }
 
 double InverseIteration::run(std::vector<double>& x) const {
@@ -51,7 +46,7 @@ double InverseIteration::run(std::vector<double>& x) const {
     clear_held(unknowns, b_x);
     shifted.solve(b_x, 1);
     clear_held(unknowns, b_x);
-    const double size = std::sqrt(product(b_x, b_x));
+    const double size = std::sqrt(dot(b_x, b_x));
     if (!is_positive(size)) break;
     for (std::size_t c = 0; c < x.size(); ++c) x[c] = b_x[c] / size;
     const double value = quotient(x);
