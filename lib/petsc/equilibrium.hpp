@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Equilibrium of an assembly that the ranks share, under supports and loads.
+/// Equilibrium of an assembly that the ranks share, under supports and loads, and Abe's tension test on it.
 #pragma once
 
 #include <array>
@@ -8,10 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "equidem/assembly/lattices/row_lattice.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
-#include "petsc/refinement.hpp"
+#include "petsc/solver.hpp"
 
 namespace equidem::petsc {
 
@@ -42,7 +43,15 @@ class PartSolver {
   const Effects& effects_;
   Network network_;
   std::optional<PetscSolver> solver_;
-  Inertia inertia_;
 };
+
+/// Loads, supports and gauges; the discs of the gauges by their names.
+/// \param lattice of the assembly; null: the gauges are the discs nearest to the points wanted
+/// \throws Error (bad_input) on all ranks, as equidem::tension_setup
+TensionSetup tension_setup(const Ranks& ranks, const Part& part, const Whole& whole, const TensionTest& test,
+                           const RowLattice* lattice);
+
+TensionResult evaluate_tension(const Network& network, const TensionTest& test, const TensionSetup& setup,
+                               const PartEquilibrium& equilibrium);
 
 }  // namespace equidem::petsc

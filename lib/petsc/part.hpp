@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The part of an assembly that one rank holds.
+/// The part of an assembly that one rank holds, and how it comes to it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +14,9 @@
 #include <petscsf.h>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/assembly/delaunay.hpp"
+#include "equidem/assembly/lattices/row_lattice.hpp"
+#include "equidem/contact/contact_springs.hpp"
 
 #include "petsc/ranks.hpp"
 
@@ -69,5 +74,54 @@ Whole whole_of(const Ranks& ranks, const Part& part);
 
 /// The places where the discs of each rank begin, from the number that each one owns, and their count.
 std::vector<std::int64_t> beginnings(const Ranks& ranks, std::int64_t owned);
+
+/// A grid of ranks over the columns and rows of a lattice; blocks are numbered row by row.
+class BlockGrid {
+ public:
+  /// The grid with the shortest cuts.
+  /// \throws Error (bad_input) where some rank would have no disc
+  BlockGrid(const RowLattice& lattice, int ranks);
+
+  struct Block {
+    int first_row, end_row, first_column, end_column;
+    /// Columns of the block in a row of the lattice.
+    [[nodiscard]] int width(const RowLattice& lattice, int row) const {
+      return std::max(0, std::min(end_column, lattice.count(row)) - first_column);
+    }
+  };
+  [[nodiscard]] Block block(int rank) const;
+  [[nodiscard]] int rank_of(int row, int column) const;
+  /// Discs of a block in the rows from its first one up to `row`.
+  [[nodiscard]] std::int64_t discs_below(const Block& block, int row) const;
+
+ private:
+  [[nodiscard]] int cut(int count, int parts, int part) const {
+    return static_cast<int>(std::int64_t{count} * part / parts);
+  }
+
+  const RowLattice& lattice_;
+  int across_ = 1;  ///< blocks side by side
+  int along_ = 1;   ///< blocks one above the other
+};
+
+/// The block of a rank with its ghosts; no rank holds more than that and the sides. Names are the numbers of
+/// row_lattice. \throws Error (bad_input) as row_lattice; where there are more ranks than discs
+Part lattice_part(const Ranks& ranks, const RowLattice& lattice);
+
+/// The strip of a rank with its ghosts, of the assembly that delaunay_assembly makes. Every rank draws all points,
+/// since each follows from those before it, and drops them when its strip is triangulated.
+/// \throws Error (bad_input) on all ranks as delaunay_assembly; where there are more ranks than discs
+Part delaunay_part(const Ranks& ranks, const DelaunayOptions& options);
+
+struct ScatteredPart {
+  Part part;
+  std::optional<ContactSprings> springs;  ///< of its contacts
+};
+
+/// Each rank receives the discs of a stretch of Hilbert's curve, with their contacts.
+/// \param whole of rank 0; null on the others
+/// \param springs of its contacts, likewise
+/// \throws Error (bad_input) on all ranks where there are more ranks than discs
+ScatteredPart scattered_part(const Ranks& ranks, const Assembly* whole, const ContactSprings* springs);
 
 }  // namespace equidem::petsc

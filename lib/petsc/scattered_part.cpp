@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "petsc/scattered_part.hpp"
-
 #include <algorithm>
 #include <cstring>
 #include <span>
@@ -10,6 +8,8 @@
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+
+#include "petsc/part.hpp"
 
 namespace equidem::petsc {
 namespace {

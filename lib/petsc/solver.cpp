@@ -12,10 +12,126 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
-#include "petsc/coordinates.hpp"
-#include "petsc/grids.hpp"
-
 namespace equidem::petsc {
+namespace {
+
+/// Blocks in the order: on the diagonal of each owned disc; for every contact those of (i, j) and (j, i) and, where j
+/// is a ghost, of (j, j). Entries of rows of other ranks are sent there by PETSc and added. Rows and columns of held
+/// components are those of the unit matrix times the stiffest spring.
+struct Coordinates {
+  std::vector<PetscInt> rows, columns;
+  std::vector<double> values;
+
+  /// Rows and columns alone.
+  explicit Coordinates(const Network& network);
+  /// The values.
+  void fill(const Network& network);
+};
+
+/// Calls put(p, q) for every block in the order of Coordinates, p and q the discs of its rows and columns.
+template <typename Put>
+void for_each_block(const Network& network, const Put& put) {
+  const auto owned = static_cast<std::int32_t>(network.part().owned);
+  for (std::int32_t d = 0; d < owned; ++d) put(d, d);
+  for (const Contact& contact : network.assembly().contacts) {
+    if (contact.i == contact.j) continue;
+    put(contact.i, contact.j);
+    put(contact.j, contact.i);
+    if (contact.j >= owned) put(contact.j, contact.j);
+  }
+}
+
+/// Adds the tangent of a contact between two of its ends to a block.
+template <int B>
+class Tangent {
+ public:
+  Tangent(const Network& network, std::size_t contact)
+      : springs_(network.springs()[contact]),
+        gradient_(deformation_gradient(frame_of(network.assembly(), contact), network.unknowns().rotation_scale)) {}
+
+  /// \param p, q 0: the end at disc i, 1: at j
+  void add(int p, int q, double* block) const {
+    const auto& n = std::array{&gradient_.normal_i, &gradient_.normal_j};
+    const auto& t = std::array{&gradient_.tangential_i, &gradient_.tangential_j};
+    add_linear_spring_tangent<B>(springs_, *n[static_cast<std::size_t>(p)], *n[static_cast<std::size_t>(q)],
+                                 *t[static_cast<std::size_t>(p)], *t[static_cast<std::size_t>(q)], block);
+  }
+
+ private:
+  SpringConstants springs_;
+  DeformationGradient gradient_;
+};
+
+template <int B>
+void fill_blocks(const Network& network, std::vector<double>& values) {
+  constexpr std::size_t entries = std::size_t{B} * B;
+  const auto owned = static_cast<std::int32_t>(network.part().owned);
+  const auto block_at = [&](std::size_t block) { return &values[block * entries]; };
+  auto next = static_cast<std::size_t>(owned);
+  for (std::size_t c = 0; c < network.assembly().contacts.size(); ++c) {
+    const Contact& contact = network.assembly().contacts[c];
+    const Tangent<B> tangent(network, c);
+    double* const diagonal = block_at(static_cast<std::size_t>(contact.i));
+    tangent.add(0, 0, diagonal);
+    if (contact.i == contact.j) {
+      tangent.add(0, 1, diagonal);
+      tangent.add(1, 0, diagonal);
+      tangent.add(1, 1, diagonal);
+      continue;
+    }
+    tangent.add(0, 1, block_at(next++));
+    tangent.add(1, 0, block_at(next++));
+    tangent.add(1, 1, block_at(contact.j >= owned ? next++ : static_cast<std::size_t>(contact.j)));
+  }
+}
+
+Coordinates::Coordinates(const Network& network) {
+  const std::size_t b = network.block();
+  std::size_t blocks = 0;
+  for_each_block(network, [&](std::int32_t, std::int32_t) { ++blocks; });
+  rows.reserve(blocks * b * b);
+  columns.reserve(blocks * b * b);
+  const auto& places = network.part().places;
+  for_each_block(network, [&](std::int32_t p, std::int32_t q) {
+    const auto row = static_cast<PetscInt>(b) * places[static_cast<std::size_t>(p)];
+    const auto column = static_cast<PetscInt>(b) * places[static_cast<std::size_t>(q)];
+    for (std::size_t r = 0; r < b; ++r) {
+      for (std::size_t c = 0; c < b; ++c) {
+        rows.push_back(row + static_cast<PetscInt>(r));
+        columns.push_back(column + static_cast<PetscInt>(c));
+      }
+    }
+  });
+}
+
+void Coordinates::fill(const Network& network) {
+  const std::size_t b = network.block();
+  std::size_t blocks = 0;
+  for_each_block(network, [&](std::int32_t, std::int32_t) { ++blocks; });
+  values.assign(blocks * b * b, 0.0);
+  if (b == 3) {
+    fill_blocks<3>(network, values);
+  } else {
+    fill_blocks<2>(network, values);
+  }
+  const auto& held = network.unknowns().held;
+  const auto owned = static_cast<std::int32_t>(network.part().owned);
+  double* block = values.data();
+  std::int32_t diagonal = 0;  // blocks that have been visited
+  for_each_block(network, [&](std::int32_t p, std::int32_t q) {
+    const bool on_diagonal = diagonal++ < owned;
+    for (std::size_t r = 0; r < b; ++r) {
+      const bool row = held[static_cast<std::size_t>(p) * b + r] != 0;
+      for (std::size_t c = 0; c < b; ++c, ++block) {
+        if (!row && held[static_cast<std::size_t>(q) * b + c] == 0) continue;
+        *block = on_diagonal && r == c ? network.stiffest() : 0.0;
+      }
+    }
+  });
+}
+
+}  // namespace
+
 namespace {
 
 constexpr const char* prefix = "equidem_";
@@ -32,7 +148,7 @@ bool is_type(KSP solver, PC pc, const char* ksp_type, const char* pc_type) {
   return first == PETSC_TRUE && second == PETSC_TRUE;
 }
 
-/// A matrix of blocks or of all entries takes no coordinates in parallel, or has no grids.
+/// A matrix of blocks or of all entries takes no coordinates in parallel, or has no multigrid.
 void check_format(Mat matrix) {
   MatType type = nullptr;
   check(MatGetType(matrix, &type));
@@ -178,7 +294,6 @@ void PetscSolver::set_near_null_space() {
 void PetscSolver::set_up(SolverMethod method) {
   const Network& n = network_;
   const bool eliminates = method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
-  register_grids();
   check(KSPCreate(n.ranks().communicator(), &solver_));
   check(KSPSetOptionsPrefix(solver_, prefix));
   check(KSPSetOperators(solver_, matrix_, matrix_));
@@ -191,14 +306,12 @@ void PetscSolver::set_up(SolverMethod method) {
   } else {
     check(KSPSetType(solver_, KSPCG));
     check(KSPSetNormType(solver_, KSP_NORM_UNPRECONDITIONED));
-    check(PCSetType(pc, method == SolverMethod::multigrid ? grids_type : PCGAMG));
+    check(PCSetType(pc, PCGAMG));
   }
   check(KSPSetTolerances(solver_, tolerance_of_a_pass, 0, PETSC_DEFAULT, most_iterations_of_a_pass));
   check_values_of_options();
   options_were_read = true;
   check_options(KSPSetFromOptions(solver_));
-  if (has_grids(pc)) build_grids(n, pc);
-  if (n.any_negative()) prepare_to_count(solver_);
   interruption_ = new Interruption{n.ranks()};
   check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
   PetscBool elimination = PETSC_FALSE;
@@ -257,9 +370,8 @@ std::string PetscSolver::name() const {
   check(KSPGetPC(solver_, &pc));
   check(KSPGetType(solver_, &method));
   check(PCGetType(pc, &preconditioner));
-  std::string name =
-      fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, method,
-                  has_grids(pc) ? "multigrid of equidem" : preconditioner);
+  std::string name = fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+                                 PETSC_VERSION_SUBMINOR, method, preconditioner);
   MatSolverType package = nullptr;
   const bool factors = is_type(solver_, pc, method, PCCHOLESKY) || is_type(solver_, pc, method, PCLU);
   if (factors) check(PCFactorGetMatSolverType(pc, &package));
@@ -278,7 +390,7 @@ double PetscSolver::grid_bytes() const {
   check(KSPGetPC(solver_, &pc));
   PetscBool gamg = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &gamg));
-  if (gamg == PETSC_FALSE && !has_grids(pc)) return 0;
+  if (gamg == PETSC_FALSE) return 0;
   PetscReal grids = 0, operators = 0;
   check(PCMGGetGridComplexity(pc, &grids, &operators));
   return operators * entries() * (sizeof(double) + sizeof(PetscInt));
@@ -299,6 +411,57 @@ std::vector<std::string> unused_options() {
   for (PetscInt k = 0; k < count; ++k) unused.push_back(fmt::format("-{}", names[k]));
   check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return unused;
+}
+
+Refined refine(const Network& network, PetscSolver& solver, std::span<const double> f,
+               const std::optional<Tensor2>& gradient) {
+  constexpr int most_passes = 12;
+  constexpr double small_enough = 1e-12, rounding = 4e-16;  // of the motion
+  Refined result;
+  result.motion = PreciseMotion(network.size());
+  result.motion.high = network.unknowns().prescribed;
+  std::vector<double> residual(network.size()), change(network.size());
+  const auto evaluate = [&](const PreciseMotion& motion) {
+    network.residual(motion, gradient, f, residual);
+    return network.norm(residual);
+  };
+  result.scale = result.residual = evaluate(result.motion);
+  if (!std::isfinite(result.scale)) {
+    bad_input("the forces overflow a double", "the largest is 1.8e308", "Check the units of sizes, springs and loads");
+  }
+  double before = 0;
+  // Lattices are at rest under a mean strain but for rounding.
+  const double at_rest = gradient ? 1e-13 * network.stiffest() * network.whole().mean_branch *
+                                        std::sqrt(static_cast<double>(network.whole().discs))
+                                  : 0;
+  // A first pass may reach the rest at once; only a second one shows how far the motion is from it.
+  for (int pass = 0; pass < most_passes && (pass == 1 || result.residual > at_rest); ++pass) {
+    result.iterations += solver.solve(residual, change);
+    result.motion.add(change);
+    const double last = result.residual;
+    result.residual = evaluate(result.motion);
+    result.refinements = pass;
+    const double size = network.norm(result.motion.high), moved = network.norm(change);
+    const double now = size > 0 ? moved / size : 0;
+    result.error = pass == 0 ? now : now * std::min(1.0, before > 0 ? now / before : 0.0);
+    before = now;
+    if (pass > 0 && (result.error <= small_enough || now <= rounding)) break;
+    if (pass > 0 && result.residual > 0.5 * last && result.residual > 1e-12 * result.scale) {
+      computation_failed(
+          fmt::format("the residual stays at {:.1e} of the forces", result.residual / result.scale),
+          network.any_negative()
+              ? "kT < 0: an iteration or preconditioner needs a positive definite matrix; MUMPS meets one "
+                "that is singular or nearly so"
+              : "the stiffness matrix is singular or nearly so: the assembly may have a mechanism",
+          "'equidem solve' names a mechanism; --set solver.method=multifrontal, without -equidem_ksp_type "
+          "and -equidem_pc_type, takes MUMPS");
+    }
+  }
+  result.error = std::max(result.error, rounding);
+  PreciseMotion rounded(0);
+  rounded.high = result.motion.high;
+  result.rounded_residual = evaluate(rounded);
+  return result;
 }
 
 }  // namespace equidem::petsc

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,14 +12,16 @@
 #include <petscksp.h>
 
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/linear/linear_solver.hpp"
+#include "equidem/statics/internal_force.hpp"
 
-#include "petsc/inertia.hpp"
+#include "petsc/network.hpp"
 
 namespace equidem::petsc {
 
 /// The rows of K by PETSc: conjugate gradients with its multigrid of aggregates (GAMG) where no spring is negative,
-/// else MUMPS. A method of the case that eliminates means MUMPS, multigrid that of equidem (grids.hpp).
+/// else MUMPS. A method of the case that eliminates means MUMPS, multigrid GAMG.
 class PetscSolver {
  public:
   /// Assembles K and sets the solver up. Held components have rows of the unit matrix times a spring.
@@ -35,8 +38,6 @@ class PetscSolver {
   /// \throws Error (computation_failed) on all ranks where the solver does not converge; (interrupted)
   std::int64_t solve(std::span<const double> r, std::span<double> d);
 
-  /// Stability of the assembly.
-  [[nodiscard]] Inertia inertia() const { return inertia_of(network_, solver_, matrix_); }
   /// "PETSc 3.18.5: cg, gamg on 2 ranks".
   [[nodiscard]] std::string name() const;
   /// Sums over all ranks: entries of K, bytes of grids or factor as PETSc tells them (0: not known).
@@ -56,6 +57,24 @@ class PetscSolver {
   Vec load_ = nullptr, solution_ = nullptr;
   KSP solver_ = nullptr;
 };
+
+struct Refined {
+  PreciseMotion motion{0};  ///< per component, with those of ghosts
+  double scale = 0;         ///< |f - K u| for the prescribed motion alone, N/m
+  double residual = 0;      ///< |f - K u|, N/m
+  double rounded_residual = 0;
+  int refinements = 0;  ///< passes after the first
+  std::int64_t iterations = 0;
+  /// The change of the motion that a further pass would bring, relative (2-norms): the last change times the ratio of
+  /// the last two.
+  double error = 0;
+};
+
+/// \param f per component, 0 for ghosts; empty: no load
+/// \param gradient of the mean displacement
+/// \throws Error (computation_failed) on all ranks where passes do not converge
+Refined refine(const Network& network, PetscSolver& solver, std::span<const double> f,
+               const std::optional<Tensor2>& gradient);
 
 /// Messages, bytes and sums over all ranks that this rank took part in since the program began, counted by PETSc.
 struct Counted {

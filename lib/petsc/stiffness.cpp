@@ -128,9 +128,7 @@ EffectiveStiffness CellSolver::solve() {
     result.fluctuations.push_back(disc_motions(network_.unknowns(), cases[k].motion.high));
   result.times.add("stiffness", watch.lap());
   result.unknowns = network_.free_count();
-  const Inertia inertia = solver_->inertia();
-  result.negative_pivots = inertia.negative_pivots;
-  result.unstable_modes = inertia.unstable_modes;
+  result.negative_pivots = result.unstable_modes = network_.any_negative() ? -1 : 0;
   result.self_stresses = -1;
   result.solver = solver_->name();
   result.factor_bytes = solver_->grid_bytes();

@@ -5,7 +5,7 @@
 
 #include "equidem/homogenize/effective_stiffness.hpp"
 
-#include "petsc/refinement.hpp"
+#include "petsc/solver.hpp"
 
 namespace equidem::petsc {
 

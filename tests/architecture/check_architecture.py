@@ -43,7 +43,6 @@ PARTS = [
     ("cholmod.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("umfpack.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("cblas.h", ["lib/equidem/linear/*", "lib/python/*"], 1),
-    ("lapacke.h", ["lib/equidem/statics/*"], 1),
     ("Eigen/*", ["lib/equidem/waves/*", "tests/*"], 2),
     ("Spectra/*", ["lib/equidem/waves/*"], 1),
     ("boost/math/*", ["lib/equidem/homogenize/*"], 1),

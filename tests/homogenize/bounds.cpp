@@ -10,7 +10,6 @@
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/statistics.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
-#include "equidem/homogenize/fabric.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 #include "homogenize/samples.hpp"

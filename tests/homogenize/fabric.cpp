@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Fabric: lattices have the symmetry of their name, and directions turn with the assembly.
-#include "equidem/homogenize/fabric.hpp"
-
 #include <cmath>
 #include <numbers>
+
+#include "equidem/homogenize/bounds.hpp"
 
 #include "homogenize/samples.hpp"
 #include "homogenize/tensors.hpp"

@@ -29,18 +29,18 @@ struct Curve {
 std::vector<Curve> curves() {
   return {
       {"hexagonal lattice, Abe 1996, eq. (34)", [](double r) { return (1 + r) / 2; }, [](double) { return 0.5; }, 0.5,
-       infinity, 9},
+       infinity, 10},
       {"uniform-stress estimate (Liao et al. 1997)", [](double r) { return 2 * r / (1 + r); },
-       [](double r) { return 2 / ((1 + r) * (1 + r)); }, 0, 2, 9},
+       [](double r) { return 2 / ((1 + r) * (1 + r)); }, 0, 2, 10},
       {"a network with one soft mode", [](double r) { return 0.4 + 0.3 * r + 0.5 * r / (r + 0.02); },
-       [](double r) { return 0.3 + 0.5 * 0.02 / ((r + 0.02) * (r + 0.02)); }, 0.4, infinity, 10},
+       [](double r) { return 0.3 + 0.5 * 0.02 / ((r + 0.02) * (r + 0.02)); }, 0.4, infinity, 11},
       {"modes at all scales: a square root between the ends",
        [](double r) { return 0.3 + 2 * std::sqrt(r) * r / (1 + std::sqrt(r) * r + 10 * std::sqrt(r)); },
        [](double r) {
          const double s = std::sqrt(r), D = 1 + s * r + 10 * s;
          return 2 * (1.5 * s * D - s * r * (1.5 * s + 5 / s)) / (D * D);
        },
-       0.3, 2.3, 10},
+       0.3, 2.3, 11},
   };
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The equations of a periodic cell that are handed to other solvers.
-#include "equidem/homogenize/strain_system.hpp"
-
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
+#include "equidem/homogenize/sample_solver.hpp"
 
 #include "support/catch.hpp"
 

@@ -35,7 +35,6 @@ SQRT3 = math.sqrt(3)
 LARGE = 4e5  # discs
 # B: what a disc takes at the peak, which the first large run replaces by what it measured.
 MEMORY_OF_DISC = 4500
-PRECONDITIONERS = {"gamg": "GAMG", "equidem": "equidem"}
 
 
 def shape(discs):
@@ -93,7 +92,7 @@ def run(build, folder, discs, ranks, kind="gamg", assembly="hexagonal"):
                            "--json", out, "-equidem_pc_type", kind], env=environment, check=False, stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
-        raise Failed(f"{discs:.0e} discs were left out: the run on {ranks} ranks with {PRECONDITIONERS[kind]} ended with exit code "
+        raise Failed(f"{discs:.0e} discs were left out: the run on {ranks} ranks with {kind} ended with exit code "
                      f"{done.returncode}: {reason(done.stderr)}")
     result = json.loads(out.read_text(encoding="utf-8"))
     used = processor_seconds() - used
@@ -130,7 +129,7 @@ def least(build, folder, jobs, repetitions, base):
                 of_a_disc = max(of_a_disc, (one["peak"] - base) / one["owned"])
             if job not in best or one["all"] < best[job]["all"]:
                 best[job] = one
-            print(f"{one['discs']} discs, {job[3]}, {one['ranks']} ranks, {PRECONDITIONERS[job[2]]}: {one['all']:.1f} s", file=sys.stderr)
+            print(f"{one['discs']} discs, {job[3]}, {one['ranks']} ranks, {job[2]}: {one['all']:.1f} s", file=sys.stderr)
     return best, list(left_out.values())
 
 
@@ -178,17 +177,6 @@ def number_of(discs):
     return f"{discs:,}".replace(",", " ")
 
 
-def pairs(best, assembly):
-    """Size, ranks and the runs (GAMG, the multigrid of equidem) of one block."""
-    return [(discs, ranks, (best[(discs, ranks, "gamg", assembly)], best[(discs, ranks, "equidem", assembly)]))
-            for discs, ranks, kind, made in sorted(best)
-            if (kind, made) == ("gamg", assembly) and (discs, ranks, "equidem", assembly) in best]
-
-
-def both(pair, value, form):
-    return ", ".join(form.format(value(one)) for one in pair)
-
-
 def strong(sizes, largest, best, base):
     rows = []
     for discs in sizes:
@@ -203,43 +191,20 @@ def strong(sizes, largest, best, base):
 def weak(sizes, best):
     rows = []
     for discs in sizes:
-        jobs = [((discs, 1, kind, "hexagonal"), (2 * discs, 2, kind, "hexagonal")) for kind in PRECONDITIONERS]
-        if not all(job in best for pair in jobs for job in pair):
-            continue
-        ones, twos = [best[one] for one, _ in jobs], [best[two] for _, two in jobs]
-        kept = ", ".join(f"{2 * one['processor'] / two['processor']:.2f}" for one, two in zip(ones, twos))
-        rows.append([f"{discs:.0e}", both(ones, lambda r: r["processor"], "{:.1f}"), both(twos, lambda r: r["processor"], "{:.1f}"), kept,
-                     both(twos, lambda r: r["iterations"], "{}")])
-    return rows
-
-
-def beside_gamg(best, base):
-    """Rows of times and memory for both preconditioners."""
-    rows = []
-    for discs, ranks, pair in pairs(best, "hexagonal"):
-        if ranks > 2:
-            continue
-        gamg, ours = pair
-        ones = [best.get((discs, 1, kind, "hexagonal")) for kind in PRECONDITIONERS]
-        ratios = ", ".join(f"{faster(one, r):.2f}" for one, r in zip(ones, pair)) if all(ones) else "one rank was not run"
-        rows.append([number_of(gamg["discs"]), str(gamg["ranks"]), both(pair, lambda r: r["set_up"], "{:.2f}"),
-                     both(pair, lambda r: r["solve"], "{:.2f}"), both(pair, lambda r: r["all"], "{:.2f}"),
-                     both(pair, lambda r: r["processor"], "{:.1f}"), ratios,
-                     both(pair, lambda r: (r["peak"] - base) / r["owned"], "{:.0f}"), f"{gamg['processor'] / ours['processor']:.2f}"])
+        one, two = (best.get((ranks * discs, ranks, "gamg", "hexagonal")) for ranks in (1, 2))
+        if one and two:
+            rows.append([f"{discs:.0e}", f"{one['processor']:.1f}", f"{two['processor']:.1f}",
+                         f"{2 * one['processor'] / two['processor']:.2f}", str(two["iterations"])])
     return rows
 
 
 def counts(best):
-    """Rows of iterations and messages for both preconditioners, of the smallest block of each assembly."""
+    """Rows of iterations and messages, of the smallest block of each assembly."""
     rows = []
     for assembly, name in (("hexagonal", "hexagonal"), ("random", "random triangulation")):
-        found = pairs(best, assembly)
-        for discs, ranks, pair in found:
-            if discs != found[0][0]:
-                continue
-            rows.append([f"{number_of(pair[0]['discs'])} discs, {name}", str(ranks), both(pair, lambda r: r["iterations"], "{}"),
-                         both(pair, lambda r: r["messages"], "{}"), both(pair, lambda r: si(r["bytes"]), "{}"),
-                         both(pair, lambda r: r["sums"], "{}")])
+        found = [job for job in sorted(best) if job[3] == assembly]
+        rows += [[f"{number_of(best[job]['discs'])} discs, {name}", str(job[1]), str(best[job]["iterations"]), str(best[job]["messages"]),
+                  si(best[job]["bytes"]), str(best[job]["sums"])] for job in found if job[0] == found[0][0]]
     return rows
 
 
@@ -250,7 +215,7 @@ def page(command, built, sizes, largest, best, cuts, base, left_out):
              "more: those of two ranks hold their waiting for each other, so that ratios of them are what is surely kept. Memory, "
              "iterations and messages do not depend on the load.", "",
              "The tension test of blocks, conjugate gradients, each pass to 1e-8, two passes to the digits of a "
-             "double. Memory and messages are those of the rank with most. Pairs are GAMG and the multigrid of equidem.", "",
+             "double. Memory and messages are those of the rank with most.", "",
              "## Strong scaling", "", "Hexagonal blocks, with GAMG.", ""]
     table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster by at least", "iterations", "residual", "memory of a rank",
                   f"of it for a disc, B (beyond {si(base)})"], strong(sizes, largest, best, base))
@@ -265,11 +230,7 @@ def page(command, built, sizes, largest, best, cuts, base, left_out):
     lines += ["## Weak scaling", "", "Twice the discs on two ranks take twice the processor time of one where nothing is lost.", ""]
     table(lines, ["discs of a rank", "one rank: processor, s", "two ranks: processors, s", "share kept, at least", "iterations on two"],
           weak(sizes, best))
-    lines += ["## The multigrid of equidem", "",
-              "`-equidem_pc_type equidem`: grids over the whole assembly whose nodes carry rigid motions, the same on every number of ranks, "
-              "smoothed and multiplied by PETSc in parallel: no blocks of ranks on their own.", ""]
-    table(lines, ["discs", "ranks", "set up, s", "solve, s", "all, s", "processors, s", "faster than one rank by at least",
-                  "memory of a disc, B", "GAMG over this, processors"], beside_gamg(best, base))
+    lines += ["## Iterations", ""]
     lines += ["Iterations and messages do not depend on the compiler or on what else the machine does.", ""]
     table(lines, ["assembly", "ranks", "iterations", "messages of the rank with most", "bytes of it", "sums over ranks"], counts(best))
     lines += ["## Messages", "",
@@ -353,12 +314,12 @@ def main():
         folder = Path(name)
         build = request.build.resolve()
         base = base_memory(build, folder)
-        jobs = {(discs, ranks, kind, "hexagonal") for discs in sizes for ranks in (1, 2) for kind in PRECONDITIONERS}
-        jobs |= {(2 * discs, 2, kind, "hexagonal") for discs in sizes if 2 * discs <= max(sizes) for kind in PRECONDITIONERS}
-        jobs |= {(min(sizes), 4, kind, "hexagonal") for kind in PRECONDITIONERS} | {(min(sizes), 9, "gamg", "hexagonal")}
-        jobs |= {(min(sizes), ranks, kind, "random") for ranks in (1, 2, 4) for kind in PRECONDITIONERS}
+        jobs = {(discs, ranks, "gamg", "hexagonal") for discs in sizes for ranks in (1, 2)}
+        jobs |= {(2 * discs, 2, "gamg", "hexagonal") for discs in sizes if 2 * discs <= max(sizes)}
+        jobs |= {(min(sizes), ranks, "gamg", "hexagonal") for ranks in (4, 9)}
+        jobs |= {(min(sizes), ranks, "gamg", "random") for ranks in (1, 2, 4)}
         if largest:
-            jobs |= {(largest, 2, kind, "hexagonal") for kind in PRECONDITIONERS}
+            jobs.add((largest, 2, "gamg", "hexagonal"))
         best, left_out = least(build, folder, jobs, request.repetitions, base)
     sizes = [discs for discs in sizes if all((discs, ranks, "gamg", "hexagonal") in best for ranks in (1, 2))]
     few = [(sizes[0], ranks, "gamg", "hexagonal") for ranks in (4, 9)] if sizes else []

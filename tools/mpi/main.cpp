@@ -18,7 +18,6 @@
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/output/quantities.hpp"
 
-#include "mpi_verbs.hpp"
 #include "petsc/solver.hpp"
 #include "rank_program.hpp"
 
@@ -35,7 +34,7 @@ those of the solver (-equidem_ksp_rtol, -equidem_pc_type, ...); -log_view measur
 named at the end.
 
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted. Where a
-rank dies, a sentence names it, mpirun ends the others, and its exit code is not 0.)";
+rank dies, mpirun says so and ends the others, and its exit code is not 0.)";
 
 /// The words of the command line for equidem and for PETSc: a word with one dash and a letter begins an option of
 /// PETSc, one with two dashes an option of equidem; others belong to the option before them.

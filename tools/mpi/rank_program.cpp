@@ -14,8 +14,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
-#include "dead_ranks.hpp"
-
 namespace equidem {
 namespace {
 
@@ -23,7 +21,6 @@ int terminal = STDERR_FILENO;  // of all ranks
 
 /// Whether all ranks come to the end of the verb within some seconds.
 bool all_arrive() {
-  stop_telling_of_dead_ranks();
   constexpr double patience = 10;  // s
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibarrier(PETSC_COMM_WORLD, &request);
@@ -57,7 +54,6 @@ void silence_other_ranks() {
 Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
   return [verb] {
     const petsc::Ranks ranks(PETSC_COMM_WORLD);
-    tell_of_dead_ranks(ranks, terminal);
     try {
       verb(ranks);
     } catch (const Error& error) {
@@ -71,7 +67,6 @@ Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
       throw;
     }
     // The others may have failed: they wait in the same barrier.
-    stop_telling_of_dead_ranks();
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Ibarrier(PETSC_COMM_WORLD, &request);
     MPI_Wait(&request, MPI_STATUS_IGNORE);

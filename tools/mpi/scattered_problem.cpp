@@ -11,7 +11,6 @@
 #include "equidem/statics/rigidity.hpp"
 
 #include "part_problem.hpp"
-#include "petsc/scattered_part.hpp"
 #include "prestressed.hpp"
 
 namespace equidem {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/homogenize/contact_sums.hpp"
+#include "equidem/core/ordered_sums.hpp"
 
 namespace equidem {
 namespace {

@@ -9,6 +9,7 @@
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
@@ -27,12 +28,6 @@ constexpr double furthest = 0.2;         // mean radii that a disc moves in a st
 
 constexpr int most_halves = 60;
 constexpr std::int64_t longest_fall = 20000;  // steps in which nothing carries a force
-
-double product(const Vector& x, const Vector& y) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
-  return sum;
-}
 
 /// x + c y.
 void add(Vector& x, double c, const Vector& y) {
@@ -177,7 +172,7 @@ class Descent {
   void run() {
     Progress progress("relaxing");
     Vector z = over_masses(f_);
-    double fz = product(f_, z);
+    double fz = dot(f_, z);
     p_ = z;
     double length = 1;  // K <= M: no step that is too long
     look();
@@ -199,10 +194,10 @@ class Descent {
       ++result_.steps;
       if (scene_.linear() && result_.steps % steps_between_looks == 0) f_ = unbalanced(u_);
       z = over_masses(f_);
-      if (!std::isfinite(product(f_, z))) not_at_rest("; forces are no finite numbers any more");
-      const double next = product(f_, z), share = std::max(0.0, (next - product(before, z)) / fz);
+      if (!std::isfinite(dot(f_, z))) not_at_rest("; forces are no finite numbers any more");
+      const double next = dot(f_, z), share = std::max(0.0, (next - dot(before, z)) / fz);
       for (std::size_t k = 0; k < p_.size(); ++k) p_[k] = z[k] + share * p_[k];
-      if (product(p_, f_) <= 0) p_ = z;
+      if (dot(p_, f_) <= 0) p_ = z;
       fz = next;
       if (fz == 0 || result_.steps % steps_between_looks == 0) {
         look();
@@ -230,7 +225,7 @@ class Descent {
   void go_straight(double fz) {
     const Vector q = scene_.internal(p_);
     ++result_.evaluations;
-    const double stiffness = -product(p_, q);
+    const double stiffness = -dot(p_, q);
     if (!(stiffness > 0)) no_minimum(scene_.any_negative());
     const double length = fz / stiffness;
     add(u_, length, p_);
@@ -248,9 +243,9 @@ class Descent {
       u_ = u;
       add(u_, step, p_);
       f_ = unbalanced(u_);
-      return product(p_, f_);
+      return dot(p_, f_);
     };
-    const double force = product(p_, f_), force_there = force_at(trial);
+    const double force = dot(p_, f_), force_there = force_at(trial);
     const double wanted = force > force_there ? trial * force / (force - force_there) : 4 * trial;
     double step = std::min({wanted, 4 * trial, limit});
     double low = force_there > 0 ? std::min(trial, step) : 0;

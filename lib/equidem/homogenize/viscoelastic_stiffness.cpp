@@ -11,7 +11,6 @@
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/contact_sums.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
@@ -25,12 +26,6 @@ void clear_held(const DegreesOfFreedom& unknowns, std::vector<double>& x) {
     if (unknowns.held[k] != 0) x[k] = 0;
 }
 
-double product(const std::vector<double>& x, const std::vector<double>& y) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) sum += x[k] * y[k];
-  return sum;
-}
-
 }  // namespace
 
 std::vector<double> random_motion(const DegreesOfFreedom& unknowns) {
@@ -48,7 +43,7 @@ double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, co
   clear_held(unknowns, a_x);
   multiply(b, assembly, graph, x, b_x);
   clear_held(unknowns, b_x);
-  return -product(x, a_x) / product(x, b_x);
+  return -dot(x, a_x) / dot(x, b_x);
 }
 
 double InverseIteration::run(std::vector<double>& x) const {
@@ -60,7 +55,7 @@ double InverseIteration::run(std::vector<double>& x) const {
     clear_held(unknowns, b_x);
     shifted.solve(b_x, 1);
     clear_held(unknowns, b_x);
-    const double size = std::sqrt(product(b_x, b_x));
+    const double size = std::sqrt(dot(b_x, b_x));
     if (!is_positive(size)) break;
     for (std::size_t c = 0; c < x.size(); ++c) x[c] = b_x[c] / size;
     const double value = quotient(x);

@@ -104,7 +104,7 @@ void solve_dense(const Operator& a, ExtremeEigenvalue& result) {
 }
 
 void iterate(Operator& a, const RealVector& start, const LanczosOptions& options, ExtremeEigenvalue& result) {
-  constexpr Index vectors = 40;
+  constexpr Index vectors = 24;
   const double most = std::max(2000.0, options.work / static_cast<double>(a.size));
   Process process(a, 1, vectors);
   process.run(start, 0.5 * options.tolerance, static_cast<Index>(2 * most / vectors));

@@ -8,7 +8,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/strain_system.hpp"
+#include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/statics/linear_system.hpp"
 

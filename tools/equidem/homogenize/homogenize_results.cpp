@@ -8,8 +8,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
-#include "equidem/homogenize/fabric.hpp"
 
 namespace equidem {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "equidem/contact/material_springs.hpp"
 #include "equidem/homogenize/bounds.hpp"
-#include "equidem/homogenize/fabric.hpp"
 #include "equidem/output/results.hpp"
 
 #include "problem.hpp"

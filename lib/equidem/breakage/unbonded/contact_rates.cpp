@@ -7,16 +7,11 @@
 #include <utility>
 
 #include "equidem/breakage/event_path.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 
 namespace equidem {
 namespace {
-
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
 
 /// The residual of the rates: what drives less what contacts take.
 class RateResidual {

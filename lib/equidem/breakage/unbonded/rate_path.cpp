@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 
 namespace equidem {
@@ -32,12 +33,6 @@ struct Edge {
   double a, b;
   ContactStatus next;
 };
-
-double sum_of_products(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
 
 class RatePath {
  public:
@@ -126,7 +121,7 @@ class RatePath {
     solver_.solve(residual);
     for (std::size_t k = 0; k < held.size(); ++k)
       if (held[k] == 0) motion[k] = residual[k];
-    Response response{{}, load.empty() ? 0 : sum_of_products(load, motion)};
+    Response response{{}, load.empty() ? 0 : dot(load, motion)};
     for (const LimitContact& at : problem_.limits) response.deformation.push_back(deformation(at.contact));
     return response;
   }
@@ -236,7 +231,7 @@ class RatePath {
         if (held[k] != 0) z[q][k] = 0;
       solver_.solve(z[q]);
       columns[q] = beyond(contacts.deformation(contact, z[q]));
-      if (problem_.driving.by_motion) loads[q] = sum_of_products(problem_.driving.pattern->force, z[q]);
+      if (problem_.driving.by_motion) loads[q] = dot(problem_.driving.pattern->force, z[q]);
     }
     columns[0].normal += 1, columns[1].tangential += 1;
     const double det = columns[0].normal * columns[1].tangential - columns[1].normal * columns[0].tangential;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -58,25 +59,28 @@ FoundRatio find_between(const RatioSampler& sample, const RatioSample& a, const 
                         double tolerance) {
   const Axis axis{a.ratio > 0};
   FoundRatio found;
+  double last = 0;
+  // Convergence is faster than linear: one sample more, at most, gives the digits that the tolerance leaves open.
   const auto excess = [&](const RatioSample& s) {
-    if (!near(s.shear_to_bulk, wanted, tolerance)) return s.shear_to_bulk - wanted;
+    const double off = s.shear_to_bulk - wanted;
+    if (!near(s.shear_to_bulk, wanted, tolerance)) return off;
+    const bool done = found.reached || near(s.shear_to_bulk, wanted, 0.01 * tolerance);
     found.at = s;
     found.reached = true;
-    return 0.0;
+    return done ? 0.0 : off;
   };
   const auto at = [&](double x) {
     const RatioSample s = sample(axis.ratio(x));
     ++found.steps;
+    last = s.ratio;
     if (!s.stable) not_followed(wanted, a.ratio, b.ratio);
     return excess(s);
   };
   const double at_a = excess(a), at_b = excess(b);
-  if (at_a == 0 || at_b == 0) {
-    at(axis.of(at_a == 0 ? a : b));  // the last sample is that of the result
-  } else {
-    const auto [low, high] = zero_between(at, axis.of(a), axis.of(b), at_a, at_b);
-    if (!found.reached) not_followed(wanted, axis.ratio(low), axis.ratio(high));
-  }
+  double low = axis.of(a), high = axis.of(b);
+  if (at_a != 0 && at_b != 0) std::tie(low, high) = zero_between(at, low, high, at_a, at_b);
+  if (!found.reached) not_followed(wanted, axis.ratio(low), axis.ratio(high));
+  if (found.steps == 0 || last != found.at.ratio) at(axis.of(found.at));  // the last sample is that of the result
   return found;
 }
 

@@ -55,8 +55,8 @@ struct FoundRatio {
 FoundRatio find_ratio(const RatioSampler& sample, const RatioRange& range, double wanted, double tolerance);
 
 /// As find_ratio, for any range: one sample per decade, closed in on every extremum (to 1e-9 of q), then as find_ratio
-/// in the piece with `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are sums of r/(r + t)
-/// with positive weights: they, and q, bend over no less than a decade.
+/// in the piece with `wanted` that is nearest to r = 1. C is the least of energies linear in r, so that K and G are
+/// sums of r/(r + t) with positive weights: they, and q, bend over no less than a decade.
 /// \param range its extremes are set
 /// \return not reached where `wanted` lies outside of them
 FoundRatio find_by_scan(const RatioSampler& sample, RatioRange& range, double wanted, double tolerance);
