@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Springs from duration, overlap or material constants: the impact is the one asked for.
-#include "equidem/contact/collision_stiffness.hpp"
-
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "equidem/contact/restitution.hpp"
 #include "equidem/core/error.hpp"
 
 #include "contact/integrated_impact.hpp"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// One step of a contact that neither begins nor ends, against the exponential of its matrix in many more digits.
-#include "equidem/contact/oscillator.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

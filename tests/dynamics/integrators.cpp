@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The order of each integrator, measured on smooth motion.
+#include "equidem/dynamics/integrators.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "equidem/dynamics/integrator.hpp"
 
 #include "dynamics/moving_scenes.hpp"
 #include "support/catch.hpp"

@@ -12,7 +12,6 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
-#include "equidem/dynamics/slot_geometry.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem::test {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Mean stress of a rectangle.
-#include "equidem/fields/region_stress.hpp"
-
 #include <cmath>
 #include <numeric>
 #include <vector>
 
 #include "equidem/core/random.hpp"
+#include "equidem/fields/coarse_fields.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/fields/surface.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "equidem/fields/box_measures.hpp"
 
 #include "fields/bodies.hpp"
 #include "support/catch.hpp"

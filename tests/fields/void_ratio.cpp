@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/fields/void_ratio.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <span>
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/fields/box_measures.hpp"
 
 #include "fields/bodies.hpp"
 #include "support/catch.hpp"

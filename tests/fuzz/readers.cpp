@@ -18,7 +18,6 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/casefile/study/study_case.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/grains/scene/bond_file.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 #include "equidem/motion/schedule.hpp"
 #include "equidem/output/files/checkpoint.hpp"

@@ -6,7 +6,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/grains/scene/bond_file.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 
 #include "support/catch.hpp"

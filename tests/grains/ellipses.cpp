@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Ellipses that meet, rebound, rest and rock.
-#include "equidem/contact/shapes/enlarged_ellipse.hpp"
-#include "equidem/grains/contacts/part_geometry.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
@@ -86,7 +86,7 @@ TEST_CASE("a_central_impact_of_ellipses_has_the_restitution_of_discs") {
 }
 
 TEST_CASE("an_eccentric_impact_has_the_restitution_of_its_smaller_mass") {
-  // zeta' = zeta sqrt(m/m'), 1/m' = 1/m + arm²/I (part_step.hpp); hard enough that the body hardly turns meanwhile.
+  // zeta' = zeta sqrt(m/m'), 1/m' = 1/m + arm²/I (force_step.hpp); hard enough that the body hardly turns meanwhile.
   const ContactEnd end = GENERATE(ContactEnd::at_zero_force, ContactEnd::at_zero_overlap);
   const double angle = GENERATE(0.3, 0.8, 1.3);
   PairProperties pair;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Contacts, kinds and time steps from options, without a case file.
-#include "equidem/grains/scene/kinds.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/grain_time_step.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 
 #include "support/catch.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "grains/cell_scenes.hpp"
 

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/contact/collision_stiffness.hpp"
+#include "equidem/contact/restitution.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/grains/grain_simulation.hpp"

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
-#include "equidem/grains/scene/clump.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "grains/scenes.hpp"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/scene/wall_shape.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/motion/wall.hpp"
 
 #include "support/catch.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/bond_file.hpp"
+#include "equidem/grains/scene/grain_file.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/frames.hpp"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Box and radii from two of number, box and solid fraction, without a case file.
-#include "equidem/packing/amount.hpp"
-
 #include <string>
 
 #include "equidem/core/error.hpp"
+#include "equidem/packing/size_distribution.hpp"
 
 #include "support/catch.hpp"
 

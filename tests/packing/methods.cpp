@@ -3,8 +3,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/packing/amount.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/packing/size_distribution.hpp"
 
 #include "packing/packings.hpp"
 #include "support/catch.hpp"

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
-#include "equidem/contact/shapes/enlarged_ellipse.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 

@@ -39,7 +39,7 @@ TEST_CASE("walls_that_follow_a_stress_or_a_record_add_nothing_to_the_discs") {
     CHECK(cost.evaluations == Approx(plain.evaluations).epsilon(0.01));
   }
   for (const std::string name :
-       {"+ a moving wall", "or shaken: all walls follow a record", "or two servo walls, which keep a stress"}) {
+       {"+ a moving wall", "or shaken: all walls move alike", "or two servo walls, which keep a stress"}) {
     CAPTURE(name);
     CHECK(costs.at(name).bytes == plain.bytes);
   }

@@ -11,7 +11,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "bench.hpp"
 #include "text_table.hpp"

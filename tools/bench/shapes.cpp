@@ -9,7 +9,7 @@
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "bench.hpp"
 #include "text_table.hpp"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// The damped oscillator g'' + 2 zeta g' + g = 0, g(0) = 0, g'(0) = 1, and its integrals, to round-off for every
+/// damping and time.
+///
 /// A contact of linear spring and dashpot over one step, solved exactly, under an outside force that is linear in time.
 ///
 /// u'' + 2 zeta w u' + w² u = h0 + h1 t while in contact, u'' = h0 + h1 t while apart; u the overlap, w = sqrt(k/m).
@@ -16,6 +19,23 @@
 #include "equidem/contact/restitution.hpp"
 
 namespace equidem {
+
+/// Values at one time x.
+struct Response {
+  double slope = 1;  ///< g'
+  double g[5] = {};  ///< g[k]: the k-fold integral of g from 0
+};
+
+/// \param zeta >= 0; neither zeta = 1 nor its neighbourhood is special
+/// \param x >= 0
+Response response(double zeta, double x);
+
+/// Integrals from 0 to x of g'², g², g[1]², 2 g' g, 2 g' g[1], 2 g g[1].
+struct ResponseProducts {
+  double of[6] = {};
+};
+
+ResponseProducts products_of_response(double zeta, double x);
 
 /// Constants of a pair for all steps.
 struct ExactPair {

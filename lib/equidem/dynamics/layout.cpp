@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "equidem/linear/contact_graph.hpp"
 
@@ -120,6 +122,99 @@ ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout) {
   slots.first.shrink_to_fit();
   slots.neighbour.shrink_to_fit();
   return slots;
+}
+
+namespace {
+
+constexpr int width = DiscLayout::lanes;
+
+}  // namespace
+
+BodyArrays::BodyArrays(DiscLayout layout, const LoopKind& kind)
+    : layout_(std::move(layout)), unknowns_(kind.unknowns()), width_(kind.width()) {
+  const std::size_t places = layout_.disc_at.size();
+  for (auto& one : motion) one.assign(places * static_cast<std::size_t>(width_), 0.0);
+  velocity.assign(places * static_cast<std::size_t>(unknowns_), 0.0);
+  if (kind.resistance != LoopKind::Resistance::dashpot) return;
+  for (auto& one : velocity_at) one.assign(motion[0].size(), 0.0);
+  dashpot.assign(velocity.size(), 0.0);
+}
+
+void BodyArrays::connect(LoopData& data) {
+  for (int k = 0; k < 2; ++k) {
+    data.motion[k] = motion[k].data();
+    data.velocity_at[k] = velocity_at[k].empty() ? nullptr : velocity_at[k].data();
+  }
+  data.velocity = velocity.data();
+  data.dashpot = dashpot.empty() ? nullptr : dashpot.data();
+}
+
+std::vector<DiscMotion> BodyArrays::discs_of(const LaneVector<double>& motions) const {
+  std::vector<DiscMotion> result(layout_.place_of.size());
+  for (std::size_t d = 0; d < result.size(); ++d) {
+    const double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
+    result[d] = {{at[0], at[1]}, width_ == 4 ? at[2] : 0.0};
+  }
+  return result;
+}
+
+void BodyArrays::put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const {
+  for (std::size_t d = 0; d < discs.size(); ++d) {
+    double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
+    at[0] = discs[d].u.x;
+    at[1] = discs[d].u.y;
+    if (width_ == 4) at[2] = discs[d].theta;
+  }
+}
+
+std::vector<DiscMotion> BodyArrays::disc_velocities(const LaneVector<double>& velocities) const {
+  std::vector<DiscMotion> result(layout_.place_of.size());
+  for (std::size_t d = 0; d < result.size(); ++d) {
+    const auto place = static_cast<std::size_t>(layout_.place_of[d]);
+    const double* at = velocities.data() + place / width * width * unknowns_ + place % width;
+    result[d] = {{at[0], at[width]}, unknowns_ == 3 ? at[2 * width] : 0.0};
+  }
+  return result;
+}
+
+void BodyArrays::put_velocities(const std::vector<DiscMotion>& discs) {
+  for (std::size_t d = 0; d < discs.size(); ++d) {
+    const auto place = static_cast<std::size_t>(layout_.place_of[d]);
+    double* at = velocity.data() + place / width * width * unknowns_ + place % width;
+    at[0] = discs[d].u.x;
+    at[width] = discs[d].u.y;
+    if (unknowns_ == 3) at[2 * width] = discs[d].theta;
+  }
+  for (auto& one : velocity_at) {
+    if (!one.empty()) put(discs, one);
+  }
+}
+
+void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double lever_other, SpringConstants k,
+                   double kM, double* slot, int lane) {
+  const auto write = [&](std::initializer_list<double> numbers) {
+    double* to = slot + lane;
+    for (const double number : numbers) {
+      *to = number;
+      to += DiscLayout::lanes;
+    }
+  };
+  const double square = dot(branch, branch);
+  if (kind.motion == LoopKind::Motion::finite) {
+    const double levers = lever_own + lever_other;
+    write({branch.x, branch.y, square});
+    if (kind.equal_contacts) return;
+    slot += 3 * DiscLayout::lanes;
+    write({levers / norm(branch), levers > 0 ? lever_own / levers : 0.5, k.kN, k.kT});
+    slot += 4 * DiscLayout::lanes;
+  } else if (kind.equal_contacts) {
+    write({branch.x, branch.y, 1 / square});
+  } else {
+    const Vec2 n = branch / norm(branch);
+    write({n.x, n.y, lever_own, lever_other, k.kN, k.kT});
+    slot += 6 * DiscLayout::lanes;
+  }
+  if (kind.bending) write({kM});
 }
 
 }  // namespace equidem

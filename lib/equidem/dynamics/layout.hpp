@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Memory layout of discs and contacts in the loops.
+///
+/// Motions and velocities of discs in the layout of the loop.
+///
+/// Contact data in a slot of the loop.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/vector.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
+#include "equidem/material/spring_constants.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
@@ -40,5 +48,51 @@ struct ContactSlots {
 };
 
 ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout);
+
+/// Arrays by place, with conversion from and to discs.
+class BodyArrays {
+ public:
+  /// All discs at rest in the reference position.
+  BodyArrays(DiscLayout layout, const LoopKind& kind);
+
+  LaneVector<double> motion[2];       ///< places x width
+  LaneVector<double> velocity;        ///< groups x unknowns x lanes
+  LaneVector<double> velocity_at[2];  ///< dashpots only: places x width
+  LaneVector<double> dashpot;         ///< dashpots only: groups x unknowns x lanes
+
+  [[nodiscard]] const DiscLayout& layout() const { return layout_; }
+  [[nodiscard]] std::vector<DiscMotion> discs_of(const LaneVector<double>& motions) const;
+  void put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const;
+  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const LaneVector<double>& velocities) const;
+  /// Set `velocity` and, with dashpots, both `velocity_at`.
+  void put_velocities(const std::vector<DiscMotion>& discs);
+  /// Set the pointers of a loop to these arrays.
+  void connect(LoopData& data);
+
+ private:
+  DiscLayout layout_;
+  int unknowns_, width_;
+};
+
+namespace lanes {
+
+/// Doubles of one slot and lane: LoopData::geometry.
+constexpr int slot_doubles(const LoopKind& kind) {
+  const int springs = kind.equal_contacts ? 3 : kind.motion == LoopKind::Motion::finite ? 7 : 6, bending = kind.bending;
+  const bool dashpots = kind.resistance == LoopKind::Resistance::dashpot && !kind.equal_contacts;
+  return springs + bending + (dashpots ? 2 + bending : 0);
+}
+
+}  // namespace lanes
+
+/// Write the contact of one lane into its slot, in the order that LoopData::geometry states; constants of
+/// dashpots are not changed. A lane of zeros means no contact. \param branch from the disc of this lane to its
+/// neighbour, at rest, m \param lever_own, lever_other of the disc and of its neighbour, m
+/// \param k of this contact, Pa; equal contacts use those of LoopData
+/// \param kM of this contact, N, where kind.bending
+/// \param slot slot_doubles(kind) x 4 doubles
+/// \param lane 0 .. 3
+void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double lever_other, SpringConstants k,
+                   double kM, double* slot, int lane);
 
 }  // namespace equidem

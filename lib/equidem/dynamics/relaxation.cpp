@@ -13,7 +13,7 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/still_unknowns.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 #include "equidem/dynamics/walls.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -125,6 +126,19 @@ void check(const Scene& scene, Rotation rotation, const PlaceInScene& where) {
   checks.supports();
   checks.velocities(derive_effects(scene.assembly, scene.springs, rotation).rotation);
   checks.walls();
+}
+
+DegreesOfFreedom unknowns_at(const Scene& scene, const Effects& effects, double time) {
+  std::vector<Support> supports;
+  for (const TimedSupport& timed : scene.supports) {
+    Support support;
+    support.group = timed.group;
+    if (timed.ux) support.ux = timed.ux->at(time);
+    if (timed.uy) support.uy = timed.uy->at(time);
+    if (timed.rotation && effects.rotation) support.rotation = timed.rotation->at(time);
+    supports.push_back(support);
+  }
+  return number_unknowns(scene.assembly, scene.springs, effects, supports);
 }
 
 }  // namespace equidem

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Check of a scene of bonded discs for contradictions.
+///
+/// The unknowns of a scene in statics.
 #pragma once
 
 #include <functional>
@@ -8,6 +10,7 @@
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/dynamics/simulation.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 
@@ -20,5 +23,9 @@ using PlaceInScene = std::function<std::string(const std::string& path)>;
 /// \param where for error messages; empty: the path is the place
 /// \throws Error (bad_input)
 void check(const Scene& scene, Rotation rotation, const PlaceInScene& where = {});
+
+/// The unknowns left free by the supports of the scene, with the motions prescribed at the given time (s).
+/// \throws Error (bad_input) as number_unknowns does
+DegreesOfFreedom unknowns_at(const Scene& scene, const Effects& effects, double time);
 
 }  // namespace equidem

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "equidem/dynamics/body_arrays.hpp"
 #include "equidem/dynamics/driven_discs.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/simulation.hpp"
 
 namespace equidem {

@@ -11,7 +11,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/loop_choice.hpp"
-#include "equidem/dynamics/still_unknowns.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 #include "equidem/waves/vibration.hpp"
 
 namespace equidem {

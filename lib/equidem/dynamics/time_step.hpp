@@ -60,7 +60,7 @@ struct TimeStep {
 /// stiffness-proportional damping it is omega h = 2 (sqrt(1 + zeta²) - zeta), zeta = beta omega/2 of the highest mode.
 /// Local damping by the share alpha lowers the limit to omega h = 2/sqrt(1 + alpha). Mass-proportional damping by alpha
 /// limits the step of leapfrog and of the fourth-order scheme to 2/alpha, above which it reverses velocities. The other
-/// integrators have the limits of integrator.hpp for the highest mode.
+/// integrators have the limits of integrators.hpp for the highest mode.
 /// \throws Error (bad_input) on options or magnitudes out of range, a step above the limit, motions that grow for any
 ///         step, a scheme that is unstable for any step
 TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, const TimeStepOptions& wanted = {});

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// The surface of bodies in a box.
+///
+/// Density of the bodies in a box, away from its walls and from their surface.
+///
 /// Histories of bodies in a box while they move: void ratio and surface.
 #pragma once
 
@@ -8,15 +12,79 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "equidem/fields/coarse_fields.hpp"
-#include "equidem/fields/surface.hpp"
-#include "equidem/fields/void_ratio.hpp"
+#include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 
 namespace equidem {
+
+/// The highest point of the bodies in columns of equal width.
+struct SurfaceProfile {
+  double left = 0, width = 0;   ///< of the first column, m
+  std::vector<double> heights;  ///< m; NaN: no body reaches into the column
+
+  /// Middle of a column, m.
+  [[nodiscard]] double place(std::size_t column) const { return left + width * (static_cast<double>(column) + 0.5); }
+};
+
+/// Exact for every shape: a body counts in a column with the highest point that it has there.
+/// \param heap for each body: whether it is included; empty: all are
+/// \param columns >= 1, of the width from left to right
+SurfaceProfile surface_of(std::span<const Grain> grains, std::span<const Clump> clumps, double left, double right,
+                          std::size_t columns, std::span<const char> heap = {});
+
+/// The straight line of least squares through the heights.
+struct SurfaceShape {
+  double height = 0;     ///< m, mean over the columns
+  double slope = 0;      ///< of the line, upwards to the right; 0 for a single column
+  double roughness = 0;  ///< m, standard deviation of the heights about the line
+};
+
+/// Columns without bodies are left aside.
+/// \return NaN where no column has a body
+SurfaceShape shape_of(const SurfaceProfile& profile);
+
+/// The heap: the largest set of bodies of which each lies no further than `gap` from another, surface to surface (of
+/// ellipses and clumps: of the circles that hold them). \return 1 for a body of the heap \param gap >= 0, m
+std::vector<char> heap_of(std::span<const Grain> grains, double gap);
+
+/// The centre of mass of all bodies, m.
+Vec2 centre_of_mass(std::span<const Grain> grains);
+
+/// The rectangle that walls leave for bodies.
+struct GrainBox {
+  Region inside;     ///< m; where there is no wall, as far as the bodies reach
+  bool lid = false;  ///< a wall above
+};
+
+/// Lines and segments along the axes are its sides; each is on that side of the middle of all bodies on which it lies
+/// at the start. \param time s, by which walls have moved
+/// \throws Error (bad_input) without grains
+GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, double time);
+
+/// Mean diameter of circles with the areas of the bodies, m.
+double mean_diameter(std::span<const Grain> grains, std::span<const Clump> clumps);
+
+/// The box without strips of two mean diameters at its sides and, under an open top, without three below the lowest
+/// place of the surface, seen in columns two largest diameters wide.
+/// \param heap of each body: whether it belongs to the surface (heap_of); empty: all do
+/// \return none where nothing as large as two diameters each way is left
+std::optional<Region> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps, const GrainBox& box,
+                                      std::span<const char> heap = {});
+
+/// Solid fraction, porosity n = 1 - solid fraction, void ratio e = n/(1 - n).
+struct SolidMeasures {
+  double solid_fraction = 0, porosity = 0, void_ratio = 0;
+};
+
+/// Exact areas; where two bodies overlap the overlap counts twice, as their solid does.
+/// \throws Error (bad_input) on a region without area
+SolidMeasures measure_solids(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region);
 
 struct MeasureOptions {
   std::optional<Region> region = {};  ///< of the void ratio, m, where the box stands at the start; none:

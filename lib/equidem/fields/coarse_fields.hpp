@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Stress, velocity, density and contacts of bodies as fields on a coarse grid.
+///
+/// Mean stress of a rectangle.
 #pragma once
 
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/body_contact.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 
@@ -45,5 +50,14 @@ struct CoarseFields {
 /// \param contacts with the forces of the last step, and bonds
 CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump> clumps,
                            std::span<const BodyContact> contacts, const CoarseGrid& grid);
+
+/// Love and Weber's mean stress s = (1/A) sum of F (x) l over a rectangle of area A, tension positive, Pa: F is the
+/// force on a body, l the part inside of the way from its centre to the contact. Rectangles that make up a larger one
+/// add up to its stress times its area. A force is spread along its way, so that a stress that changes over the
+/// rectangle is read to about the diameter of a body. Motion adds nothing to it.
+/// \param bodies whose ways count
+/// \param places of all bodies
+Tensor2 region_stress(const Rectangle& region, std::span<const std::int32_t> bodies, std::span<const DiscMotion> places,
+                      std::span<const BodyContact> contacts);
 
 }  // namespace equidem

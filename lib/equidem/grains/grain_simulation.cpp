@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The contacts of colliding bodies as callers see them.
 #include "equidem/grains/grain_simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/flow_step.hpp"
+#include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
-#include "equidem/grains/contacts/pack_bonds.hpp"
-#include "equidem/grains/contacts/part_crossing.hpp"
-#include "equidem/grains/contacts/part_geometry.hpp"
-#include "equidem/grains/contacts/part_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
 #include "equidem/grains/servo_walls.hpp"
@@ -309,6 +311,236 @@ const GrainCounters& GrainSimulation::counters() const {
 
 const Effects& GrainSimulation::effects() const {
   return implementation_->effects;
+}
+
+namespace {
+
+/// As they were in the last step.
+std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
+  const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
+  if (candidate.j < 0) return {radius * candidate.normal, {}};
+  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))].radius;
+  const double lever = radius / sum * (sum - candidate.overlap);
+  return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
+}
+
+std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
+  if (system.shapes.parts.empty()) return arms_of_discs(system, system.contacts.candidates[c]);
+  return {system.contacts.part_pairs[c].arm_i, system.contacts.part_pairs[c].arm_j};
+}
+
+}  // namespace
+
+std::vector<GrainContact> GrainSimulation::contacts() const {
+  const GrainSystem& system = implementation_->system;
+  std::vector<GrainContact> contacts;
+  const auto add = [&](const Candidate& candidate, std::pair<Vec2, Vec2> arms) {
+    if (!candidate.touching || candidate.steps == 0) return;
+    GrainContact contact;
+    std::tie(contact.arm_i, contact.arm_j) = arms;
+    contact.i = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.i)]);
+    contact.overlap = candidate.overlap;
+    contact.closing = candidate.closing;
+    contact.normal = candidate.normal;
+    contact.normal_force = candidate.impulse / system.dt();
+    contact.tangential_force = candidate.tangential_impulse / system.dt();
+    contact.mode = candidate.mode;
+    contact.steps = candidate.steps;
+    if (candidate.j < 0) {
+      contact.j = ~static_cast<std::int32_t>(system.walls.wall_of[static_cast<std::size_t>(~candidate.j)]);
+    } else {
+      const std::int32_t other = system.body_of(candidate.j);
+      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(other)]);
+      if (contact.j < contact.i) {
+        std::swap(contact.i, contact.j);
+        contact.normal = -contact.normal;
+        std::swap(contact.arm_i, contact.arm_j);
+      }
+    }
+    contacts.push_back(contact);
+  };
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      const Candidate candidate = candidate_of(system, block, p);
+      add(candidate, arms_of_discs(system, candidate));
+    }
+  }
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const auto [candidate, pair] = candidate_of(system, list, p);
+      add(candidate, {pair.arm_i, pair.arm_j});
+    }
+  });
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
+    add(system.contacts.candidates[c], arms_of(system, c));
+  std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
+    return std::pair(a.i, a.j) < std::pair(b.i, b.j);
+  });
+  return contacts;
+}
+
+std::vector<BodyContact> GrainSimulation::body_contacts() const {
+  const GrainSystem& system = implementation_->system;
+  const auto shift_of = [&](const GrainContact& c) {
+    if (!system.cell.active || c.j < 0) return Vec2{};
+    const auto place = [&](std::int32_t grain) {
+      return system.bodies
+          .motions[static_cast<std::size_t>(system.bodies.place_of_grain[static_cast<std::size_t>(grain)])]
+          .position;
+    };
+    const Vec2 apart = place(c.j) - place(c.i);
+    return system.cell.now.shift(image_inside(system.cell.now, {}, apart));
+  };
+  std::vector<BodyContact> result;
+  for (const GrainContact& c : contacts()) {
+    const Vec2 on_j = c.normal_force * c.normal + c.tangential_force * perpendicular(c.normal);
+    result.push_back({.i = c.i,
+                      .j = c.j,
+                      .arm = c.arm_i,
+                      .shift = shift_of(c),
+                      .force = -on_j,
+                      .normal_force = c.normal_force,
+                      .tangential_force = c.tangential_force});
+  }
+  const std::vector<BodyContact> bonds = contacts_of_bonds(system);
+  result.insert(result.end(), bonds.begin(), bonds.end());
+  return result;
+}
+
+std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic() const {
+  const bool behind = collide && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
+  return system.bodies.blocks.sum([&](std::size_t block) {
+    double potential = 0, kinetic = 0;
+    for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+      const GrainMotion& motion = system.bodies.motions[i];
+      const GrainBody& body = system.bodies.constants[i];
+      Vec2 position = motion.position;
+      if (system.cell.active) position += system.cell.now.shift(system.cell.crossed[i]);
+      if (behind) position -= (0.5 * system.dt()) * motion.velocity;
+      const double mass = 1 / body.inverse_mass;
+      potential -= mass * dot(system.scene.gravity, position);
+      kinetic += 0.5 * mass * dot(motion.velocity, motion.velocity);
+      kinetic += 0.5 * motion.spin * motion.spin / body.inverse_moment;
+    }
+    return std::pair(potential, kinetic);
+  });
+}
+
+std::pair<double, double> GrainSimulation::Implementation::elastic() const {
+  // a force acts wherever bodies overlap; other laws count the spring from the first step of the contact on
+  const bool holds_from_first_step = !gives_force(system.options.law);
+  auto [normal, tangential] = elastic_of_near_pairs(system);
+  const auto add = [&, &normal = normal, &tangential = tangential](const Candidate& candidate, double overlap) {
+    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+    if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
+    if (!(overlap > 0)) return;
+    normal += system.law().energy(candidate.stiffness, overlap);
+  };
+  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      auto [candidate, pair] = candidate_of(system, list, p);
+      add(candidate, geometry_of_parts(system, candidate, pair).overlap);
+    }
+  });
+  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
+    add(system.contacts.candidates[c], overlap_of(system, c));
+  return {normal, tangential};
+}
+
+EnergyLedger GrainSimulation::Implementation::energy() const {
+  EnergyLedger ledger = system.lost;
+  double potential = 0;
+  std::tie(potential, ledger.kinetic) = potential_and_kinetic();
+  std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
+  ledger.elastic_bond = elastic_of_bonds(system);
+  ledger.potential = potential - potential_at_start;
+  ledger.initial = energy_at_start;
+  return ledger;
+}
+
+namespace {
+
+Effects::Entry entry(std::string name, bool active, std::string why_active, std::string why_not) {
+  return {std::move(name), active, active ? std::move(why_active) : std::move(why_not)};
+}
+
+std::string law_of_ellipses(GrainOptions::EllipseLaw law) {
+  switch (law) {
+    case GrainOptions::EllipseLaw::exact:
+      return "contact by closest points and common normal";
+    case GrainOptions::EllipseLaw::enlarged:
+      break;
+  }
+  return "contact by the enlarged ellipse: misses shallow contacts, does not keep the energy";
+}
+
+}  // namespace
+
+Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
+  const auto any_pair = [&](auto has) { return std::any_of(scene.pairs.begin(), scene.pairs.end(), has); };
+  const bool friction = any_pair([](const PairProperties& pair) { return pair.friction > 0; });
+  const bool springs = any_pair([](const PairProperties& p) { return p.friction > 0 && p.tangential_ratio > 0; });
+  const bool losses = any_pair([](const PairProperties& pair) { return pair.restitution < 1; });
+  const bool moving = std::any_of(scene.walls.begin(), scene.walls.end(), [](const Wall& w) { return w.moves(); });
+  const bool servo = std::ranges::any_of(scene.walls, [](const Wall& w) { return w.servo.has_value(); });
+  const auto any_shape = [&](GrainShape shape) {
+    return std::any_of(scene.grains.begin(), scene.grains.end(), [&](const Grain& g) { return g.shape() == shape; });
+  };
+  const std::size_t blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block).count();
+  const bool ellipses = any_shape(GrainShape::ellipse), clumps = any_shape(GrainShape::clump);
+  Effects effects;
+  effects.tangential_springs = springs;
+  const auto any_bond = [&](const auto& test) { return std::any_of(scene.bonds.begin(), scene.bonds.end(), test); };
+  const bool sprung = any_bond([](const GrainBond& b) { return b.normal_spring > 0 || b.tangential_spring > 0; });
+  const bool bending = any_bond([](const GrainBond& b) { return b.bending_spring > 0; });
+  const bool turning = any_bond([](const GrainBond& b) {
+                         return b.tangential_dashpot > 0 || b.rolling_dashpot > 0 || b.tangential_spring > 0;
+                       }) ||
+                       bending;
+  effects.rotation = friction || turning || ellipses || clumps;
+  effects.entries = {
+      entry(fmt::format("normal contact by {}", to_string(options.law)), true, "grains rebound", ""),
+      entry("loss at impacts", losses, "restitution below 1", "restitution 1: impacts keep the energy"),
+      entry("friction", friction, "a friction coefficient above 0", "friction 0 everywhere"),
+      entry("tangential springs", springs, "tangential_ratio above 0", friction ? "tangential_ratio 0" : "no friction"),
+      entry("ellipses", ellipses, law_of_ellipses(options.ellipse_law), "the scene has none"),
+      entry("clumps", clumps, "discs that are tied rigidly", "the scene has none"),
+      entry("rotation", effects.rotation,
+            friction  ? "friction turns grains"
+            : turning ? "bonds turn grains"
+                      : "normal forces turn ellipses and clumps",
+            "no friction: nothing can turn a grain"),
+      entry("bonds", !scene.bonds.empty(),
+            sprung ? "grains are tied by dashpots and springs" : "grains are tied by dashpots", "no grains are tied"),
+      entry("bending springs", bending, "bonds resist the relative rotation of their discs", "no bond has one"),
+      entry("breaking", scene.strengths.has_value(), "bonds have strengths", "no bond has a strength"),
+      entry("gravity", scene.weighs(), "it is not 0", "it is 0"),
+      entry("walls", !scene.walls.empty(), "the scene has some", "the scene has none"),
+      entry("periodic cell", scene.cell.has_value(), "the bodies repeat", "nothing repeats"),
+      entry("deformation of the cell", scene.cell && scene.cell->deforms(), "it has rates or keeps a stress",
+            scene.cell ? "it keeps its size" : "there is no cell"),
+      entry("motion of walls", moving, "a wall has a schedule", "no wall moves by a schedule"),
+      entry("servo walls", servo, "a wall follows a force or a stress", "no wall follows a force or a stress"),
+      entry("several threads", blocks > 1, fmt::format("the grains are stepped in {} blocks", blocks),
+            "few grains: threads would wait for one another longer than they work"),
+  };
+  return effects;
+}
+
+double GrainSimulation::bytes_per_body() const {
+  const GrainSystem& system = implementation_->system;
+  const double bytes = static_cast<double>(
+      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
+      system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
+      2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
+      (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
+      system.contacts.candidates.capacity() * sizeof(Candidate) +
+      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
+      system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
+      system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
+      (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
+      (system.bonds.breakable ? system.bonds.breakable->bytes() : 0) + system.scene.grains.capacity() * sizeof(Grain));
+  return bytes / static_cast<double>(system.bodies.constants.size());
 }
 
 }  // namespace equidem

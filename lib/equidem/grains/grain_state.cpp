@@ -7,10 +7,9 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/pack_bonds.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/part_pairs.hpp"
-#include "equidem/grains/saved_contact.hpp"
 
 namespace equidem {
 namespace {

@@ -16,8 +16,8 @@
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/neighbours/neighbours.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {

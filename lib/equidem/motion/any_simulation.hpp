@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// Walls and gravity: the part of a scene that bonded and colliding bodies share.
+///
+/// A periodic cell of a simulation at its time.
+///
 /// Common interface of all simulations in time; run loops, files and reports use only this.
 #pragma once
 
@@ -7,18 +11,50 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/motion/cell_state.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/saved_state.hpp"
 #include "equidem/motion/wall.hpp"
 
 namespace equidem {
+
+/// Base of Scene (bonded discs) and GrainScene (colliding bodies).
+struct AnyScene {
+  std::vector<Wall> walls = {};
+  Vec2 gravity = {};  ///< m/s²
+
+  [[nodiscard]] bool weighs() const { return gravity != Vec2{}; }
+};
+
+/// How well a periodic cell has kept a stress.
+struct CellServoReport {
+  std::string component;  ///< "xx" or "yy"
+  bool reached = false;   ///< the stress has come within 1 % of the wanted one; before, the last two mean nothing
+  double wanted = 0;      ///< Pa, in the last step
+  double stress = 0;      ///< likewise
+  double overshoot = 0;   ///< largest excess of the stress since then, over the largest wanted so far; NaN: it was 0
+  double mean_error = 0;  ///< mean of the absolute difference since then, over the same
+};
+
+struct CellState {
+  double width = 0, height = 0;  ///< m
+  double shift = 0;              ///< of the images above against the cell along x, m; within half a width either way
+  Voigt strain;                  ///< integral of the rates since the start: ln of the stretches, and of the shear rate
+  /// Mean stress, tension positive: -(1/area) times the sum of f_i l_j over the contacts and m u_i u_j over the bodies.
+  Tensor2 stress;
+  double void_ratio = 0;           ///< area of the cell over that of the discs, less 1
+  double coordination_number = 0;  ///< mean contacts of a disc
+  std::vector<CellServoReport> servos;
+
+  [[nodiscard]] double area() const { return width * height; }
+};
 
 /// Stands for the motion of a body that is not there.
 inline constexpr DiscMotion not_there{

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/motion/wall.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -8,6 +9,53 @@
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+namespace {
+
+double lowest_value(const Schedule& schedule) {
+  switch (schedule.kind) {
+    case Schedule::Kind::constant:
+    case Schedule::Kind::ramp:
+      return schedule.value;
+    case Schedule::Kind::sine:
+      return -std::abs(schedule.value);
+    case Schedule::Kind::cycles:
+      return std::min(0.0, schedule.value);
+    case Schedule::Kind::table:
+      break;
+  }
+  return *std::min_element(schedule.values.begin(), schedule.values.end());
+}
+
+[[noreturn]] void refuse_servo(const std::string& wall, const std::string& what, const std::string& why,
+                               const std::string& remedy) {
+  bad_input(fmt::format("the servo of wall '{}' {}", wall, what), why, remedy);
+}
+
+}  // namespace
+
+void check(const Servo& servo, const std::string& name) {
+  check(servo.wanted);
+  if (const double lowest = lowest_value(servo.wanted); !(lowest >= 0)) {
+    refuse_servo(name, fmt::format("wants {:.6g}", lowest), "a wall pushes bodies and does not pull them",
+                 "Give a force or stress of 0 or more at all times");
+  }
+  if (!(std::abs(norm(servo.direction) - 1) <= 1e-12)) {
+    refuse_servo(name, fmt::format("pushes along ({}, {})", servo.direction.x, servo.direction.y),
+                 "that is no unit vector", "Divide it by its length");
+  }
+  if (servo.max_speed && (!(*servo.max_speed > 0) || !std::isfinite(*servo.max_speed))) {
+    refuse_servo(name, fmt::format("has max_speed = {} m/s", *servo.max_speed), "it must be > 0 and finite",
+                 "Give a positive one, or leave it out");
+  }
+  if (!(servo.relaxation > 0) || !(servo.relaxation <= 1)) {
+    refuse_servo(name, fmt::format("has relaxation = {}", servo.relaxation),
+                 "a step mends that share of the difference, and more than 1 overshoots", "Take 0.5");
+  }
+  if (servo.is_stress && !(servo.length >= 0)) {
+    refuse_servo(name, fmt::format("has length = {} m", servo.length), "it must be > 0", "Give a positive one");
+  }
+}
+
 namespace {
 
 /// A vector shorter than this has no direction: its square is no number.
@@ -66,6 +114,49 @@ void check(const Wall& wall) {
   check(wall.move_x);
   check(wall.move_y);
   if (wall.servo) check(*wall.servo, wall.name);
+}
+
+namespace {
+
+/// From a point of the wall to the centre.
+WallContact contact_with_end(int end, const Vec2& branch, const Vec2& own_normal) {
+  const double distance = norm(branch);
+  return distance < shortest ? WallContact{0, own_normal, end} : WallContact{distance, branch / distance, end};
+}
+
+/// Next to an end, of the length of a segment.
+constexpr double next_to = 1e-9;
+
+bool segment_is_passed(const Wall& wall, const Vec2& before, const Vec2& after) {
+  const Vec2 along = wall.end - wall.point;
+  const auto on_own_side = [&](const Vec2& p) { return cross(along, p - wall.point) >= 0; };
+  if (on_own_side(before) == on_own_side(after)) return false;
+  const Vec2 way = after - before;
+  const double point_left = cross(way, wall.point - before);
+  const double end_left = cross(way, wall.end - before);
+  return (point_left <= 0 && end_left >= 0) || (point_left >= 0 && end_left <= 0);
+}
+
+}  // namespace
+
+WallContact nearest_of_segment(const Wall& wall, const Vec2& centre) {
+  const Vec2 along = wall.end - wall.point;
+  const Vec2 branch = centre - wall.point;
+  const double length = norm(along);
+  const Vec2 own_normal = perpendicular(along) / length;
+  const double foot = dot(branch, along);
+  if (foot < 0) return contact_with_end(1, branch, own_normal);
+  if (foot > length * length) return contact_with_end(2, centre - wall.end, own_normal);
+  const double share = foot / (length * length);
+  const int end = share <= next_to ? 1 : share >= 1 - next_to ? 2 : 0;
+  // By its height and not from the foot: next to the wall the difference would be all rounding.
+  const double height = cross(along, branch) / length;
+  return height < 0 ? WallContact{-height, -own_normal, end} : WallContact{height, own_normal, end};
+}
+
+bool passes_through(const Wall& wall, const Vec2& before, const Vec2& after) {
+  if (wall.shape == Wall::Shape::segment) return segment_is_passed(wall, before, after);
+  return (dot(wall.normal, before - wall.point) >= 0) != (dot(wall.normal, after - wall.point) >= 0);
 }
 
 }  // namespace equidem

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
-#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
 
@@ -35,6 +38,35 @@ double area_of(const PackingShape& shape, std::span<const double> radii) {
   double squares = 0;
   for (const double radius : radii) squares += radius * radius;
   return unit_body_of(shape).area * squares;
+}
+
+UnitBody unit_disc(const PackingShape&) {
+  return {.area = std::numbers::pi, .gyration = 0.5};
+}
+
+UnitBody unit_ellipse(const PackingShape& shape) {
+  const double aspect = shape.aspect;
+  constexpr double longest = 1000;
+  if (!(aspect >= 1 && aspect <= longest)) {
+    bad_input(fmt::format("the aspect of the ellipses is {}", aspect),
+              fmt::format("it is the long half-axis over the short one, from 1 to {}", longest), "Correct it");
+  }
+  const double a = std::sqrt(aspect), b = 1 / a;
+  return {.a = a,
+          .b = b,
+          .reach = a,
+          .lever = lever_of(a - b, a),
+          .area = std::numbers::pi,
+          .gyration = 0.25 * (a * a + b * b)};
+}
+
+/// Two equal discs that touch.
+UnitBody unit_pair(const PackingShape&) {
+  return body_of_discs({{{-1, 0}, 1}, {{1, 0}, 1}}, 2 * std::numbers::pi);
+}
+
+UnitBody unit_clump(const PackingShape& shape) {
+  return body_of_discs(shape.discs, std::numbers::pi);
 }
 
 }  // namespace equidem

@@ -6,7 +6,7 @@
 
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/clump.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/study/effects_scenes.hpp"
 
 namespace equidem {

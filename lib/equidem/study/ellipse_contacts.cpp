@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
-#include "equidem/contact/shapes/enlarged_ellipse.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/study/built_in.hpp"

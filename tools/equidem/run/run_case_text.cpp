@@ -19,7 +19,7 @@ void add(Checksum& sum, const Schedule& schedule) {
   for (const double number :
        {static_cast<double>(schedule.kind), schedule.value, schedule.start, schedule.end, schedule.frequency})
     sum.add(number);
-  for (const auto* numbers : {&schedule.times, &schedule.values, &schedule.rates}) sum.add(*numbers);
+  for (const auto* numbers : {&schedule.times, &schedule.values}) sum.add(*numbers);
 }
 
 std::optional<StepInText> step_in(std::string_view text) {

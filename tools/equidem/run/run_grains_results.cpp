@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
-#include "equidem/grains/scene/kinds.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 #include "equidem/output/run/cell_history.hpp"
 
@@ -34,12 +34,10 @@ std::array<std::int64_t, 3> counts_of_shapes(const GrainCase& resolved) {
 
 const char* describe_ellipse_contact(GrainOptions::EllipseLaw law) {
   using enum GrainOptions::EllipseLaw;
-  return law == exact ? "ellipses meet at their closest points (exact)"
-         : law == enlarged_mended
-             ? "ellipses meet by the test of enlarged ellipses, mended: shallow contacts are missed, and the normal "
-               "is that of the body with the lower number"
-             : "ellipses meet by the test of enlarged ellipses as printed: many contacts are missed, and the normal "
-               "is that of the body with the lower number";
+  return law == exact
+             ? "ellipses meet at their closest points (exact)"
+             : "ellipses meet by the test of enlarged ellipses: shallow contacts are missed, and the normal is "
+               "that of the body with the lower number";
 }
 
 /// \param walls of all stages, one of each name

@@ -5,7 +5,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/fields/surface.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/packing/measures.hpp"
 
 #include "sukegawa2010/packings.hpp"

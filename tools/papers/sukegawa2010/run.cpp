@@ -8,9 +8,8 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/fields/spectrum.hpp"
-#include "equidem/fields/surface.hpp"
-#include "equidem/fields/void_ratio.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/output/pictures/grain_animation.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"

@@ -34,8 +34,8 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/packing/amount.hpp"
 #include "equidem/packing/measures.hpp"
+#include "equidem/packing/size_distribution.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {

@@ -7,7 +7,7 @@
 #include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/scene/bond_file.hpp"
+#include "equidem/grains/scene/grain_file.hpp"
 
 namespace equidem::casefile {
 namespace {

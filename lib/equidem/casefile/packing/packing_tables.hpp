@@ -8,10 +8,10 @@
 #include <string>
 
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/packing/amount.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/methods.hpp"
 #include "equidem/packing/packing.hpp"
+#include "equidem/packing/size_distribution.hpp"
 
 namespace equidem::casefile {
 

@@ -26,7 +26,6 @@
 
 #include <concepts>
 
-#include "equidem/contact/collision_stiffness.hpp"
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/core/square_root.hpp"

@@ -8,7 +8,7 @@
 #include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/dynamics/kernels/lanes_math.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
-#include "equidem/dynamics/slot_geometry.hpp"
+#include "equidem/dynamics/layout.hpp"
 
 namespace equidem::lanes {
 

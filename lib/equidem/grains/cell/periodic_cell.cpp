@@ -7,8 +7,8 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/cell/periodic_images.hpp"
-#include "equidem/motion/cell_state.hpp"
+#include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
 

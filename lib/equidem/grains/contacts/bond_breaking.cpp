@@ -10,7 +10,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/pack_bonds.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Bonds of discs in a step (contact/viscous_bond.hpp): impulses, step limit, deformation.
+///
+/// Bonds in groups of eight for the loops over them.
 #pragma once
 
 #include <algorithm>
@@ -119,5 +121,18 @@ void check_law_of_bonds(const GrainScene& scene, NormalLaw law);
 ///         one another; centres that coincide; dashpots and springs that are negative, not finite or all 0; a law
 ///         without bonds; a step above the limit
 void check_bonds(const GrainScene& scene, const GrainOptions& options);
+
+struct GrainSystem;
+struct TiedPair;
+
+/// Pack the bonds of the system, with no impulse in the last step.
+void pack_bonds(GrainSystem& system);
+
+/// Take the images of bonds again.
+void pack_images(GrainSystem& system);
+
+/// Impulse of the dashpots of a bond in the last step.
+BondModes last_impulse(const GrainSystem& system, const TiedPair& bond);
+void take_last_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
 
 }  // namespace equidem

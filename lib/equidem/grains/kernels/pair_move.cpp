@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <utility>
 
+#include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"
+#include "equidem/grains/neighbours/near_pairs.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 namespace {
@@ -103,6 +109,114 @@ void move_pair_bodies(GrainSystem& system, std::size_t block) {
   const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
   const auto move = turning ? choose_move<true>(system.bodies.cleared) : choose_move<false>(system.bodies.cleared);
   move(system, block);
+}
+
+namespace {
+
+/// Normal and tangential. The energies of a group are found before they are added, pair by pair: the lists of a run
+/// that is resumed have other groups and the same sum.
+template <class Law>
+std::pair<double, double> elastic_of_block(const GrainSystem& system, const PairBlock& block) {
+  const NearPairs& near = system.contacts.near;
+  const bool images = system.meets_images();
+  const auto position_of = [&](std::int32_t j) {
+    return images ? system.position_of(j) : system.bodies.motions[static_cast<std::size_t>(j)].position;
+  };
+  double normal = 0, tangential = 0;
+  for (std::size_t g = 0; g < block.groups.size(); ++g) {
+    const PairGroup& group = block.groups[g];
+    PairLanes x, y, energy;
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+      const Vec2 branch =
+          position_of(group.j[k]) - system.bodies.motions[static_cast<std::size_t>(group.i[k])].position;
+      x[k] = branch.x;
+      y[k] = branch.y;
+    }
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+      const double overlap = group.reach[k] - std::sqrt(x[k] * x[k] + y[k] * y[k]);
+      const double stiffness = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
+      energy[k] = Law::energy(stiffness, overlap > 0 ? overlap : 0);
+    }
+    for (const double one : energy) normal += one;
+    for (std::size_t k = 0; system.friction && k < lanes_of_pairs; ++k) {
+      const double spring = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
+      tangential += 0.5 * spring * block.slips[g].stretch[k] * block.slips[g].stretch[k];
+    }
+  }
+  return {normal, tangential};
+}
+
+}  // namespace
+
+std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
+  const std::vector<PairBlock>& blocks = system.contacts.near.blocks;
+  if (blocks.empty()) return {};
+  return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> std::pair<double, double> {
+    if constexpr (Law::kind == LawKind::force) {
+      return system.bodies.blocks.sum([&](std::size_t b) { return elastic_of_block<Law>(system, blocks[b]); });
+    } else {
+      return {};
+    }
+  });
+}
+
+namespace {
+
+using namespace eight;
+
+/// Turns up to here are rounded by adding what has no digits behind the point.
+constexpr double most_turns = 1e9, rounder = 6755399441055744.0;
+
+/// sine_of_turns(), bit by bit.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes sines_of_turns(Lanes x) {
+  x -= (x + rounder) - rounder;
+  const Bits<Lanes> beyond = negative(0.25 - magnitude(x));
+  x = choose(beyond, with_sign(all<Lanes>(0.5), x) - x, x);
+  const Lanes y = (2 * std::numbers::pi) * x, square = y * y;
+  Lanes sum = all<Lanes>(1);
+#pragma GCC unroll 11
+  for (int k = 22; k >= 2; k -= 2) sum = 1 - square * (1.0 / (k * (k + 1))) * sum;
+  return y * sum;
+}
+
+/// Two eights at a time: of one alone each product would wait for the last.
+struct TurnAxes {
+  template <class Lanes>
+  EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t begin, std::size_t end);
+};
+
+/// Of the shaped bodies begin .. end.
+template <class Lanes>
+void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
+  constexpr std::size_t most = 16;
+  for (std::size_t first = begin; first < end; first += most) {
+    const std::size_t used = std::min(most, end - first);
+    double angle[most] = {}, largest = 0;
+    for (std::size_t k = 0; k < used; ++k) {
+      angle[k] = system.bodies.motions[static_cast<std::size_t>(system.shapes.shaped[first + k])].angle;
+      largest = std::max(largest, std::abs(angle[k]));
+    }
+    double x[most], y[most];
+#pragma GCC unroll 2
+    for (std::size_t k = 0; k < most; k += 8) {
+      const Lanes turns = load<Lanes>(angle + k) / (2 * std::numbers::pi);
+      store(sines_of_turns(turns + 0.25), x + k);
+      store(sines_of_turns(turns), y + k);
+    }
+    for (std::size_t k = 0; k < used; ++k) {
+      system.shapes.axes[static_cast<std::size_t>(system.shapes.shaped[first + k])] =
+          largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
+    }
+  }
+}
+
+}  // namespace
+
+void turn_axes(GrainSystem& system) {
+  const auto turn = by_vector_width<TurnAxes, GrainSystem&, std::size_t, std::size_t>();
+  system.bodies.blocks.each_piece(system.shapes.shaped.size(),
+                                  [&](std::size_t begin, std::size_t end) { turn(system, begin, end); });
 }
 
 }  // namespace equidem

@@ -3,7 +3,7 @@
 /// Contact geometry of eight pairs of parts at once.
 #pragma once
 
-#include "equidem/grains/contacts/part_geometry.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 

@@ -4,7 +4,6 @@
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/lane_sums.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Bodies as the loops over near parts read them, and the contacts that these loops keep.
 #include "equidem/grains/neighbours/near_parts.hpp"
 
 #include <algorithm>
@@ -6,10 +8,95 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/grains/contacts/part_geometry.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
+#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
+
+void place_parts(GrainSystem& system) {
+  if (!has_shapes(system.scene)) return;
+  for (const Grain& grain : system.scene.grains) {
+    system.shapes.first_part.push_back(static_cast<std::int32_t>(system.shapes.parts.size()));
+    const std::vector<GrainPart> parts = parts_of(grain, system.scene.clumps);
+    const auto body = static_cast<std::int32_t>(system.shapes.first_part.size() - 1);
+    system.shapes.parts.insert(system.shapes.parts.end(), parts.begin(), parts.end());
+    system.shapes.body_of_part.insert(system.shapes.body_of_part.end(), parts.size(), body);
+    if (grain.shape() != GrainShape::disc) system.shapes.shaped.push_back(body);
+  }
+  system.shapes.first_part.push_back(static_cast<std::int32_t>(system.shapes.parts.size()));
+  system.shapes.axes.resize(system.bodies.motions.size(), {1, 0});
+  turn_axes(system);
+}
+
+PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  PartPair pair;
+  if (system.shapes.parts.empty()) return pair;
+  pair.i = system.shapes.first_part[static_cast<std::size_t>(i)];
+  pair.j = system.shapes.first_part[static_cast<std::size_t>(j)];
+  return pair;
+}
+
+double longest_turn(const GrainSystem& system) {
+  const std::vector<std::int32_t>& shaped = system.shapes.shaped;
+  std::vector<double> ways(system.bodies.blocks.count());
+  system.bodies.blocks.each_piece(shaped.size(), [&](std::size_t begin, std::size_t end) {
+    double longest = 0;
+    for (std::size_t k = begin; k < end && longest == longest; ++k) {
+      const auto i = static_cast<std::size_t>(shaped[k]);
+      const double way =
+          std::abs(system.bodies.next[i].angle - system.bodies.motions[i].angle) * system.bodies.constants[i].radius;
+      if (way > longest || way != way) longest = way;
+    }
+    ways[system.bodies.blocks.of(begin)] = longest;
+  });
+  double longest = 0;
+  for (const double way : ways) {
+    if (way > longest || way != way) longest = way;
+    if (way != way) break;
+  }
+  return longest;
+}
+
+std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j) {
+  std::vector<PartPair> near;
+  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
+    for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
+      const GrainPart& part_i = system.shapes.parts[static_cast<std::size_t>(p)];
+      const GrainPart& part_j = system.shapes.parts[static_cast<std::size_t>(q)];
+      const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
+                          (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
+      const double reach = part_i.a + part_j.a + system.contacts.margin;
+      if (!(dot(branch, branch) < reach * reach)) continue;
+      PartPair pair{p, q, 0, {}, {}, {}};
+      if (!part_i.is_round() || !part_j.is_round()) {
+        const EllipseContact contact = contact_of_ellipses({part_i.a, part_i.b, system.shapes.axes[i]},
+                                                           {part_j.a, part_j.b, system.shapes.axes[j]}, branch);
+        if (contact.gap > system.contacts.margin) continue;
+        pair.apart = contact.normal;
+      }
+      near.push_back(pair);
+    }
+  }
+  return near;
+}
+
+std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall) {
+  std::vector<PartPair> near;
+  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
+    const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(p)];
+    const Vec2 centre = system.bodies.motions[i].position + offset_of(part, system.shapes.axes[i]);
+    const Wall& shape = system.scene.walls[wall];
+    const WallContact contact = nearest(shape, system.walls.places[wall].displacement, centre);
+    double reach = part.a;
+    if (shape.shape == Wall::Shape::line)
+      reach = support({part.a, part.b, system.shapes.axes[i]}, contact.normal).reach;
+    if (contact.distance <= reach + system.contacts.margin) near.push_back({p, 0, 0, {}, {}, {}});
+  }
+  return near;
+}
+
 namespace {
 
 using PartColumn = PartGroup::Column;
@@ -326,6 +413,84 @@ void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartP
       set(PartGroup::arm_j_y, pair.arm_j.y);
     }
   }
+}
+
+namespace {
+
+using PartColumn = PartGroup::Column;
+
+}  // namespace
+
+void load_part_bodies(GrainSystem& system) {
+  NearParts& near = system.contacts.near_parts;
+  if (!near.active) return;
+  system.bodies.blocks.each_piece(system.bodies.motions.size(), [&](std::size_t begin, std::size_t end_body) {
+    for (std::size_t b = begin; b < end_body; ++b) {
+      const GrainMotion& motion = system.bodies.motions[b];
+      const GrainBody& body = system.bodies.constants[b];
+      const BodyImpulse& push = system.bodies.impulses[b];
+      const auto end_part = static_cast<std::size_t>(system.shapes.first_part[b + 1]);
+      for (auto k = static_cast<std::size_t>(system.shapes.first_part[b]); k < end_part; ++k) {
+        if (near.met[k] == 0) continue;
+        const GrainPart& part = system.shapes.parts[k];
+        PartBody& seen = near.bodies[k];
+        seen.turned = part.is_round() ? offset_of(part, system.shapes.axes[b]) : system.shapes.axes[b];
+        seen.centre = part.is_round() ? motion.position + seen.turned : motion.position;
+        seen.velocity = motion.velocity;
+        if (system.cell.deforms)  // as in the drift before
+          seen.velocity += system.cell.gradient * (system.bodies.next[b].position - system.cell.centre);
+        seen.middle_velocity = seen.velocity + (0.5 * body.inverse_mass) * push.impulse;
+        seen.spin = motion.spin;
+        seen.middle_spin = motion.spin + 0.5 * body.inverse_moment * push.torque;
+      }
+    }
+  });
+}
+
+void touch_near_parts(GrainSystem& system) {
+  for (NearParts::Block& block : system.contacts.near_parts.blocks) {
+    for (NearParts::List& list : block.lists) {
+      for (std::size_t p = 0; p < list.count; ++p) {
+        auto [candidate, pair] = candidate_of(system, list, p);
+        if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
+        PartGroup& group = list.groups[p / lanes_of_pairs];
+        const std::size_t k = p % lanes_of_pairs;
+        group.since[k] = system.step + (system.options.verlet() ? 0 : 1);
+        group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
+        ++system.counters.contacts;
+      }
+    }
+  }
+}
+
+std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const PartGroup& group = list.groups[p / lanes_of_pairs];
+  const std::size_t k = p % lanes_of_pairs;
+  const auto number = [&](PartColumn column) { return group.numbers[column][k]; };
+  const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
+  Candidate candidate;
+  candidate.i = system.shapes.body_of_part[static_cast<std::size_t>(group.i[k])];
+  candidate.j = system.shapes.body_of_part[static_cast<std::size_t>(group.j[k])];
+  set_constants(system, candidate);
+  PartPair pair;
+  pair.i = group.i[k];
+  pair.j = group.j[k];
+  pair.tangential_damping = number(PartGroup::tangential_damping);
+  candidate.touching = list.touching(p);
+  if (!candidate.touching) {
+    pair.apart = normal;
+    return {candidate, pair};
+  }
+  candidate.steps = system.step + 1 - group.since[k];
+  candidate.normal = normal;
+  candidate.impulse = number(PartGroup::impulse);
+  candidate.tangential_impulse = number(PartGroup::tangential_impulse);
+  candidate.stretch = number(PartGroup::stretch);
+  candidate.overlap = number(PartGroup::overlap);
+  candidate.closing = number(PartGroup::closing);
+  pair.arm_i = {number(PartGroup::arm_i_x), number(PartGroup::arm_i_y)};
+  pair.arm_j = {number(PartGroup::arm_j_x), number(PartGroup::arm_j_y)};
+  return {candidate, pair};
 }
 
 }  // namespace equidem

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "equidem/grains/neighbours/near_pairs.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "equidem/contact/shapes/ellipse.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Scene of colliding bodies: bodies, walls, bonds, contact properties and options.
+///
+/// Checks of scenes with ellipses or clumps.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +18,9 @@
 #include "equidem/contact/sliding.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/grains/cell/periodic_cell.hpp"
-#include "equidem/grains/scene/wall_shape.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/motion/any_scene.hpp"
+#include "equidem/motion/any_simulation.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 
@@ -81,7 +83,7 @@ struct PairProperties {
   double stiffness = 0;
   /// a = k dt²/m, constant for all steps and masses (as in the paper); hertz_dashpot: k d_c^(1/2) dt²/m.
   double dimensionless = 0;
-  double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_step.hpp
+  double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: force_step.hpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
   /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). Laws that give a force need more than 0 with
@@ -121,7 +123,7 @@ struct GrainOptions {
   /// Contact detection of two ellipses, or of an ellipse and a disc.
   enum class EllipseLaw {
     exact,     ///< closest points and common normal (ellipse_contact.hpp)
-    enlarged,  ///< Sukegawa's test (4.1)-(4.49) (enlarged_ellipse.hpp): misses shallow contacts
+    enlarged,  ///< Sukegawa's test (4.1)-(4.49) (ellipse_contact.hpp): misses shallow contacts
   } ellipse_law = EllipseLaw::exact;
   /// Bodies of a block, the work that a thread does at a time (body_blocks.hpp); 0: chosen from the number of bodies,
   /// one block of few. The order of sums, and so the last bits, depend on it.
@@ -155,7 +157,7 @@ using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 /// \throws Error (bad_input): no grains, radius or mass not positive, numbers not finite or beyond 1e150, kinds and
 ///         pairs that do not match, a table that is not symmetric, neither or both of stiffness and dimensionless,
 ///         restitution out of range for the law, friction negative, velocity_verlet with a map, shapes as in
-///         shape_check.hpp, the time step not positive, grains that start inside one another (centre within the other)
+///         grain_scene.hpp, the time step not positive, grains that start inside one another (centre within the other)
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
@@ -169,5 +171,19 @@ void check_bonds(const GrainScene& scene, const PlaceOfBond& where = {});
 /// \throws Error (bad_input): a law without forces, a name of no wall, a wall that is moved by two servos, by its
 ///         mirror and itself, or by a schedule along the same direction, a stress whose length is not known
 void check_servos(const GrainScene& scene, NormalLaw law);
+
+/// \throws Error (bad_input): short half-axis not in (0, radius], a body that is both ellipse and clump, a clump that
+///         does not exist, has no discs, has discs outside the radius or its centre of mass not at the origin
+void check_shape(const GrainScene& scene, std::size_t grain);
+
+/// \throws Error (bad_input): laws that do not support ellipses and clumps; spheres in the scene
+void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options);
+
+/// Whether a part of one grain has its centre in a part of the other, or ellipses intersect so deeply that the lines
+/// between the centres of curvature of their tips cross. For discs: whether the centre of one is in the other.
+bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain& b);
+
+/// Whether the centre of a part is behind a wall or on it.
+bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall);
 
 }  // namespace equidem

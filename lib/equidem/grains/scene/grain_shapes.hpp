@@ -1,16 +1,80 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// Clumps: discs tied rigidly, with mass, centre of mass and moment of inertia.
+///
+/// The parts of bodies, between which contacts are found: one for a disc or an ellipse, the discs of a clump.
+///
 /// Shape, mass and moment of inertia of a body from its lengths and its density.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {
+
+/// The discs, shifted so that the centroid of their union is the origin.
+/// \param discs in any position, overlapping or not
+/// \throws Error (bad_input) on no discs, a radius that is not positive, numbers that are not finite, a disc within
+///         another
+Clump centred_clump(std::vector<Clump::Disc> discs);
+
+/// Mass and moment of inertia of the union of the discs about its centroid, exact to rounding.
+/// \param density kg/m³
+/// \throws Error (bad_input) if the density is not positive and finite
+Inertia inertia_of_clump(const Clump& clump, double density);
+
+/// Radius of the circle round the origin that contains all discs, m.
+double radius_of(const Clump& clump);
+
+/// A part in the frame of its body: a disc (a = b) or an ellipse whose long half-axis a lies along x.
+struct GrainPart {
+  Vec2 offset;          ///< of the centre, m
+  double a = 0, b = 0;  ///< half-axes, m
+  double size = 0;      ///< radius of the disc of equal area, m
+  [[nodiscard]] bool is_round() const { return a == b; }
+};
+
+/// Whether any body is an ellipse or a clump.
+bool has_shapes(const GrainScene& scene);
+
+/// Parts of a grain; those of a clump sorted by position, so that results do not depend on the caller's order.
+std::vector<GrainPart> parts_of(const Grain& grain, const std::vector<Clump>& clumps);
+
+/// Radius of the smallest circle that is inscribed in a part of a grain, m.
+double inscribed_radius(const Grain& grain, std::span<const Clump> clumps);
+/// The smallest of all grains, m; infinite without grains.
+double smallest_inscribed_radius(const GrainScene& scene);
+
+/// The x-axis of a body as unit vector, to 1e-15; bit-identical on every machine.
+Vec2 axis_at(double angle);
+
+/// From the centre of mass of a body to the centre of a part.
+inline Vec2 offset_of(const GrainPart& part, Vec2 axis) {
+  return part.offset.x * axis + part.offset.y * perpendicular(axis);
+}
+
+/// Whether a point lies in a part.
+/// \param branch from the centre of the part to the point
+inline bool holds(const GrainPart& part, Vec2 axis, Vec2 branch) {
+  const double x = dot(axis, branch) / part.a, y = cross(axis, branch) / part.b;
+  return x * x + y * y < 1;
+}
+
+/// Data of a contact of parts in addition to its Candidate; one for each candidate, none in scenes with discs only.
+struct PartPair {
+  std::int32_t i = 0, j = 0;      ///< indices in Shapes::parts; j = 0 for a wall
+  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): the dashpot over the root of the tangential mass
+  Vec2 apart;  ///< direction along which ellipses were last apart; {}: unknown. Start of the iteration, without effect
+               ///< on results
+  Vec2 arm_i, arm_j;  ///< of the last step: from the centres of the bodies to the contact point, m
+};
 
 /// Sets the shapes of bodies and stores each distinct clump once (GrainScene::clumps).
 class GrainShapes {

@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "equidem/grains/scene/kinds.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 
 namespace equidem {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "equidem/grains/scene/wall_shape.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/part_geometry.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {

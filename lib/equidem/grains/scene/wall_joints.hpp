@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/grains/scene/wall_shape.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

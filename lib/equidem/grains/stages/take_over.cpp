@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/contacts/pack_bonds.hpp"
+#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
-#include "equidem/grains/saved_contact.hpp"
 
 namespace equidem {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/fields/region_stress.hpp"
+#include "equidem/fields/coarse_fields.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/energies.hpp"
 #include "equidem/output/files/wall_loads.hpp"

@@ -13,7 +13,7 @@
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/motion/cell_state.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/motion/wall.hpp"

@@ -10,7 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/grain_parts.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/output/files/placed_discs.hpp"
 #include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/pictures/canvas.hpp"

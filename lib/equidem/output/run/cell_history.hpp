@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/motion/cell_state.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/results.hpp"
 
 namespace equidem {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/contacts/part_geometry.hpp"
+#include "equidem/grains/contacts/contact_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/shapes/enlarged_ellipse.hpp"
-#include "equidem/grains/contacts/contact_geometry.hpp"
+#include "equidem/contact/shapes/ellipse_contact.hpp"
 
 namespace equidem {
 namespace {
