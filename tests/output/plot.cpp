@@ -287,25 +287,6 @@ TEST_CASE("an_svg_of_long_histories_stays_small") {
   CHECK(fs::file_size(folder / "long.csv") > 300000);
 }
 
-TEST_CASE("bars_are_drawn_with_their_labels") {
-  const TemporaryFolder folder;
-  BarChart chart{
-      .title = "cost",
-      .axis = "ns per disc-step",
-      .bars = {{.label = "plain 'scene'", .value = 7, .low = 6.5, .high = 8}, {.label = "+ a wall", .value = 19}}};
-  const PlotResult result = write_plot(folder.path(), "bars", chart, false);
-  CHECK(read_file(folder / "bars.csv") == "label,value,low,high\nplain 'scene',7,6.5,8\n+ a wall,19,nan,nan\n");
-  if (!gnuplot_is_missing(result)) {
-    CAPTURE(result.message);
-    CHECK(result.drawn);
-    CHECK(read_file(folder / "bars.svg").find("plain 'scene'") != std::string::npos);
-  }
-  chart.bars[1].value = -1;
-  CHECK_THROWS_WITH(write_plot(folder.path(), "b", chart, false),
-                    Catch::Contains("'+ a wall' of a chart has the value -1"));
-  CHECK_THROWS_WITH(write_plot(folder.path(), "b", BarChart{}, false), Catch::Contains("has no bar"));
-}
-
 TEST_CASE("text_of_the_user_is_literal_where_other_text_has_subscripts") {
   CHECK(literal("a_b^{c} \\ @d ~ & e") == "a\\_b\\^\\{c\\} \\\\ \\@d \\~ \\& e");
   CHECK(with_symbols("kT/kN = 0.5, nu of kT_max, menu") == "k_T/k_N = 0.5, ν of k_T\\_max, menu");

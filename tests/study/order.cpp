@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/study/order.hpp"
-
 #include <array>
 #include <cmath>
 #include <functional>
 #include <vector>
 
 #include "equidem/core/random.hpp"
+#include "equidem/study/evaluate.hpp"
 
 #include "support/catch.hpp"
 

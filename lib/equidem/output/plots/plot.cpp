@@ -11,7 +11,6 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/page/drawn_figures.hpp"
-#include "equidem/output/plots/bar_chart.hpp"
 #include "equidem/output/plots/gnuplot.hpp"
 #include "equidem/output/plots/plot_script.hpp"
 
@@ -85,15 +84,6 @@ void check_plot(const Plot& plot) {
   if (!any_point) bad_input("a plot has no finite point", "there is nothing to draw", "Give it a series");
 }
 
-void check_chart(const BarChart& chart) {
-  if (chart.bars.empty()) bad_input("a chart has no bar", "there is nothing to draw", "Give it a bar");
-  for (const Bar& bar : chart.bars) {
-    if (std::isfinite(bar.value) && bar.value >= 0) continue;
-    bad_input(fmt::format("the bar '{}' of a chart has the value {}", bar.label, bar.value),
-              "the length of a bar is finite and not negative", "Leave it out");
-  }
-}
-
 /// A label without the signs of gnuplot's enhanced text.
 std::string without_markup(const std::string& label) {
   std::string text;
@@ -152,13 +142,6 @@ PlotResult write_plot(const std::filesystem::path& folder, const std::string& na
       fmt::format("{}{}{} against {}", plot.title, plot.title.empty() ? "" : ": ", plot.y.label, plot.x.label);
   return draw(folder, name, plot.enhanced ? without_markup(title) : title, data.csv, plot_script(name, plot, data),
               overwrite);
-}
-
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
-                      bool overwrite) {
-  check_name(name);
-  check_chart(chart);
-  return draw(folder, name, chart.title, bar_data(chart), bar_script(name, chart), overwrite);
 }
 
 }  // namespace equidem

@@ -86,23 +86,6 @@ struct PlotResult {
   std::vector<std::filesystem::path> files = {};
 };
 
-/// One bar of a chart.
-struct Bar {
-  std::string label = {};  ///< left of the bar
-  double value = 0;        ///< its length, >= 0
-  double low = 0;          ///< error bar from here to `high`; where both are 0: none
-  double high = 0;
-  PlotColour colour = PlotColour::blue;
-  std::string note = {};  ///< right of the bar, after its value
-};
-
-/// Horizontal bars, from top to bottom.
-struct BarChart {
-  std::string title = {};
-  std::string axis = {};  ///< label of the axis of values
-  std::vector<Bar> bars = {};
-};
-
 /// Write NAME.csv (the data: plot_data of plot_script.hpp), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws
 /// again) and, by gnuplot, NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are
 /// still written and the result states the reason. The legend stands below the plot. The SVG draws at most 15,000
@@ -110,8 +93,5 @@ struct BarChart {
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
 PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
-/// Likewise, a chart of bars. \throws Error (bad_input) without a bar, or where a value is negative or not finite
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const BarChart& chart,
-                      bool overwrite);
 
 }  // namespace equidem
