@@ -22,14 +22,14 @@ namespace {
 
 /// A law with its settings.
 struct Variant {
-  const char* name;
+  std::string name;
   NormalLaw law;
   double dimensionless;  ///< a = k dt²/m
   GrainOptions::Integrator integrator = GrainOptions::Integrator::semi_implicit_euler;
 };
 
 /// C first. The stiffness of Fujioka & Ushijima (2005), Table 2: a = 0.1, for T 4.62; X also at w dt = 2.
-const Variant variants[] = {
+const std::vector<Variant> variants{
     {"C", NormalLaw::linear_dashpot, 0.1},
     {"C, velocity Verlet", NormalLaw::linear_dashpot, 0.1, GrainOptions::Integrator::velocity_verlet},
     {"T", NormalLaw::hertz_dashpot, 4.62},

@@ -74,7 +74,7 @@ Results quantity_results(const Study& study) {
   out.set("name", study.quantity).set("label", study.label).set("relative", study.relative);
   out.set("truth", to_string(study.truth)).set("source", study.source);
   if (study.truth == Truth::known) out.set("true_value", study.true_value);
-  return out.line(study.quantity, study.label + "; truth: " + study.source);
+  return out.line("measured", study.label + "; truth: " + study.source);
 }
 
 /// An empty series of the k-th method: a line where it has several points.
