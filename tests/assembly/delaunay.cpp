@@ -57,7 +57,7 @@ std::uint64_t hash(const Assembly& a) {
 
 /// Contacts, facets and areas are those of cells that are cut by the images of all discs.
 /// \param images on each side of a periodic cell
-void check_by_brute_force(const Assembly& a, const Rectangle& box, int images) {
+void check_by_brute_force(const Assembly& a, const TurnedRectangle& box, int images) {
   check(a);
   const oracle::Cells expected = oracle::cells(a, box, images);
   REQUIRE(a.contacts.size() == expected.neighbours.size());

@@ -166,5 +166,3 @@ TEST_CASE("one_strip_is_the_whole_assembly") {
     CHECK(std::abs(one.cell_areas[d] - whole.cell_areas[d]) <= 1e-12 * whole.cell_areas[d]);
   for (const auto& [name, group] : whole.groups) CHECK(one.groups.at(name).discs == group.discs);
 }
-
-}  // namespace
