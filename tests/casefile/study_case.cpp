@@ -43,6 +43,18 @@ TEST_CASE("a_study_file_tries_every_combination_of_its_values") {
   CHECK(points[5].setting.label() == "springs.kT = 1e+08, assembly.rows = 33");
 }
 
+TEST_CASE("each_name_of_a_study_file_is_a_method_with_its_order") {
+  const auto points = points_of(parsed_study(
+      head + rows + "[[vary]]\nkey = \"run.integrator\"\nnames = \"leapfrog, thesis\"\norders = [2, 1]\n"));
+  REQUIRE(points.size() == 6);
+  CHECK(points[1].overrides ==
+        std::vector<std::string>{"assembly.rows=9", "assembly.columns=9", "run.integrator=thesis"});
+  CHECK(points[1].setting.method == "thesis");
+  CHECK(points[0].setting.order == 2);
+  CHECK(points[5].setting.order == 1);
+  CHECK_FALSE(points_of(parsed_study(head + rows))[0].setting.order);
+}
+
 TEST_CASE("smaller_values_may_be_the_finer_ones") {
   const auto points = points_of(
       parsed_study(head + "[[vary]]\nkey = \"run.time_step\"\nvalues = [0.1, 0.01]\nrefines = \"smaller\"\n"));
@@ -66,6 +78,12 @@ TEST_CASE("study_files_that_cannot_be_carried_out_are_refused") {
   refused(head + rows + rows, "2 keys refine");
   refused(head + "[[vary]]\nkey = \"assembly.rows\"\nvalues = [3, 3]\n", "a value is given twice");
   refused(head + "[[vary]]\nkey = \"assembly.rows\"\nvalues = [0, 3]\n", "0 is among values that refine");
+  const std::string methods = head + "[[vary]]\nkey = \"run.integrator\"\n";
+  refused(methods, "values");
+  refused(methods + "values = [1.0]\nnames = \"leapfrog\"\n", "names");
+  refused(methods + "names = \"leapfrog, leapfrog\"\n", "a name is given twice");
+  refused(methods + "names = \"leapfrog\"\norders = [1, 2]\n", "there are 2 orders of 1 names");
+  refused(methods + "names = \"leapfrog\"\n", "no key refines");
   refused(head + "[[vary]]\nkey = \"springs.kT\"\nvalues = [1.0]\nrefines = \"not\"\n", "no key refines");
   refused(head + "[[vary]]\nkey = \"rows\"\nvalues = [1]\n", "'rows' is no key of a case");
   refused(head + "[[vary]]\nkey = \"assembly.rows\"\nvalues = [1]\nsteps = 3\n", "steps");

@@ -83,14 +83,15 @@ const std::string bonds = "i,j,normal_dashpot,tangential_dashpot\n0,1,100,50\n1,
 const std::string schedule = "# a pulse\ntime,value\n0,0\n1e-3,1\n2e-3,-1\n3e-3,0\n";
 const std::string sieves = "# share of the mass\ndiameter_m,passing\n0.002,0\n0.004,0.25\n0.008,0.7\n0.016,1\n";
 
-/// Contents of the case files of the repository, apart by kind.
+/// Contents of the case files and studies of the repository, apart by kind.
 struct Cases {
   std::vector<std::string> bonded, grains, packing, study = {fuzz::study};
 
   explicit Cases(const fs::path& folder) {
     std::vector<fs::path> paths;
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".toml") paths.push_back(entry.path());
+    for (const fs::path& each : {folder, folder.parent_path() / "studies"})
+      for (const auto& entry : fs::directory_iterator(each))
+        if (entry.path().extension() == ".toml") paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
     for (const fs::path& path : paths) {
       const std::string text = read_file(path);

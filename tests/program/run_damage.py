@@ -14,6 +14,7 @@ from motion import CORNER, SHAKE, RunTest, files_of
 from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
 
 BOX, BALL = CASES / "grains_shaken.toml", CASES / "grains_between_walls.toml"
+STUDY = CASES.parent / "studies" / "abe_lattice.toml"
 CELL, ENSEMBLE, PACK = CASES / "random_cell.toml", CASES / "ensemble.toml", CASES / "pack_graded.toml"
 NO_PICTURE = ("--set", "output.picture=false")
 MEASURED = ("--set", "shaking.start=0.02", "--set", "output.probe_interval=4e-3", "--set", "output.frame_interval=7e-3")
@@ -123,7 +124,7 @@ class Damage(RunTest):
 
     def test_measured_times_of_a_study_are_checked(self):
         out = self.folder / "out"
-        study = ("study", "abe_lattice", "--quick", "--budget", 0, "--rounds", 3, "--out", out)
+        study = ("study", STUDY, "--budget", 0, "--rounds", 3, "--out", out)
         self.check_done(equidem(*study))
         table = out / "samples.csv"
         good = table.read_bytes()
@@ -197,7 +198,7 @@ class InUse(RunTest):
         fcntl.flock(descriptor, fcntl.LOCK_EX)
         for command in (("run", SHAKE), ("run", BALL), ("run", CASES / "run_tension.toml"), ("solve", TENSION),
                         ("sweep", TENSION, "--key", "ratio", "--values", "0"), ("homogenize", CELL), ("pack", PACK),
-                        ("homogenize", ENSEMBLE), ("stability", CELL), ("study", "abe_lattice", "--quick"),
+                        ("homogenize", ENSEMBLE), ("stability", CELL), ("study", STUDY),
                         ("calibrate", CASES / "calibrate_random.toml")):
             with self.subTest(verb=command[0]):
                 self.check_error(equidem(*command, "--out", out), 2, "is in use", str(out))

@@ -54,7 +54,7 @@ def jobs_of(cases, papers):
         "sweep": (None, ["sweep", cases / "abe1996_fig6.toml", "--key", "ratio", "--values",
                          "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1", "--set", "test=none", "--set", support, "--set", load], "sweep.csv"),
         "calibrate": (None, ["calibrate", cases / "calibrate_random.toml"], None),
-        "study": (None, ["study", cases / "study_tension.toml", "--rounds", "3", "--budget", "0"], None),
+        "study": (None, ["study", cases.parent / "studies" / "abe_lattice.toml", "--rounds", "3", "--budget", "0"], None),
         "papers, abe1996": (papers, ["abe1996", "--rows", "17", "--columns", "17"], None),
         "papers, abe1996_random": (papers, ["abe1996_random", "--quick"], None),
     }

@@ -15,10 +15,9 @@ import common  # noqa: E402
 import effects  # noqa: E402
 
 
-def setting(method, time, error=None, problem=""):
+def setting(method, time, error=None):
     errors = {} if error is None else {"e": error}
-    return {"problem": problem, "method": method, "setting": {}, "errors": errors, "assured_errors": errors,
-            "values": {"unknowns": 2, "bytes_per_disc": 100, "evaluations": 3},
+    return {"method": method, "setting": {}, "errors": errors, "assured_errors": errors,
             "seconds": {"median": time, "processor_median": time, "repetitions": 3}}
 
 
@@ -29,48 +28,41 @@ class Pages(ProgramTest):
 
     def test_the_first_table_names_the_cheapest_sufficient_setting(self):
         result = {"settings": [setting("a", 1.0, 0.005), setting("b", 2.0, 5e-5), setting("c", 3.0, 1e-5), setting("d", 9.0)]}
-        run = self.run_of()
-        rows = accuracy.cheapest_ways(run, "integrators", result)
+        rows = accuracy.cheapest_ways("integrators", result)
         self.assertEqual([(row[1], row[2], row[4]) for row in rows], [("1e-2", "a", "1 s"), ("1e-4", "b", "2 s")])
-        self.assertEqual(rows[0][5], "`equidem study integrators --accuracy 1e-2`")
-        run.options = argparse.Namespace(quick=False, discs="1e6")
-        self.assertEqual(accuracy.cheapest_ways(run, "solvers", result)[0][5],
-                         "`equidem study solvers --discs 1e6 --accuracy 1e-2`")
+        self.assertEqual(rows[0][5], "`equidem study data/studies/integrators.toml --accuracy 1e-2`")
 
     def test_an_alternative_is_compared_with_the_scene_before_the_one_that_it_replaces(self):
         names = ("plain", "+ x", "+ y", "or z, without y", "+ w")
-        result = {"pieces": 1e9, "settings": [setting(name, time) for name, time in zip(names, (1, 2, 6, 3, 9))]}
-        bases = {name: (ns, base) for name, _, ns, base in effects.scenes(result, "")}
+        result = {"effects": {"active": []}, "bytes_per_disc": 100, "e": 3}
+        scenes = [(name, result, time) for name, time in zip(names, (1, 2, 6, 3, 9))]
+        bases = {name: (ns, base) for name, _, ns, base in effects.compared(scenes)}
         self.assertEqual(bases, {"plain": (1, None), "+ x": (2, 1), "+ y": (6, 2), "or z, without y": (3, 2), "+ w": (9, 6)})
-        self.assertIn("| or z, without y | 2 | 100 | 3 | 3.0 | +50 % | 3.00 |", effects.chain_table(result, ""))
+        self.assertIn("| or z, without y | 2 | 100 | 3 | 3.0 | +50 % | 3.00 |", effects.chain_table(scenes, lambda found: found["e"]))
 
-    def test_numbers_of_other_programs_are_those_of_their_page(self):
-        page = (SOURCE / "data" / "benchmarks" / "peers.md").read_text(encoding="utf-8")
-        said = accuracy.others()
-        for line in page.split("## The same answer")[1].splitlines():
-            if line.startswith("| 0."):
-                for cell in line.strip("|").split("|"):
-                    self.assertIn(cell.strip(), said)
-        for program in ("YADE", "MUMPS", "GAMG", "cholmod"):
-            self.assertIn(program, said)
+    def test_scenes_of_effects_differ_each_in_one_table_from_that_before(self):
+        for _, _, make in effects.PROBLEMS:
+            (_, plain), *others = make(4)
+            for name, scene in others:
+                self.assertNotEqual(scene.tables, plain.tables, name)
 
-    def test_a_section_has_the_orders_the_fronts_and_both_formats_of_its_plot(self):
+    def test_stored_results_stay_on_the_page(self):
+        rows, sections = accuracy.stored((SOURCE / "data" / "accuracy.md").read_text(encoding="utf-8"))
+        self.assertGreater(len(rows), 5)
+        for heading in ("## Laws of collision", "## Contact of ellipses", "## Which solver, from which size on"):
+            found = [text for text in sections if text.startswith(heading)]
+            self.assertEqual(len(found), 1, heading)
+            self.assertIn("commit 6167f57b", found[0])
+        self.assertFalse([text for text in sections if text.startswith("## Abe's tension test")])
+
+    def test_a_section_has_the_orders_the_front_and_both_formats_of_its_plot(self):
         run = self.run_of()
         text = accuracy.section(run, "integrators", run.study("integrators"))
-        self.assertIn("![A wave in a bonded lattice](studies/integrators.png)", text)
-        self.assertIn("| fourth_order | motion | 4.0", text)
+        self.assertIn("![A bonded disc that vibrates](studies/integrators.png)", text)
+        self.assertIn("| fourth_order | energy_elastic | 4.0", text)
         self.assertIn("| fastest settings of their accuracy | time | error |", text)
         for extension in ("png", "svg"):
             self.assertTrue((run.kept / f"integrators.{extension}").exists())
-
-    def test_solvers_are_compared_by_the_time_to_the_same_error(self):
-        def solver(method, time, error, problem):
-            return {**setting(method, time, error, problem), "values": {"memory": 2.0}}
-
-        result = {"settings": [solver("a", 1.0, 1e-7, "small"), solver("a", 2.0, 1e-13, "small"), solver("b", 3.0, 1e-13, "small"),
-                               {**solver("a", 0.0, None, "large"), "refusal": "too large"}, solver("b", 5.0, 1e-13, "large")]}
-        self.assertIn("| small | **1 s, 2 MB** | 3 s, 2 MB |\n| large | refused | **5 s, 2 MB** |", accuracy.by_size(result, 1e-6))
-        self.assertIn("| small | **2 s, 2 MB** |", accuracy.by_size(result, 1e-12))
 
     def test_the_report_of_effects_is_that_of_a_run(self):
         said = effects.report_of(self.run_of(), "run data/cases/run_pulse.toml --dry-run")

@@ -30,7 +30,7 @@ VERBS = {
     "grains": (["run", CASES / "grains_cradle.toml"], ["energy.kinetic", "time"]),
     "sweep": ([TENSION, "--set", "assembly.columns=9", "--set", "assembly.rows=9", "--key", "ratio", "--from", "0", "--to", "1",
                "--steps", "3"], []),
-    "study": ([CASES / "study_tension.toml", "--budget", "0", "--rounds", "3"], []),
+    "study": ([CASES.parent / "studies" / "abe_lattice.toml", "--budget", "0", "--rounds", "3"], []),
 }
 
 

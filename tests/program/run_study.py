@@ -7,9 +7,10 @@ import subprocess
 import time
 import unittest
 
-from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
+from program import CASES, PROGRAM, SOURCE, ProgramTest, equidem, parse_json
 
-STUDY = str(CASES / "study_tension.toml")
+STUDIES = SOURCE / "data" / "studies"
+STUDY = str(STUDIES / "abe_lattice.toml")
 SHORT = ("--budget", 0, "--rounds", 3)
 
 
@@ -27,40 +28,45 @@ class Study(ProgramTest):
         for key in ("processor", "cores", "compiler", "build", "version"):
             self.assertIn(key, result["machine"])
         self.assertIn("equidem study", result["command"])
-        order = result["orders"][0]
-        self.assertLess(abs(order["observed_order"] - 1), 0.1)
-        self.assertTrue(order["agrees"])
-        errors = [row["errors"]["poisson_ratio"] for row in result["settings"]]
+        self.assertEqual([order["method"] for order in result["orders"]], ["centre", "quarter"])
+        for order in result["orders"]:
+            self.assertLess(abs(order["observed_order"] - 1), 0.1)
+            self.assertTrue(order["agrees"])
+        errors = [row["errors"]["poisson_ratio"] for row in result["settings"] if row["method"] == "centre"]
         self.assertEqual(errors, sorted(errors, reverse=True))
         for row in result["settings"]:
             self.assertEqual(row["seconds"]["repetitions"], 3)
             self.assertLessEqual(row["seconds"]["lower_quartile"], row["seconds"]["median"])
             self.assertGreater(row["seconds"]["processor_median"], 0)
-        for name in ("study.csv", "samples.csv", "result.json", "study_tension_poisson_ratio.png",
-                     "study_tension_poisson_ratio.gp"):
+        for name in ("study.csv", "samples.csv", "result.json", "abe_lattice_poisson_ratio.png",
+                     "abe_lattice_poisson_ratio.gp"):
             self.assertTrue((out / name).exists(), name)
-        self.assertEqual(len(rows(out / "study.csv")), 5)
+        self.assertEqual(len(rows(out / "study.csv")), 10)
 
-    def test_a_dry_run_tells_the_size_and_writes_nothing(self):
+    def test_a_dry_run_tells_the_settings_and_writes_nothing(self):
         out = self.folder / "out"
         result = parse_json(self.check_done(equidem("study", STUDY, *SHORT, "--dry-run", "--out", out, "--json", "-")).stdout)
-        self.assertEqual((result["status"], result["number_of_settings"]), ("dry_run", 5))
+        self.assertEqual((result["status"], result["number_of_settings"]), ("dry_run", 10))
         self.assertFalse(out.exists())
 
-    def test_effects_are_bars_of_the_time_of_one_piece(self):
-        out = self.folder / "out"
-        done = self.check_done(equidem("study", "effects_statics", "--quick", *SHORT, "--out", out, "--json", "-"))
-        result = parse_json(done.stdout)
-        self.assertEqual(result["piece"], "disc")
-        self.assertIn("ns per disc", result["report"])
-        plain, restrained, free = result["settings"][:3]
-        self.assertEqual(plain["values"]["unknowns"], restrained["values"]["unknowns"])
-        self.assertGreater(free["values"]["factor_entries"], 1.9 * plain["values"]["factor_entries"])
-        bars = rows(out / "effects_statics_time.csv")
-        self.assertEqual([bar["label"] for bar in bars], [row["method"] for row in result["settings"]])
-        for bar, row in zip(bars, result["settings"]):
-            self.assertAlmostEqual(float(bar["value"]), 1e6 * row["seconds"]["processor_median"] / result["pieces"], 6)
-        self.assertIn("'µs per disc'", (out / "effects_statics_time.gp").read_text(encoding="utf-8"))
+    def test_integrators_have_the_orders_of_theory(self):
+        done = self.check_done(equidem("study", STUDIES / "integrators.toml", *SHORT, "--json", "-"))
+        orders = {order["method"]: order for order in parse_json(done.stdout)["orders"]}
+        self.assertEqual({method: order["theoretical_order"] for method, order in orders.items()},
+                         {"leapfrog": 2, "velocity_verlet": 2, "fourth_order": 4, "thesis": 1})
+        for order in orders.values():
+            self.assertTrue(order["agrees"], order)
+
+    def test_the_error_of_a_mean_falls_as_the_root_of_the_number_of_cells(self):
+        done = self.check_done(equidem("study", STUDIES / "random_cells.toml", *SHORT, "--json", "-"))
+        order = parse_json(done.stdout)["orders"][0]
+        self.assertTrue(order["agrees"], order)
+
+    def test_each_study_of_the_data_is_read(self):
+        found = [path for path in STUDIES.glob("*.toml") if "[study]" in path.read_text()]
+        self.assertGreaterEqual(len(found), 4)
+        for path in found:
+            self.check_done(equidem("study", path, "--dry-run"))
 
     def test_the_accuracy_asked_for_is_reached_or_refused(self):
         done = self.check_done(equidem("study", STUDY, *SHORT, "--accuracy", 0.03, "--json", "-"))
@@ -68,21 +74,8 @@ class Study(ProgramTest):
         self.assertLessEqual(chosen["errors"]["poisson_ratio"], 0.03)
         done = equidem("study", STUDY, *SHORT, "--accuracy", 1e-9, "--quiet")
         self.check_error(done, 1, "no setting reaches 1e-09", "the best one reaches")
-        self.check_error(equidem("study", "effects", "--quick", *SHORT, "--accuracy", 0.1, "--quiet"), 1, "no errors")
         self.check_error(equidem("study", STUDY, "--accuracy", -1), 2, "not positive")
         self.check_error(equidem("study", STUDY, "--accuracy", "inf"), 2, "--accuracy", "'inf' is not a finite number")
-
-    def test_solvers_are_compared_over_sizes(self):
-        out = self.folder / "out"
-        result = parse_json(self.check_done(equidem("study", "solvers", "--discs", "1e3", *SHORT, "--out", out, "--json", "-")).stdout)
-        self.assertEqual({row["size"] for row in result["settings"]}, {33 * 33})
-        self.assertIn("--discs 1000", result["command"])
-        timed = rows(out / "solvers_time_to_1e_06.csv")
-        self.assertEqual(len(timed), 1)
-        self.assertLess(float(timed[0]["multigrid"]), float(timed[0]["relaxation"]))
-        self.check_error(equidem("study", STUDY, "--discs", "1e3"), 2, "--discs does not belong to a study file")
-        self.check_error(equidem("study", "solvers", "--quick", "--discs", "1e3"), 2, "exclude each other")
-        self.check_error(equidem("study", "integrators", "--discs", "1e3"), 2, "takes no number of discs")
 
     def test_options_out_of_range_are_refused(self):
         for budget in ("nan", "inf", "-1", "1s", ""):
@@ -101,12 +94,12 @@ class Study(ProgramTest):
         self.assertEqual(max(int(row["round"]) for row in second), 5)
         for row in first:
             self.assertIn(row, second)
-        self.check_error(equidem("study", "abe_lattice", "--quick", *SHORT, "--out", out), 2, "another study", "--overwrite")
+        self.check_error(equidem("study", STUDIES / "random_cells.toml", *SHORT, "--out", out), 2, "another study", "--overwrite")
         self.check_error(equidem(*command, "--seed", 2), 2, "another study")
 
     def test_interrupted_it_keeps_what_it_has(self):
         out = self.folder / "out"
-        command = [PROGRAM, "study", "solvers", "--discs", "3e4", "--out", str(out), "--budget", "600", "--quiet"]
+        command = [PROGRAM, "study", STUDY, "--rounds", "100", "--out", str(out), "--budget", "600", "--quiet"]
         running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         begin = time.monotonic()
         while not (out / "samples.csv").exists() and time.monotonic() - begin < 60:
@@ -121,7 +114,7 @@ class Study(ProgramTest):
         self.assertEqual([path for path in out.iterdir() if ".tmp" in path.name], [])
 
     def test_settings_that_cannot_be_computed_are_told(self):
-        text = (CASES / "study_tension.toml").read_text().replace("abe1996_fig6.toml", str(CASES / "abe1996_fig6.toml"))
+        text = (STUDIES / "abe_lattice.toml").read_text().replace("../cases/abe1996_fig6.toml", str(CASES / "abe1996_fig6.toml"))
         study = self.folder / "study.toml"
         study.write_text(text.replace("[9, 17, 33, 65, 129]", "[1, 9, 17]"))
         result = parse_json(self.check_done(equidem("study", study, *SHORT, "--json", "-")).stdout)
@@ -130,12 +123,9 @@ class Study(ProgramTest):
         study.write_text(text.replace('"poisson_ratio"', '"poison_ratio"'))
         self.check_error(equidem("study", study, *SHORT, "--quiet"), 1, "none of the settings", "poison_ratio")
 
-    def test_the_built_in_studies_are_listed(self):
-        listed = self.check_done(equidem("study", "--list")).stdout
-        for name in ("abe_lattice", "random_assembly", "solvers", "collision_laws", "integrators", "ellipse_contact",
-                     "settled_void_ratio", "neighbour_margin", "effects", "effects_statics"):
-            self.assertIn(name, listed)
-        self.check_error(equidem("study", "integrator"), 2, "Did you mean 'integrators'?")
+    def test_the_old_name_of_a_study_is_refused_with_its_file(self):
+        self.check_error(equidem("study", "integrators"), 2, "is no file", "'equidem study data/studies/integrators.toml'")
+        self.check_error(equidem("study", "effects"), 2, "is no file", "such as data/studies/integrators.toml")
         self.check_error(equidem("study"), 2, "not said what to study")
 
 

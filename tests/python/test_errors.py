@@ -16,6 +16,7 @@ import equidem as eq
 
 PACKINGS = pathlib.Path(__file__).resolve().parents[2] / "data/packings"
 CASES = PACKINGS.parent / "cases"
+STUDY = PACKINGS.parent / "studies/abe_lattice.toml"
 CENTRES = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.7]]
 BLOCK = eq.hexagonal(columns=5, rows=5, radius=1e-3)
 HELD = [{"group": "left", "ux": 0, "uy": 0}]
@@ -143,7 +144,7 @@ PUBLIC = {
     "square": lambda **more: eq.square(columns=4, rows=4, radius=1.0, **more),
     "stability": lambda **more: eq.stability(BLOCK, (1.0, 0.5), **more),
     "stiffness_matrix": lambda **more: eq.stiffness_matrix(BLOCK, (1.0, 0.5), **more),
-    "study": lambda **more: eq.study("integrators", **more),
+    "study": lambda **more: eq.study(STUDY, **more),
     "sweep": lambda **more: eq.sweep(eq.Case(assembly=BLOCK, springs=(1.0, 0.5)), {"springs.kT": [0.1]}, **more),
     "tension_test": lambda **more: eq.tension_test(BLOCK, (1.0, 0.5), **more),
     "set_threads": lambda **more: eq.set_threads(1, **more),

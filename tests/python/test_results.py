@@ -15,6 +15,7 @@ import pytest
 import equidem as eq
 
 CASES = pathlib.Path(__file__).resolve().parents[2] / "data/cases"
+STUDY = CASES.parent / "studies/abe_lattice.toml"
 BLOCK = eq.hexagonal(columns=7, rows=7, radius=1e-3)
 SPRINGS = eq.Springs(kN=1e9, kT=0.5e9)
 
@@ -152,7 +153,7 @@ def test_refusals_of_an_ensemble_do_not_name_cases_in_memory():
 
 
 def test_a_study_shows_the_price_of_accuracy():
-    result = eq.study("integrators", accuracy=1e-3)
+    result = eq.study(STUDY, accuracy=1e-3, rounds=3, budget=1)
     assert result.status == "done" and len(result.settings) > 5
 
 
@@ -216,7 +217,7 @@ def test_pictures_are_drawn(tmp_path):
     assert "kinetic" in [line.get_label() for line in axes.lines] and axes.get_xlabel() == "time, s"
     BLOCK.plot(values=np.arange(len(BLOCK)), label="number")
     with pytest.raises(eq.BadInput, match="no picture"):
-        eq.study("integrators").plot()
+        eq.study(STUDY, rounds=3, budget=1).plot()
     plt.savefig(tmp_path / "discs.png")
     plt.close("all")
     assert (tmp_path / "discs.png").stat().st_size > 5000

@@ -2,6 +2,7 @@
 """Threads, processes and Ctrl-C."""
 
 import multiprocessing
+import pathlib
 import signal
 import subprocess
 import sys
@@ -11,6 +12,8 @@ import time
 import numpy as np
 
 import equidem as eq
+
+STUDY = str(pathlib.Path(__file__).resolve().parents[2] / "data/studies/integrators.toml")
 
 
 def test_two_threads_at_once_give_the_answers_of_one():
@@ -41,7 +44,7 @@ def test_results_have_the_same_bits_for_any_number_of_threads():
 
 def test_a_verb_with_its_own_threads_leaves_those_of_the_user():
     eq.set_threads(2)
-    eq.study("integrators", quick=True, rounds=3, budget=1)
+    eq.study(STUDY, rounds=3, budget=1)
     case = eq.Case(assembly=eq.hexagonal(columns=5, rows=5, radius=1e-3), springs=(1e9, 0.5e9),
                    test={"kind": "uniaxial_tension"})
     case.solve(threads=1)
@@ -51,7 +54,7 @@ def test_a_verb_with_its_own_threads_leaves_those_of_the_user():
 def test_progress_is_shown_only_where_it_is_wanted():
     script = ("import sys, equidem as eq; eq.show_progress(sys.argv[1] == 'shown')\n"
               "eq._core.display_progress_by(lambda line: print(line))\n"
-              "eq.study('integrators', quick=True, budget=2, rounds=50)")
+              f"eq.study({STUDY!r}, budget=2, rounds=50)")
     lines = {word: subprocess.run([sys.executable, "-c", script, word], capture_output=True, text=True, check=True)
              for word in ("shown", "hidden")}
     assert "integrators" in lines["shown"].stdout and lines["hidden"].stdout + lines["hidden"].stderr == ""

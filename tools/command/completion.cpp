@@ -14,7 +14,7 @@
 namespace equidem {
 namespace {
 
-/// How bash completes what stands after an option, or as a positional argument; {0}: the start of the names of
+/// How bash completes what stands after an option, or as a positional argument
 /// functions, null: nothing is expected.
 using Value = const char*;
 constexpr Value any_value = "";
@@ -23,14 +23,12 @@ constexpr Value folder_value = "files=-d";
 constexpr Value key_value = "words=$keys";
 constexpr Value assignment_value = "words=$keys; end='='";
 constexpr Value command_value = "words=$commands";
-constexpr Value listed_or_file_value = "words=$({0}_listed); files=-f";
 
 Value value_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (option.get_items_expected_max() == 0) return nullptr;
   if (type == "KEY") return key_value;
   if (type == "KEY=VALUE") return assignment_value;
-  if (type == "NAME|FILE") return listed_or_file_value;
   if (type.starts_with("FILE")) return file_value;
   if (type == "DIR") return folder_value;
   return type == "VERB" ? command_value : any_value;
@@ -55,7 +53,6 @@ struct Words {
   std::vector<Command> commands = {};
   std::vector<std::string> topics = {};
   std::vector<CaseKey> keys = {};
-  std::string lister = {};  ///< the command whose --list names what its positional argument may be
 
   [[nodiscard]] std::string command_names() const {
     return joined(
@@ -64,14 +61,6 @@ struct Words {
   [[nodiscard]] std::string key_names() const {
     return joined(
         keys, [](const CaseKey& key) { return key.path; }, " ");
-  }
-  /// A shell command that prints the names for Words::lister, one a line.
-  [[nodiscard]] std::string listed() const {
-    if (lister.empty()) return "true";
-    return fmt::format("{} {} --list | sed -n 's/^  *\\([a-z_0-9]*\\) .*/\\1/p'", program, lister);
-  }
-  [[nodiscard]] std::string with_function(const char* action) const {
-    return fmt::format(fmt::runtime(action), function);
   }
 };
 
@@ -85,7 +74,6 @@ Words words_of(const Program& program, const CLI::App& app) {
     for (const CLI::Option* option : app.get_subcommand(verb.name)->get_options()) {
       const Value value = value_of(*option);
       if (value == assignment_value) words.keys = case_keys();
-      if (value == listed_or_file_value) words.lister = verb.name;
       if (option->get_positional()) {
         command.positional = value;
         continue;
@@ -107,21 +95,18 @@ std::string bash(const Words& words) {
   for (const Command& command : words.commands) {
     const auto option_name = [](const Completed& option) { return "--" + option.name; };
     options += fmt::format("        {}) words='{}' {} ;;\n", command.name, joined(command.options, option_name, " "),
-                           command.positional == nullptr ? "" : words.with_function(command.positional));
+                           command.positional == nullptr ? "" : command.positional);
     for (const Completed& option : command.options) {
       if (option.value == nullptr) continue;
-      std::string line = fmt::format("    --{}) {} ;;\n", option.name, words.with_function(option.value));
+      std::string line = fmt::format("    --{}) {} ;;\n", option.name, option.value);
       if (std::ranges::find(after, line) == after.end()) after.push_back(std::move(line));
     }
   }
   return fmt::format(R"(# Completion of {0} for bash, printed by '{0} help completion bash'.
-{1}_listed() {{
-  {2}
-}}
 {1}() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" at=$((COMP_CWORD - 1)) words='' files='' end=''
-  local commands='{3}'
-  local keys='{4}'
+  local commands='{2}'
+  local keys='{3}'
   if [ "$word" = '=' ]; then
     word=''
     at=$COMP_CWORD
@@ -130,15 +115,15 @@ std::string bash(const Words& words) {
     words="$commands help --help --version"
   elif [ "${{COMP_WORDS[at]}}" = '=' ]; then
     case "${{COMP_WORDS[at - 1]}}" in
-{5}      --*) files=-f ;;
+{4}      --*) files=-f ;;
     esac
   else
     case "${{COMP_WORDS[at]}}" in
-{6}    *)
+{5}    *)
       case "${{COMP_WORDS[1]}}" in
-{7}        help)
+{6}        help)
           case "${{COMP_WORDS[at]}}" in
-            help) words='{8}' ;;
+            help) words='{7}' ;;
             man) words="$commands" ;;
             completion) words=bash ;;
           esac
@@ -153,8 +138,8 @@ std::string bash(const Words& words) {
 }}
 complete -F {1} {0}
 )",
-                     words.program, words.function, words.listed(), words.command_names(), words.key_names(), values,
-                     joined(after, ""), options, joined(words.topics, " "));
+                     words.program, words.function, words.command_names(), words.key_names(), values, joined(after, ""),
+                     options, joined(words.topics, " "));
 }
 
 }  // namespace

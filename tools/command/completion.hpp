@@ -10,9 +10,7 @@
 namespace equidem {
 
 /// A script for bash that completes commands, their options, and after options what the type of their value names:
-/// files, commands, keys of the case file and their words. A positional NAME|FILE has the names that the command prints
-/// with
-/// --list, indented.
+/// files, commands, keys of the case file and their words.
 std::string bash_completion(const Program& program, const CLI::App& app);
 
 }  // namespace equidem

@@ -20,7 +20,7 @@ constexpr const char* footer = R"(Examples:
   equidem run data/cases/grains_cradle.toml --out cradle
   equidem pack data/cases/pack_jammed.toml --out jammed
   equidem export data/cases/abe1996_fig6.toml --to lammps --out handed
-  equidem study integrators --accuracy 1e-4
+  equidem study data/studies/integrators.toml --accuracy 1e-4
   equidem help case          every key of the case file; with --markdown as a page
   equidem help case springs  the keys of one table
   equidem help result        numbers of result.json, their units and meanings
@@ -50,6 +50,6 @@ int main(int argc, char** argv) {
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result},
                  {"engines", "what LAMMPS and YADE carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
-                    "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"}}};
+                    "solve, homogenize, run and study do"}}};
   return run_program(program, argc, argv);
 }

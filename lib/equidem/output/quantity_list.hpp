@@ -365,7 +365,6 @@ inline constexpr ResultQuantity quantities[] = {
     {"rounds", "", "number of rounds"},
     {"budget", "s", "time after which no round begins"},
     {"resolution", "", "resolution"},
-    {"size", "", "size of the problem of a setting: discs"},
     {"seconds", "s", "measured time", true},
     {"seconds/repetitions", "", "number of measured times", true},
     {"times", "s", "wall-clock time of the stage", true},

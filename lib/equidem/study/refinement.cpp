@@ -8,7 +8,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/study/order.hpp"
+#include "equidem/study/evaluate.hpp"
 
 namespace equidem {
 namespace {

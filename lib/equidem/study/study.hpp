@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Definition of a study: settings to try, quantities to measure, reference values.
+/// A study: settings to try, the quantity that they measure, its reference value; rounds of timing over all settings.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <limits>
-#include <memory>
+#include <optional>
+#include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,22 +18,21 @@ namespace equidem {
 
 /// One way to compute a result.
 struct Setting {
-  std::string problem = {};  ///< problem solved; results for one problem compete. Empty where there is only one
-  std::string method = {};   ///< by what; empty where there is only one
+  std::string method = {};                                  ///< by what; empty where there is only one
   std::vector<std::pair<std::string, double>> values = {};  ///< what is varied, by name
-  double size = 0;                                          ///< of the problem, in what Study::size names; 0: none
   /// h > 0, smaller is finer: errors of a method of order p fall as h^p. Not a number: nothing is refined.
   double resolution = std::numeric_limits<double>::quiet_NaN();
+  std::optional<double> order = {};  ///< of the method by theory
 
-  /// "rows = 33", "energy_map, time_step = 0.001": without the problem.
+  /// "rows = 33", "energy_map, time_step = 0.001".
   [[nodiscard]] std::string label() const;
 };
 
 /// Reference values of errors.
 enum class Truth {
-  known,   ///< from a closed form or an independent method: Quantity::truth; 0 where a setting measures an error itself
-  finest,  ///< the value at the finest level of the same problem and method, whose own error is not known
-  richardson,  ///< the limit of the two finest levels of the same problem and method, by the order of theory
+  known,       ///< from a closed form or an independent method: Study::true_value
+  finest,      ///< the value at the finest level of the same method, whose own error is not known
+  richardson,  ///< the limit of the two finest levels of the same method, by the order of theory
 };
 
 template <>
@@ -42,32 +42,10 @@ struct EnumNames<Truth> {
   static constexpr NamedValue<Truth> list[] = {{finest, "finest"}, {richardson, "richardson"}, {known, "known"}};
 };
 
-/// Something that is measured.
-struct Quantity {
-  std::string name;        ///< "poisson_ratio"
-  std::string label = {};  ///< of its axis: "error of Poisson's ratio"; facts: "bytes per disc"
-  /// A fact has no reference value: it is reported beside the errors.
-  bool fact = false;
-  /// A fact that is the resolution of its setting, known only by measurement.
-  bool resolution = false;
-  bool relative = false;    ///< errors are divided by the truth
-  double truth = 0;         ///< Truth::known
-  std::string source = {};  ///< of the truth: "closed form, Abe (1996), eq. (22)"
-  double rounding = 1e-15;  ///< errors below are rounding: shown as this, and no part of an order
-};
-
-/// The order of a method by theory.
-struct ExpectedOrder {
-  std::string problem = {}, method = {}, quantity = {};  ///< empty: all
-  double order = 1;
-  std::string why = {};  ///< of it, or of what deviates from it
-};
-
 /// A setting made ready to be carried out once.
 struct Trial {
-  std::function<void()> work;  ///< timed
-  std::function<std::vector<double>()>
-      values;  ///< afterwards, not timed: one per quantity; not a number where it has none
+  std::function<void()> work;     ///< timed
+  std::function<double()> value;  ///< afterwards, not timed
 };
 
 /// A setting and how to carry it out. The work is the same each time, to the last bit.
@@ -76,37 +54,82 @@ struct StudyTask {
   std::function<Trial()> prepare;  ///< not timed
 };
 
-/// A task on a state of its own, which all its steps share.
-/// \param start() makes the state; work(state) is timed; values(state) are read afterwards
-template <class Start, class Work, class Values>
-StudyTask task_on(Setting setting, Start start, Work work, Values values) {
-  return {std::move(setting), [=] {
-            const auto state = std::make_shared<std::invoke_result_t<Start>>(start());
-            return Trial{.work = [=] { work(*state); }, .values = [=] { return values(*state); }};
-          }};
-}
-
 struct Study {
   std::string name;
   std::string title;
-  std::vector<Quantity> quantities;
-  std::vector<StudyTask> tasks;
+  std::string quantity;     ///< that is measured: "poisson_ratio"
+  std::string label = {};   ///< of its axis: "error of Poisson's ratio"
+  std::string source = {};  ///< of the truth: "closed form, Abe (1996), eq. (22)"
+  bool relative = false;    ///< errors are divided by the truth
   Truth truth = Truth::known;
-  std::vector<ExpectedOrder> orders = {};
+  double true_value = 0;  ///< Truth::known
+  std::vector<StudyTask> tasks = {};
   std::vector<std::string> notes = {};  ///< sentences: what is computed, and what to make of it
-  /// Where problems differ in their size: what it counts, "discs", and the errors to which the methods are compared, by
-  /// the time of the cheapest setting of each against the size.
-  std::string size = {};
-  std::vector<double> compared = {};
-  /// Equal pieces of the work of each setting, such as a step of one disc: the time of one is reported. 0: none.
-  double pieces = 0;
-  std::string piece = {};  ///< name of one: "disc-step"
 
-  /// The first entry that fits; empty: no theory.
-  [[nodiscard]] const ExpectedOrder* expected(const Setting& setting, const std::string& quantity) const;
-  /// Checksum of name, quantities, truth and settings, as 16 hexadecimal digits: measurements of studies with one sum
-  /// fit together. \param context what else they depend on, such as machine and build
+  /// Checksum of name, quantity, truth and settings, as 16 hexadecimal digits: measurements of studies with one sum fit
+  /// together. \param context what else they depend on, such as machine and build
   [[nodiscard]] std::string checksum(const std::string& context) const;
 };
+
+/// One timing of a piece of work.
+struct TimeSample {
+  double seconds = 0;            ///< wall-clock time
+  double processor_seconds = 0;  ///< of the thread that did it
+};
+
+/// Many timings of the same work. The median, because disturbances of a machine only slow it down, occasionally by
+/// much.
+struct Timing {
+  double median = 0;                                                  ///< s
+  double lower_quartile = 0, upper_quartile = 0;                      ///< s
+  double processor_median = 0;                                        ///< s
+  double processor_lower_quartile = 0, processor_upper_quartile = 0;  ///< s
+  int repetitions = 0;
+
+  /// Relative standard error of the median: 1.2533 sd/sqrt(n), sd from the quartiles, which lie 1.349 sd apart (normal
+  /// distribution). Infinite below three repetitions.
+  [[nodiscard]] double relative_error() const;
+};
+
+Timing summarize(std::span<const TimeSample> samples);
+
+/// Linear between the order statistics. \param sorted ascending, not empty \param share in [0, 1]
+double quantile(std::span<const double> sorted, double share);
+
+/// Time work once; work too short for the clock is repeated, each time newly prepared, until it has taken `least`
+/// seconds, and the mean is taken. \param prepare makes the work ready to be done once; not timed
+TimeSample time_work(const std::function<std::function<void()>()>& prepare, double least = 1e-3);
+
+struct StudyOptions {
+  double budget = 60;        ///< s, after which no round begins once `least_rounds` are there
+  int least_rounds = 5;      ///< >= 3
+  int most_rounds = 100;     ///< >= least_rounds
+  double time_error = 0.02;  ///< relative error of all medians at which times are trusted
+  std::uint64_t seed = 1;    ///< of the order of settings
+};
+
+/// Measurements of one setting.
+struct TaskSamples {
+  std::optional<double> value = {};  ///< empty: not yet tried, or refused
+  std::string refusal = {};          ///< why the setting has no value
+  std::vector<TimeSample> times = {};
+
+  [[nodiscard]] bool tried() const { return value.has_value() || !refusal.empty(); }
+};
+
+struct StudySamples {
+  std::vector<TaskSamples> tasks;    ///< one per task
+  bool stopped = false;              ///< by the user, before the end
+  [[nodiscard]] int rounds() const;  ///< that all settings have been through
+};
+
+/// Every round goes once through all settings, in an order drawn anew, so that a machine that gets slower or busier
+/// hurts all alike. The first round warms up: it gives the values, its times are not kept. Rounds go on until all times
+/// are trusted or the budget is spent. A setting that fails is kept with its reason; an interruption ends the
+/// study and keeps what is done. Shows progress.
+/// \param kept results of an earlier run of the study, which is continued; empty: none
+/// \param save called after each setting with all samples so far; may be empty
+StudySamples run_study(const Study& study, const StudyOptions& options, StudySamples kept = {},
+                       const std::function<void(const StudySamples& done)>& save = {});
 
 }  // namespace equidem

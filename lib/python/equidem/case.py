@@ -81,7 +81,7 @@ class Case:
 
     @staticmethod
     def _of_file(name: str) -> Case:
-        """The case of a file, or of a built-in study, whose existence is not checked."""
+        """The case of a file, whose existence is not checked."""
         case = Case()
         case._file = name
         return case

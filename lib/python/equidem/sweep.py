@@ -129,12 +129,12 @@ def run(assembly: Assembly | None = None, springs: Any = None, **tables: Any) ->
     return Case(assembly=assembly, springs=springs, **tables).run()
 
 
-def study(name: str | os.PathLike[str], **options: Any) -> Result:
-    """Error against time: a built-in study (`equidem study --list`), or that of a case file with a table `study`.
+def study(file: str | os.PathLike[str], **options: Any) -> Result:
+    """Error against time, of a case file with a table `study`.
 
     Parameters
     ----------
     options
         ``accuracy=1e-4`` adds the cheapest setting for that error.
     """
-    return Case._of_file(os.fspath(name)).run_verb("study", **options)
+    return Case._of_file(os.fspath(file)).run_verb("study", **options)

@@ -13,7 +13,6 @@
 #include "equidem/core/threads.hpp"
 
 #include "bench.hpp"
-#include "loops.hpp"
 #include "scene.hpp"
 #include "text_table.hpp"
 

@@ -15,6 +15,15 @@ class Failure(Exception):
     pass
 
 
+def module_of(build):
+    """The Python module of a build folder, on one thread."""
+    sys.path.insert(0, str(Path(build).resolve() / "python"))
+    import equidem
+
+    equidem.set_threads(1)
+    return equidem
+
+
 class Run:
     """Options of the run, the programs and the folder of results."""
 
@@ -31,17 +40,16 @@ class Run:
             raise Failure(f"{' '.join(str(part) for part in command)}: {done.stderr.strip() or done.stdout[-500:]}")
         return done.stdout
 
-    def size_of(self, study):
-        """The option for the largest block of a study that has one."""
-        return ["--discs", self.options.discs] if study == "solvers" and not self.options.quick else []
-
     def study(self, name):
+        """Result of the study file data/studies/NAME.toml."""
         print(f"study {name}", file=sys.stderr, flush=True)
-        command = [self.program, "study", name, "--overwrite", "--quiet", "--out", self.folder / name]
-        command += self.size_of(name)
-        command += ["--quick"] * self.options.quick + ["--budget", self.options.budget, "--rounds", self.options.rounds]
-        self.call(command)
+        self.call([self.program, "study", ROOT / "data" / "studies" / f"{name}.toml", "--overwrite", "--quiet", "--out", self.folder / name,
+                   "--budget", self.options.budget, "--rounds", self.options.rounds])
         return json.loads((self.folder / name / "result.json").read_text(encoding="utf-8"))
+
+    def module(self):
+        """The Python module of the same build."""
+        return module_of(self.program.parents[1])
 
     def beside(self, *parts):
         """A program of the same build, such as bench/bench_dynamic."""
@@ -57,23 +65,33 @@ class Run:
         return f"studies/{name}.png"
 
     def command(self):
-        quick = " --quick" if self.options.quick else "" if self.options.only == "effects" else f" --discs {self.options.discs}"
+        quick = " --quick" if self.options.quick else ""
         if self.options.only:
             quick += f" --only {self.options.only}"
         return f"tools/bench/pages build/release/tools/equidem{quick} --budget {self.options.budget:g} --rounds {self.options.rounds}"
 
 
 def plots_of(result, folder):
-    """Names of the plots of a study, in the order of its problems and quantities."""
-    problems = list(dict.fromkeys(row["problem"] for row in result["settings"]))
-    quantities = [q["name"] for q in result["quantities"] if not q["fact"]] or ["time"]
-
-    def plain(text):
-        return "_".join("".join(c if c.isascii() and c.isalnum() else " " for c in text).split())
-
-    names = ["_".join(part for part in (result["study"], plain(problem), quantity) if part)
-             for problem in problems for quantity in quantities]
+    """Names of the plots of a study."""
+    names = [f"{result['study']}_{quantity['name']}" for quantity in result["quantities"]]
     return [name for name in names if (folder / result["study"] / f"{name}.png").exists()]
+
+
+def bars(run, name, title, unit, values):
+    """A chart of horizontal bars in the folder of plots. Returns its Markdown."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(8, 0.5 + 0.45 * len(values)), layout="constrained")
+    axes.bar_label(axes.barh(list(values), list(values.values()), color="#0072b2"), fmt="%.3g", padding=3)
+    axes.invert_yaxis()
+    axes.set(xlabel=unit, title=title)
+    axes.spines[["top", "right"]].set_visible(False)
+    for extension in ("png", "svg"):
+        figure.savefig(run.kept / f"{name}.{extension}", dpi=110, metadata={"Date": None} if extension == "svg" else {})
+    plt.close(figure)
+    return f"studies/{name}.png"
 
 
 def seconds(value):
@@ -81,6 +99,10 @@ def seconds(value):
         if value >= size:
             return f"{value / size:.3g} {unit}"
     return f"{value * 1e9:.3g} ns"
+
+
+def machine_text(run):
+    return machine(run.study("integrators"))
 
 
 def machine(result):

@@ -1,6 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page data/effects.md."""
-from common import machine, plots_of, table, tables_of
+"""The page data/effects.md: each scene is the one before with something more, and is timed by the Python module."""
+import copy
+import math
+import random
+import statistics
+
+from common import bars, machine_text, table, tables_of
+
+DISC_STEPS = 1e6  # of each scene in a timing
+R, STIFFNESS, STEP = 0.01, 1e6, 1e-5  # m, N/m, s of the bodies that collide
+OVERLAP = 0.002 * R  # of discs that press one another
 
 TEXT = """# Cost of effects
 
@@ -8,7 +17,7 @@ A scene pays for the effects that it has. Written by
 
     {command}
 
-from `equidem study effects`, `equidem study effects_statics`, `bench_dynamic --absent` and `bench_collisions --absent`, on
+with the Python module, `bench_dynamic --absent` and `bench_collisions --absent`, on
 {machine}.
 
 ## The report
@@ -22,7 +31,7 @@ from `equidem study effects`, `equidem study effects_statics`, `bench_dynamic --
 
 ## In motion
 
-{title}, {pieces:,.0f} disc-steps of each scene per timing, {rounds} rounds, median of the processor time of one thread. Each scene is the
+{discs} discs, {pieces:,.0f} disc-steps of each scene per timing, {rounds} rounds, median of the time of the steps, one thread. Each scene is the
 one above it with one more effect. A scene with "or" has its effect in place of the last one with "+", and is compared with the one
 before that; the next scene does without it. *evaluations* are those of a contact, per disc and step; bonds are not among them.
 
@@ -37,10 +46,10 @@ Contacts of law C are computed several at a time, with tangential springs and wi
 Ellipses and clumps have loops of their own beside that of the discs. The contacts of maps are computed one by one. Torques come with
 the tangential springs; a scene without them has no rotations at all, in memory or in time.
 
-Walls that move, are shaken or follow a stress, their histories and a case of one stage are beside the loop over contacts: they add
+Walls that move, are shaken or follow a stress and a case of one stage are beside the loop over contacts: they add
 some per cent at most, which is the noise. Where a stage begins, the scene is checked, sorted and searched for neighbours as at the
 start of a run: as long as {begin:.0f} steps of this scene take; with a body removed, {removed:.0f}. Cells that deform (shear as
-Lees and Edwards) count the stress in every step, and a row of their history sorts all contacts. Bonds are computed
+Lees and Edwards) count the stress in every step. Bonds are computed
 eight at a time, in the loop that is compiled for the springs, the dashpots and the strengths that a scene has; strengths are compared
 with the forces where these are found. Dashpots are solved exactly, one group of bonds after the other. A network in which nothing collides or breaks is stepped
 faster as bonded discs, in finite motion too (the first table).
@@ -58,6 +67,273 @@ walls that may move. A packed bed, which lacks what the tables above add, beside
 {flight}"""
 
 
+class Scene:
+    """Tables of a case, and the number of its discs."""
+
+    def __init__(self, discs, **tables):
+        self.discs, self.tables = discs, tables
+
+    def run(self, eq):
+        """Result of about DISC_STEPS/discs steps."""
+        tables = copy.deepcopy(self.tables)
+        steps = round(DISC_STEPS / self.discs)
+        for stage in tables.get("stage", []):
+            stage["steps"] = steps // len(tables["stage"])
+        if "stage" not in tables:
+            tables["run"]["duration"] = steps * tables["run"]["time_step"]
+        return eq.Case(**tables).run(threads=1)
+
+
+def chain(scene, changes):
+    """Name and scene: each change is made to the scene before it. What is called "or" has its effect in place of the last
+    one, and the next scene does without it."""
+    found, before = [], scene
+    for name, change in changes:
+        made = copy.deepcopy(before if name.startswith("or ") else scene)
+        change(made.tables)
+        found.append((name, made))
+        if not name.startswith("or "):
+            before, scene = scene, made
+    return found
+
+
+def all_of(name, **keys):
+    return lambda tables: [entry.update(keys) for entry in tables[name]]
+
+
+def put(name, **keys):
+    """Change of some keys of a table, which is made where it does not exist."""
+    return lambda tables: tables.setdefault(name, {}).update(keys)
+
+
+def nothing(_):
+    return None
+
+
+def bonded(side):
+    tables = {"assembly": {"kind": "hexagonal", "columns": side, "rows": side, "radius": 0.5, "density": 1.0},
+              "springs": (1.0, 0.0), "run": {"time_step": 0.05}}
+    return chain(Scene(side * side, **tables), [
+        ("normal springs", nothing),
+        ("+ tangential springs, no rotation", lambda t: t.update(springs=(1.0, 0.5), effects={"rotation": "restrained"})),
+        ("+ rotation", lambda t: t.pop("effects")),
+        ("+ gravity", put("run", gravity=[0.0, -1e-3])),
+        ("+ a wall", lambda t: t.update(wall=[{"name": "floor", "point": [0.0, 0.0], "normal": [0.0, 1.0], "kN": 1.0}])),
+        ("+ damping by mass", put("run", damping={"mass": 0.01})),
+        ("+ dashpots at contacts", put("run", damping={"mass": 0.01, "contact": 0.1})),
+        ("or local damping, without dashpots", put("run", damping={"mass": 0.01, "local": 0.1})),
+        ("+ finite motion", put("run", motion="finite"))])
+
+
+def line(name, point, normal):
+    return {"name": name, "point": point, "normal": normal}
+
+
+def box(width, height):
+    return [line("floor", [0.0, 0.0], [0.0, 1.0]), line("lid", [0.0, height], [0.0, -1.0]),
+            line("left", [0.0, 0.0], [1.0, 0.0]), line("right", [width, 0.0], [-1.0, 0.0])]
+
+
+def colliding(positions, walls, law, velocities=None, **contact):
+    discs = [{"position": list(x), "radius": R} for x in positions]
+    for disc, velocity in zip(discs, velocities or []):
+        disc["velocity"] = list(velocity)
+    return Scene(len(discs), grains={"density": 2480.0}, grain=discs, wall=walls, run={"time_step": STEP},
+                 collisions={"law": law, "tangential_ratio": 0.0, **contact})
+
+
+def moving(wall, amplitude):
+    def change(tables):
+        tables["schedule"] = [{"name": "move", "kind": "sine", "value": 1.0, "frequency": 50.0}]
+        tables["wall"][wall].update(displacement=amplitude, direction=[0.0, 1.0], schedule="move")
+    return change
+
+
+FRICTION = [("+ friction, sliding", put("collisions", friction=0.3)),
+            ("+ tangential springs", put("collisions", tangential_ratio=0.5)),
+            ("+ tangential dashpots", put("collisions", tangential_damping=0.1)),
+            ("+ a moving wall", moving(0, 1e-4))]
+
+
+def every_tenth(first, **keys):
+    def change(tables):
+        for disc in tables["grain"][first::10]:
+            disc.pop("radius")
+            disc.update(keys)
+    return change
+
+
+def bonds(step, **keys):
+    """Between discs k and k + 1."""
+    return lambda tables: tables.update(bond=[{"grains": [k, k + 1], **keys} for k in range(2, len(tables["grain"]) - 1, step)])
+
+
+def at_rest(side):
+    discs = [(R * (2 * k + row % 2), R * (0.999 + 1.7315 * row)) for row in range(side) for k in range(side)]
+    scene = colliding(discs, [line("floor", [0.0, 0.0], [0.0, 1.0])], "linear_dashpot", stiffness=STIFFNESS, restitution=0.5)
+    scene.tables["run"]["gravity"] = [0.0, -9.8]
+    return chain(scene, [
+        ("normal contacts, a floor, gravity", nothing), *FRICTION,
+        ("+ a tenth ellipses", every_tenth(0, half_axes=[R, 0.8 * R])),
+        ("+ a tenth clumps", every_tenth(5, discs=[[-0.3 * R, 0.0, 0.7 * R], [0.3 * R, 0.0, 0.7 * R]])),
+        ("+ bonds, two in ten", bonds(10, normal_spring=1e5, tangential_spring=1e5, normal_dashpot=10.0, tangential_dashpot=10.0))])
+
+
+def flying(side):
+    """Discs that collide mostly in pairs, as the maps require; a contact lasts 20 steps."""
+    spacing, draw = 2.1 * R, random.Random(1)
+    discs = [(spacing * (0.5 + k), spacing * (0.5 + row)) for row in range(side) for k in range(side)]
+    speeds = [(draw.uniform(-4, 4), draw.uniform(-4, 4)) for _ in discs]
+    scene = colliding(discs, box(spacing * side, spacing * side), "energy_map", speeds, stiffness=1e8, restitution=0.9)
+    return chain(scene, [("normal contacts", nothing), *FRICTION])
+
+
+def rows(side):
+    """Rows of discs that press one another, each in the gaps of the one below; spacing, width, height and stress."""
+    spacing = 2 * R - OVERLAP
+    discs = [(spacing * (0.5 + k + 0.5 * (row % 2)), spacing * (0.5 + 0.5 * math.sqrt(3) * row)) for row in range(side) for k in range(side)]
+    # Three contacts a disc with the force k OVERLAP and the branch s: p = 3 f s/(2 A), A = sqrt(3) s²/2.
+    return discs, spacing, spacing * (side + 0.5), spacing * (1 + 0.5 * math.sqrt(3) * (side - 1)), math.sqrt(3) * STIFFNESS * OVERLAP / spacing
+
+
+def pressed(side):
+    discs, _, width, height, _ = rows(side)
+    return colliding(discs, box(width, height), "linear_dashpot", stiffness=STIFFNESS, restitution=0.5, friction=0.3, tangential_ratio=0.5)
+
+
+def in_box(side):
+    _, spacing, width, height, stress = rows(side)
+
+    def servo(tables):
+        for wall, length in ((1, width), (3, height)):
+            tables["wall"][wall]["servo"] = {"stress": stress, "length": length, "max_speed": 0.1}
+
+    def stages(count, **more):
+        return lambda tables: tables.update(stage=[{"name": f"part_{k + 1}", **(more if k else {})} for k in range(count)])
+
+    return chain(pressed(side), [
+        ("between four walls", nothing), ("+ a moving wall", moving(1, 0.1 * OVERLAP)),
+        ("or shaken, all walls", put("shaking", acceleration=1.0, frequency=500.0)),
+        ("or two servo walls, which keep a stress", servo),
+        ("or one stage", stages(1)), ("or two stages", stages(2)),
+        ("or two stages, a body removed between them", stages(2, remove=[{"box": [0.0, 0.0, spacing, spacing]}]))])
+
+
+def in_cell(side):
+    _, spacing, _, _, stress = rows(side)
+    width, height = spacing * side, 0.5 * math.sqrt(3) * spacing * side
+    scene = pressed(side)
+    scene.tables["run"]["integrator"] = "velocity_verlet"
+    return chain(scene, [
+        ("between four walls", nothing),
+        ("or periodic along x, with floor and lid", lambda t: t.update(wall=t["wall"][:2], cell={"periodic": "x", "width": width})),
+        ("+ a cell in place of the walls", lambda t: (t.pop("wall"), t.update(cell={"width": width, "height": height}))),
+        ("+ shear at a constant rate", put("cell", motion={"xy": 1.0})),
+        ("+ a stress that it keeps", put("cell", servo={"stress_yy": -stress, "max_rate": 10.0}))])
+
+
+def rock(side):
+    pairs = []
+    for row in range(side):
+        for k in range(side):
+            disc, left = row * side + k, 1 if row % 2 else -1
+            pairs += [(disc, disc + 1)] * (k + 1 < side)
+            if row + 1 < side:
+                pairs += [(disc, disc + side)] + [(disc, disc + side + left)] * (0 <= k + left < side)
+    scene = colliding(rows(side)[0], [line("floor", [0.0, 0.0], [0.0, 1.0])], "linear_dashpot", stiffness=STIFFNESS, restitution=0.5)
+    scene.tables["run"]["gravity"] = [0.0, -9.8]
+    return chain(scene, [
+        ("normal contacts, no bonds", nothing),
+        ("+ bonds with springs along", lambda t: t.update(bonds={"normal_spring": STIFFNESS}, bond=[{"grains": list(pair)} for pair in pairs])),
+        ("+ springs across", put("bonds", tangential_spring=0.4 * STIFFNESS)),
+        ("+ a width: springs against bending", put("bonds", bending_spring=STIFFNESS * R * R / 3)),  # as wide as a disc
+        ("+ dashpots along and across", put("bonds", normal_dashpot=10.0, tangential_dashpot=10.0)),
+        ("+ strengths, of which none is reached", put("strength", tension=1e9, shear=1e9))])
+
+
+PROBLEMS = [("bonded discs", "effects_bonded", bonded), ("colliding discs, law C, at rest on a floor", "effects", at_rest),
+            ("colliding discs, law P, flying about in a box", "effects_law_P", flying),
+            ("colliding discs, law C, pressed in a box", "effects_box", in_box),
+            ("colliding discs, law C, in a cell", "effects_cell", in_cell),
+            ("colliding discs, law C, bonded", "effects_bonds", rock)]
+
+
+def measured(run, scenes, work, seconds_of):
+    """Name, last result and median seconds: in every round all scenes take turns, in an order drawn anew."""
+    times, results, draw = {name: [] for name, _ in scenes}, {}, random.Random(1)
+    for count in range(run.options.rounds + 1):
+        for name, scene in draw.sample(scenes, len(scenes)):
+            results[name] = work(scene)
+            if count:
+                times[name].append(seconds_of(results[name]))
+    return [(name, results[name], statistics.median(times[name])) for name, _ in scenes]
+
+
+def compared(scenes):
+    """Name, result, time and the time that it is compared with. A scene with "or" is no base of others."""
+    before, found = [], []
+    for name, result, time in scenes:
+        alternative = name.startswith("or ")
+        base = None if not before else before[-2] if alternative and len(before) > 1 else before[-1]
+        found.append((name, result, time, base))
+        if not alternative:
+            before.append(time)
+    return found
+
+
+def chain_table(scenes, contacts_of):
+    """Of scenes whose times are ns of a disc-step."""
+    lines, plain = [], scenes[0][2]
+    for name, result, ns, base in compared(scenes):
+        memory = result["bytes_per_grain"] if "bytes_per_grain" in result else result["bytes_per_disc"]
+        lines.append([name, "3" if "rotation" in result["effects"]["active"] else "2", f"{memory:.0f}", f"{contacts_of(result):.2g}", f"{ns:.1f}",
+                      "" if base is None else f"{round(100 * (ns / base - 1)):+d} %", f"{ns / plain:.2f}"])
+    return table(["scene", "unknowns per disc", "bytes per disc", "evaluations", "ns per disc-step", "added by the effect",
+                  "over the plain scene"], lines)
+
+
+def in_motion(run, eq, side):
+    """Text of all tables, and of each problem the ns of its scenes."""
+    text, times = "", {}
+    for problem, name, make in PROBLEMS:
+        scenes = [(label, result.to_dict(), 1e9 * seconds / DISC_STEPS)
+                  for label, result, seconds in measured(run, make(side), lambda scene: scene.run(eq), lambda r: r["times"]["steps"])]
+        times[name] = {label: ns for label, _, ns in scenes}
+
+        def contacts(result):
+            if "evaluations" in result:
+                return result["evaluations"] / (result["steps"] * side * side)
+            return result["contacts"] / result["discs"]
+
+        plot = bars(run, name, problem, "ns per disc-step", times[name])
+        text += f"### {problem}\n\n![Time of {problem}]({plot})\n\n" + chain_table(scenes, contacts)
+    return text, times
+
+
+def statics(run, eq, side):
+    cases = [("normal springs, kT = 0", {"springs": (1e9, 0.0)}),
+             ("+ tangential springs, rotation restrained", {"springs": (1e9, 0.5e9), "effects": {"rotation": "restrained"}}),
+             ("+ rotation free", {"springs": (1e9, 0.5e9)}), ("or kT/kN = -0.2, by L D L^T", {"springs": (1e9, -0.2e9)})]
+    block = {"kind": "hexagonal", "columns": side, "rows": side, "radius": 0.005}
+
+    def solve(tables):
+        return eq.Case(assembly=block, test={"kind": "uniaxial_tension", "stress": 1e6}, **tables).solve(threads=1)
+
+    lines, plain = [], None
+    for name, result, seconds in measured(run, cases, solve, lambda result: sum(result["times"].values())):
+        found, discs = result.to_dict(), result["discs"]
+        plain = plain or seconds
+        entries = found.get("factor_nonzeros", 0) / discs
+        lines.append([name, f"{found['unknowns'] / discs:.3g}", f"{entries:.0f}" if entries else "none: multigrid",
+                      f"{found['factor_bytes'] / discs:.0f}", f"{1e6 * seconds / discs:.3g}", f"{seconds / plain:.2f}",
+                      f"{found['relative_residual']:.0e}"])
+    plot = bars(run, "effects_statics", "a solution", "µs per disc", {line[0]: float(line[4]) for line in lines})
+    return (f"## At rest\n\n{side} x {side} discs in tension, solved: time of the whole answer, which holds checks, ordering, factorization, "
+            f"solution and refinement; one thread, {run.options.rounds} rounds.\n\n![Time of a solution]({plot})\n\n" +
+            table(["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the solver per disc", "µs per disc",
+                   "over the plain scene", "relative residual"], lines))
+
+
 def report_of(run, case):
     """The block of effects in the report of a command."""
     lines = run.call([run.program, *case.split()]).splitlines()
@@ -66,78 +342,21 @@ def report_of(run, case):
     return "\n".join(lines[begin:end])
 
 
-def nanoseconds(result, row):
-    return 1e9 * row["seconds"]["processor_median"] / result["pieces"]
-
-
-def scenes(result, problem):
-    """Name, row, ns and the ns that it is compared with. A scene with "or" is no base of others."""
-    chain, found = [], []
-    for row in result["settings"]:
-        if row["problem"] != problem or "refusal" in row:
-            continue
-        ns, alternative = nanoseconds(result, row), row["method"].startswith("or ")
-        base = None if not chain else chain[-2] if alternative and len(chain) > 1 else chain[-1]
-        found.append((row["method"], row, ns, base))
-        if not alternative:
-            chain.append(ns)
-    return found
-
-
-def steps_between(result, ns, longer):
-    """What a longer time of a disc-step is in steps, summed over all of a timing."""
-    return (longer / ns - 1) * result["pieces"] / float(result["title"].split()[0])
-
-
-def chain_table(result, problem):
-    rows, plain = [], None
-    for name, row, ns, base in scenes(result, problem):
-        plain = plain or ns
-        values = row["values"]
-        rows.append([name, f"{values['unknowns']:.0f}", f"{values['bytes_per_disc']:.0f}", f"{values['evaluations']:.2g}", f"{ns:.1f}",
-                     "" if base is None else f"{round(100 * (ns / base - 1)):+d} %", f"{ns / plain:.2f}"])
-    return table(["scene", "unknowns per disc", "bytes per disc", "evaluations", "ns per disc-step", "added by the effect",
-                  "over the plain scene"], rows)
-
-
-def statics(run):
-    result = run.study("effects_statics")
-    plot = run.keep_plot("effects_statics", plots_of(result, run.folder)[0], "effects_statics")
-    rows, plain = [], None
-    for row in result["settings"]:
-        if "refusal" in row:
-            continue
-        ns, values = nanoseconds(result, row), row["values"]
-        plain = plain or ns
-        entries = f"{values['factor_entries']:.0f}" if values["factor_entries"] else "none: multigrid"
-        rows.append([row["method"], f"{values['unknowns']:.3g}", entries, f"{values['factor_bytes']:.0f}",
-                     f"{1e-3 * ns:.3g}", f"{ns / plain:.2f}", f"{values['residual']:.0e}"])
-    return (f"## At rest\n\n{result['title']}: processor time of the whole answer, which holds checks, ordering, factorization, solution and "
-            f"refinement; one thread, {result['rounds']} rounds.\n\n![Time of a solution]({plot})\n\n" +
-            table(["scene", "unknowns per disc", "entries of the factor per disc", "bytes of the solver per disc", "µs per disc",
-                   "over the plain scene", "relative residual"], rows))
-
-
 def absent(run, name, *options):
     text = run.call([run.beside("bench", f"bench_{name}"), "--absent", "--rounds", 3 if run.options.quick else 9, *options])
     return [table(rows[0], rows[1:]) for rows in tables_of(text)]
 
 
 def page(run):
-    result = run.study("effects")
-    case = "run data/cases/run_pulse.toml --dry-run"
-    text = TEXT.format(command=run.command(), machine=machine(result), case=case, report=report_of(run, case), title=result["title"],
-                       pieces=result["pieces"], rounds=result["rounds"])
-    problems = list(dict.fromkeys(row["problem"] for row in result["settings"]))
-    names = {"bonded discs": "effects_bonded", "on a floor": "effects", "law P": "effects_law_P", "in a box": "effects_box",
-             "cell": "effects_cell", "bonded": "effects_bonds"}
-    for problem, plot in zip(problems, plots_of(result, run.folder)):
-        name = next(name for word, name in names.items() if word in problem)
-        text += f"### {problem}\n\n![Time of {problem}]({run.keep_plot('effects', plot, name)})\n\n" + chain_table(result, problem)
-    law_c = {name: ns for problem in problems if "on a floor" in problem for name, _, ns, _ in scenes(result, problem)}
-    factor = law_c["+ tangential dashpots"] / next(iter(law_c.values()))
-    box = {name: ns for problem in problems if "pressed" in problem for name, _, ns, _ in scenes(result, problem)}
-    begin, removed = (steps_between(result, box["+ one stage"], box[name]) for name in ("+ a second stage", "+ a body removed where it begins"))
-    text += statics(run)
-    (bonded,), (flight, bed) = absent(run, "dynamic", "--kinds", "hexagonal"), absent(run, "collisions")
-    return (text + AFTER.format(factor=100 * (factor - 1), begin=begin, removed=removed, bonded=bonded, bed=bed, flight=flight)).rstrip() + "\n"
+    eq = run.module()
+    side, case = 20 if run.options.quick else 50, "run data/cases/run_pulse.toml --dry-run"
+    tables, times = in_motion(run, eq, side)
+    text = TEXT.format(command=run.command(), machine=machine_text(run), case=case, report=report_of(run, case), discs=side * side,
+                       pieces=DISC_STEPS, rounds=run.options.rounds)
+    law_c, box_times = times["effects"], times["effects_box"]
+    factor = law_c["+ tangential dashpots"] / law_c["normal contacts, a floor, gravity"]
+    begin, removed = ((box_times[name] / box_times["or one stage"] - 1) * DISC_STEPS / side**2
+                      for name in ("or two stages", "or two stages, a body removed between them"))
+    text += tables + statics(run, eq, 30 if run.options.quick else 150)
+    (bonded_loops,), (flight, bed) = absent(run, "dynamic", "--kinds", "hexagonal"), absent(run, "collisions")
+    return (text + AFTER.format(factor=100 * (factor - 1), begin=begin, removed=removed, bonded=bonded_loops, bed=bed, flight=flight)).rstrip() + "\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Static solves side by side with CHOLMOD, PETSc and hypre: bench_static --help.
+/// Static solves side by side with CHOLMOD: bench_static --help.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -145,15 +145,15 @@ std::string medians(const std::vector<Series>& all) {
   return table.markdown();
 }
 
-/// equidem over CHOLMOD with its own orderings and over algebraic multigrid, and its methods over those before them in
-/// the list: medians of the ratios within each round.
+/// equidem over CHOLMOD with its own orderings, and its methods over those before them in the list: medians of the
+/// ratios within each round.
 std::string ratios(const std::vector<Series>& all) {
   using M = Measurement;
   TextTable table("of & over & threads & total & nnz(L) & peak & K / total of equidem");
   for (const Series& ours : all) {
     for (const Series& theirs : all) {
       const bool peer = theirs.trial.solver == "cholmod-metis" || theirs.trial.solver == "cholmod-amd" ||
-                        theirs.trial.solver.starts_with("petsc-") || (is_ours(theirs.trial.solver) && &theirs < &ours);
+                        (is_ours(theirs.trial.solver) && &theirs < &ours);
       if (!is_ours(ours.trial.solver) || !peer || theirs.trial.threads != ours.trial.threads) continue;
       const auto ratio = [&](auto value) { return ratio_of(ours.values(value), theirs.values(value)); };
       const bool factors = ours.median(&M::nonzeros) > 0 && theirs.median(&M::nonzeros) > 0;
@@ -185,11 +185,8 @@ void run(Report& report, const Request& request) {
       "medians (smallest .. largest); total = order + analyze + factorize + solve, one right-hand side, no refinement. "
       "Multigrid: factorize is the set-up of the grids, solve ends at a residual of the "
       "contact "
-      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. GAMG and BoomerAMG precondition "
-      "conjugate gradients "
-      "down to a residual of 1e-12 in their own recursion: factorize is their set-up; the matrix comes by a file, "
-      "which is "
-      "in their peak and CPU, not in the total. The residual of the table is computed by equidem for all. K: assembly "
+      "law of 1e-12; K is assembled afterwards, for the residual of the table alone. The residual of the table is "
+      "computed by equidem for all. K: assembly "
       "of the stiffness "
       "matrix, not in the total. nnz(L): lower triangle, without explicit zeros. Factor: stored of L; stored/nnz(L) "
       "counts 8 bytes an entry. Peak: of the whole process, the assembly and K included. CPU: seconds of all threads "
@@ -236,9 +233,7 @@ int main(int argc, char** argv) {
   for (const Solver& solver : solvers()) names.push_back(solver.name);
   request.solvers = names;
   return run_benchmark(
-      "bench_static",
-      "Static solves side by side with CHOLMOD, PETSc and hypre (where it was built), each in a fresh process", argc,
-      argv,
+      "bench_static", "Static solves side by side with CHOLMOD, each in a fresh process", argc, argv,
       [&](CLI::App& app) {
         app.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
         app.add_option("--kinds", request.kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(assembly_kinds()));

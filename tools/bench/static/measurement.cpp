@@ -11,7 +11,6 @@
 #include <utility>
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
@@ -28,7 +27,6 @@
 #include "equidem/statics/supports.hpp"
 
 #include "bench.hpp"
-#include "petsc.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -179,25 +177,6 @@ void write_matrix(const std::filesystem::path& path, const Problem& problem, con
   if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path.string()), "", "Choose another path");
 }
 
-/// By another process, from a file.
-std::vector<double> solve_by_petsc(const Trial& trial, const Problem& problem, const StiffnessMatrix& matrix,
-                                   const ContactGraph& graph, Measurement& result) {
-  const CompressedColumns columns = compress(matrix, problem.assembly, graph, problem.unknowns);
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("equidem_matrix_{}", getpid());
-  write_matrix(file, problem, columns);
-  const PetscSolution found = bench::solve_by_petsc(trial.solver, trial.threads, file, 1e-12);
-  std::filesystem::remove(file);
-  result.factorize = found.set_up;
-  result.solve = found.solve;
-  result.iterations = found.iterations;
-  result.peak_bytes = found.peak_bytes;
-  result.cpu = found.cpu;
-  std::vector<double> x(problem.load.size(), 0.0);
-  for (std::size_t k = 0; k < found.values.size(); ++k)
-    x[static_cast<std::size_t>(columns.component[k])] = found.values[k];
-  return x;
-}
-
 double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -213,11 +192,6 @@ const std::vector<Solver>& solvers() {
         {"cholmod-amd", "CHOLMOD, AMD on the unknowns", "one"},
         {"cholmod-ours", "CHOLMOD, order of equidem", "one"},
     };
-    if (has_petsc()) {
-      all.push_back({"petsc-gamg", "GAMG (PETSc), rigid motions", "MPI processes"});
-      all.push_back({"petsc-hypre", "BoomerAMG (hypre)", "MPI processes"});
-      all.push_back({"petsc-hypre-rigid", "BoomerAMG (hypre), rigid motions", "MPI processes"});
-    }
     return all;
   }();
   return list;
@@ -238,11 +212,6 @@ Measurement measure(const Trial& trial) {
     result.assembly = watch.seconds();
   };
   if (!iterates) assemble();
-  if (trial.solver.starts_with("petsc-")) {
-    const std::vector<double> x = solve_by_petsc(trial, problem, matrix, graph, result);
-    result.residual = relative_residual(problem, matrix, x);
-    return result;
-  }
   std::unique_ptr<Factorization> factor;
   if (iterates) {
     const Stopwatch watch;

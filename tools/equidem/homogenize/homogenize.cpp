@@ -14,13 +14,13 @@
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/stress.hpp"
 
+#include "accuracy.hpp"
 #include "command.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
 #include "homogenize/viscoelastic_results.hpp"
 #include "prestressed.hpp"
 #include "result_arrays.hpp"
-#include "solve/solve_accuracy.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 

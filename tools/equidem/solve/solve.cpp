@@ -10,11 +10,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/stress.hpp"
 
+#include "accuracy.hpp"
 #include "command.hpp"
 #include "prestressed.hpp"
 #include "problem.hpp"
 #include "result_arrays.hpp"
-#include "solve/solve_accuracy.hpp"
 #include "solve/solve_results.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"

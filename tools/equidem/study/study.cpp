@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem study: error against time.
+#include "equidem/study/study.hpp"
+
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/casefile/study/study_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/progress.hpp"
@@ -16,13 +21,11 @@
 #include "equidem/core/threads.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/page/page.hpp"
-#include "equidem/study/built_in.hpp"
-#include "equidem/study/run_study.hpp"
 
 #include "command.hpp"
 #include "option_checks.hpp"
-#include "study/study_file.hpp"
 #include "study/study_results.hpp"
+#include "verb_run.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -30,42 +33,71 @@ namespace {
 
 struct StudyVerb {
   CommonOptions common;
-  std::string what;
-  bool quick = false;
-  bool list = false;
-  double discs = 0;
+  std::string file;
   StudyOptions options;
   std::optional<double> accuracy;
 };
 
-bool is_file(const std::string& what) {
-  return what.ends_with(".toml");
+/// The number that a study measures.
+double measured_number(const Delivery& result, const std::string& measure) {
+  const auto number = number_in_json(result.results.json(), measure);
+  if (!number)
+    bad_input(fmt::format("the result has no number '{}'", measure), "study.measure names one of its keys",
+              "'equidem VERB CASE.toml --json -' shows them");
+  return *number;
 }
 
-std::string list_of_studies() {
-  std::string text = "Built-in studies:\n";
-  for (const BuiltInStudy& study : built_in_studies()) text += fmt::format("  {:<20} {}\n", study.name, study.summary);
-  return text;
+/// Each setting is a run of a verb, in this process.
+Study study_of_file(const std::filesystem::path& path, const CommonOptions& options) {
+  const StudyCase resolved = read_study_case(path);
+  if (!std::filesystem::exists(resolved.case_file))
+    bad_input(fmt::format("there is no case '{}'", resolved.case_file.string()), "study.case names it",
+              "Correct the name; it is relative to the folder of the study file");
+  std::string name = path.stem().string();
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '-'; }, '_');
+  std::string label = resolved.measure;
+  std::replace(label.begin(), label.end(), '.', '_');
+  Study study{
+      .name = name,
+      .title = resolved.title.empty() ? fmt::format("{} of {}", resolved.measure, resolved.verb) : resolved.title,
+      .quantity = label,
+      .label = fmt::format("{}error of {}", resolved.relative ? "relative " : "", resolved.measure),
+      .source = resolved.truth == Truth::known    ? "the value of the study file"
+                : resolved.truth == Truth::finest ? "the finest level, whose own error is not known"
+                                                  : "Richardson's limit of the two finest levels",
+      .relative = resolved.relative,
+      .truth = resolved.truth,
+      .true_value = resolved.value};
+  for (const StudyPoint& point : points_of(resolved)) {
+    study.tasks.push_back({point.setting, [resolved, point, quiet = options.quiet] {
+                             const std::vector<std::string> option(quiet ? 1 : 0, "--quiet");
+                             const auto run =
+                                 std::make_shared<VerbRun>(resolved.verb, resolved.case_file, point.overrides, option);
+                             const auto result = std::make_shared<Delivery>();
+                             return Trial{.work = [=] { *result = (*run)(); },
+                                          .value = [=] { return measured_number(*result, resolved.measure); }};
+                           }});
+  }
+  study.notes = {"Times are of the whole verb without its report and files: reading the case, and computing."};
+  return study;
 }
 
 std::string command_of(const StudyVerb& verb) {
-  std::string command = "equidem study " + verb.what;
-  if (verb.quick) command += " --quick";
-  if (verb.discs > 0) command += fmt::format(" --discs {:g}", verb.discs);
-  command += fmt::format(" --seed {} --threads {} --budget {:g} --rounds {}", verb.options.seed, thread_count(),
-                         verb.options.budget, verb.options.least_rounds);
+  std::string command = fmt::format("equidem study {} --seed {} --threads {} --budget {:g} --rounds {}", verb.file,
+                                    verb.options.seed, thread_count(), verb.options.budget, verb.options.least_rounds);
   if (verb.accuracy) command += fmt::format(" --accuracy {:g}", *verb.accuracy);
   return command;
 }
 
-/// Round 0 gives the values, later ones the times.
+/// Round 0 gives the value, later ones the times.
 struct SampleRow {
   std::int64_t setting = 0, round = 0;
   const TaskSamples* task = nullptr;
 };
 
-/// One row per timing: setting (its number), round (0: the values, not timed), seconds, processor_seconds, one column
-/// per quantity (round 0 only), refusal, study.
+/// One row per timing: setting (its number), round (0: the value, not timed), seconds, processor_seconds, the quantity
+/// (round 0 only), refusal, study.
 /// \param identity checksum of study, machine and build
 Table samples_table(const Study& study, const StudySamples& samples, const std::string& identity) {
   std::vector<SampleRow> rows;
@@ -84,11 +116,8 @@ Table samples_table(const Study& study, const StudySamples& samples, const std::
   };
   add_time("seconds", &TimeSample::seconds);
   add_time("processor_seconds", &TimeSample::processor_seconds);
-  for (std::size_t q = 0; q < study.quantities.size(); ++q) {
-    table.add(study.quantities[q].name, rows, [q](const SampleRow& row) {
-      return row.round == 0 && !row.task->values.empty() ? std::optional(row.task->values[q]) : std::nullopt;
-    });
-  }
+  table.add(study.quantity, rows,
+            [](const SampleRow& row) { return row.round == 0 ? row.task->value : std::optional<double>(); });
   table.add("refusal", rows, [](const SampleRow& row) { return row.round == 0 ? row.task->refusal : std::string(); });
   return table.add("study", rows, [&](const SampleRow&) { return identity; });
 }
@@ -100,10 +129,10 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
                           "Choose another --out, or pass --overwrite to begin anew");
   StudySamples samples;
   samples.tasks.resize(study.tasks.size());
-  const std::size_t first = 4, refusal = first + study.quantities.size();
+  constexpr std::size_t value = 4, refusal = 5;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (table.text(row, refusal + 1) != identity)
-      table.refuse("they are of another study: settings, quantities, seed, machine or build differ");
+      table.refuse("they are of another study: settings, quantity, seed, machine or build differ");
     TaskSamples& task =
         samples.tasks[static_cast<std::size_t>(table.integer(row, 0, 0, std::ssize(samples.tasks) - 1))];
     if (table.integer(row, 1) > 0) {
@@ -111,8 +140,7 @@ StudySamples read_samples(const std::filesystem::path& path, const Study& study,
       continue;
     }
     task.refusal = table.text(row, refusal);
-    for (std::size_t column = first; task.refusal.empty() && column < refusal; ++column)
-      task.values.push_back(table.number(row, column));
+    if (task.refusal.empty()) task.value = table.number(row, value);
   }
   return samples;
 }
@@ -132,18 +160,23 @@ void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
   common.overwrite = common.overwrite || continues;
   const OutputPlan plan(common);
   for (const char* name : {"samples.csv", "study.csv", "result.json", page_name}) plan.expect(name);
-  for (const std::string& name : study_plot_names(study)) plan.expect_plot(name);
+  plan.expect_plot(study_plot_name(study));
 }
 
 void check(const StudyVerb& verb) {
+  if (verb.file.empty())
+    bad_input("it is not said what to study", "a study is a file (.toml)",
+              "Give one, such as data/studies/integrators.toml; 'equidem help case' has its keys");
+  if (!verb.file.ends_with(".toml")) {
+    constexpr std::array files = {"abe_lattice", "integrators", "settled_void_ratio"};
+    const bool is_file = std::ranges::find(files, verb.file) != files.end();
+    bad_input(fmt::format("the study '{}' is no file (.toml)", verb.file), "studies are files",
+              is_file ? fmt::format("Write 'equidem study data/studies/{}.toml'", verb.file)
+                      : "Give one, such as data/studies/integrators.toml");
+  }
   if (verb.accuracy && !(*verb.accuracy > 0))
     bad_input(fmt::format("the accuracy {:g} is not positive", *verb.accuracy), "no computation is without error",
               "Give a positive number, such as 1e-3");
-  if ((verb.quick || verb.discs > 0) && is_file(verb.what))
-    bad_input(fmt::format("{} does not belong to a study file", verb.quick ? "--quick" : "--discs"),
-              "it would change nothing", "Leave it out, or vary other values");
-  if (verb.quick && verb.discs > 0)
-    bad_input("--quick and --discs exclude each other", "both choose the sizes", "Leave out one of them");
 }
 
 void refuse_all_failed(const StudyReport& report) {
@@ -154,19 +187,13 @@ void refuse_all_failed(const StudyReport& report) {
                      "the first: " + without_full_stop(report.result.rows.front().refusal), "");
 }
 
-[[noreturn]] void refuse_without_errors() {
-  computation_failed("this study has no errors", "it measures time alone", "Leave out --accuracy");
-}
-
-/// The accuracy is asked of each problem.
 void refuse_unreached(const StudyReport& report) {
-  for (const Recommendation& one : report.recommendations) {
-    if (one.row) continue;
-    computation_failed(fmt::format("no setting reaches {:g}{}", *report.accuracy,
-                                   one.problem.empty() ? "" : fmt::format(" for {}", one.problem)),
-                       fmt::format("the best one reaches {:.2g}", one.best), "Ask for less, or study finer settings");
-  }
-  if (report.recommendations.empty()) refuse_without_errors();
+  if (!report.recommendation)
+    computation_failed("this study has no errors", "no setting has a reference value", "Leave out --accuracy");
+  if (report.recommendation->row) return;
+  computation_failed(fmt::format("no setting reaches {:g}", *report.accuracy),
+                     fmt::format("the best one reaches {:.2g}", report.recommendation->best),
+                     "Ask for less, or study finer settings");
 }
 
 int dry_run_study(const StudyVerb& verb, const Study& study) {
@@ -181,17 +208,11 @@ int dry_run_study(const StudyVerb& verb, const Study& study) {
 }
 
 int run_verb(const StudyVerb& verb) {
-  if (verb.list) {
-    print(list_of_studies());
-    return 0;
-  }
   check(verb);
   const Stopwatch watch;
   set_thread_count(verb.common.threads > 0 ? verb.common.threads : 1);
   set_progress_shown(!verb.common.quiet);
-  const Study study =
-      is_file(verb.what) ? study_of_file(verb.what, verb.common) : built_in_study(verb.what, verb.quick, verb.discs);
-  if (verb.accuracy && std::ranges::all_of(study.quantities, &Quantity::fact)) refuse_without_errors();
+  const Study study = study_of_file(verb.file, verb.common);
   if (verb.common.dry_run) return dry_run_study(verb, study);
   const Machine machine = this_machine();
   const std::string identity =
@@ -219,27 +240,25 @@ int run_verb(const StudyVerb& verb) {
                      .command = command_of(verb),
                      .checksum = identity,
                      .accuracy = verb.accuracy,
-                     .recommendations = {}};
-  if (verb.accuracy) report.recommendations = recommend(study, report.result, *verb.accuracy);
+                     .recommendation = {}};
+  if (verb.accuracy) report.recommendation = recommend(report.result, *verb.accuracy);
   Results results = study_results(report);
   if (samples.stopped)
     results.block(fmt::format("INCOMPLETE: stopped after {} of all settings\n", counted(samples.rounds(), "round")));
   StageTimes times;
   times.add("study", watch.seconds());
-  const auto plots = study_plots(report);
-  const auto draw = [](const std::filesystem::path& into, const auto& named, bool overwrite) {
-    write_plot(into, named.first, named.second, overwrite);
+  const auto draw = [name = study_plot_name(study), plot = study_plot(report)](const std::filesystem::path& into,
+                                                                               bool overwrite) {
+    if (!plot.series.empty()) write_plot(into, name, plot, overwrite);
   };
   std::vector<OutputPart> parts;
   if (folder) {
     parts.push_back({"samples.csv", [&] { save(samples); }});
     parts.push_back({"study.csv", [&] { write_csv(*folder / "study.csv", study_table(report), true); }});
-    for (const auto& plot : plots) parts.push_back({plot.first, [&] { draw(*folder, plot, true); }});
+    parts.push_back({study_plot_name(study), [&] { draw(*folder, true); }});
   }
   deliver(verb.common, report.result.complete ? "done" : "interrupted", std::move(results), std::move(times), parts);
-  hand_over([plots, draw](const CommonOptions& into) {
-    for (const auto& plot : plots) draw(*into.out, plot, into.overwrite);
-  });
+  hand_over([draw](const CommonOptions& into) { draw(*into.out, into.overwrite); });
   if (samples.stopped) {
     throw_stopped(verb.common, fmt::format("{} of all settings are done", counted(samples.rounds(), "round")),
                   "Run the same command to go on");
@@ -253,15 +272,10 @@ int run_verb(const StudyVerb& verb) {
 
 Run declare_study(CLI::App& command) {
   const auto verb = std::make_shared<StudyVerb>();
-  command.add_option("STUDY", verb->what, "a built-in study, or a study file (.toml)")->type_name("NAME|FILE");
+  command.add_option("STUDY", verb->file, "the study file (.toml)")->type_name("FILE");
   add_result_options(command, verb->common);
-  command.add_flag("--dry-run", verb->common.dry_run, "say how long the study takes, from some of its settings");
+  command.add_flag("--dry-run", verb->common.dry_run, "say how many settings the study has");
   command.get_option("--threads")->description("threads; left out: one, so that times are those of one processor");
-  command.add_flag("--list", verb->list, "list the built-in studies");
-  command.add_flag("--quick", verb->quick, "built-in studies: fewer and smaller settings");
-  command.add_option("--discs", verb->discs, "study 'solvers': discs of the largest block; left out: 1e5")
-      ->check(number(1e3, 1e7))
-      ->type_name("N");
   command.add_option("--accuracy", verb->accuracy, "name the cheapest setting whose errors are at most X")
       ->check(finite_number())
       ->type_name("X");
@@ -279,19 +293,12 @@ Run declare_study(CLI::App& command) {
       ->capture_default_str()
       ->check(whole_number(0))
       ->type_name("S");
-  command.footer(list_of_studies() +
-                 "\nExamples:\n"
-                 "  equidem study integrators --out figures\n"
-                 "  equidem study collision_laws --quick --accuracy 0.01\n"
-                 "  equidem study solvers --discs 1e6 --out figures\n"
-                 "  equidem study data/cases/study_tension.toml --out figures\n"
-                 "Ctrl-C keeps what is done; the same command with the same --out goes on from there.");
-  return [verb] {
-    if (verb->what.empty() && !verb->list)
-      bad_input("it is not said what to study", "a study has a name or a file",
-                "'equidem study --list' shows the built-in ones");
-    return run_verb(*verb);
-  };
+  command.footer(
+      "Examples:\n"
+      "  equidem study data/studies/integrators.toml --out figures\n"
+      "  equidem study data/studies/abe_lattice.toml --accuracy 0.01\n"
+      "Ctrl-C keeps what is done; the same command with the same --out goes on from there.");
+  return [verb] { return run_verb(*verb); };
 }
 
 }  // namespace equidem

@@ -9,128 +9,117 @@
 namespace equidem {
 namespace {
 
-std::string cell(double value, bool fact) {
-  if (!std::isfinite(value)) return "-";
-  return fact ? fmt::format("{:.6g}", value) : fmt::format("{:.3g}", value);
+std::string cell(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
-bool on_a_front(const StudyReport& report, std::size_t row) {
-  return std::any_of(report.result.fronts.begin(), report.result.fronts.end(), [&](const StudyFront& front) {
-    return std::find(front.rows.begin(), front.rows.end(), row) != front.rows.end();
-  });
-}
-
-/// Quantities that some row of the problem has.
-std::vector<std::size_t> told_quantities(const StudyReport& report, const std::string& problem) {
-  std::vector<std::size_t> told;
-  for (std::size_t q = 0; q < report.study.quantities.size(); ++q) {
-    const bool any = std::any_of(report.result.rows.begin(), report.result.rows.end(), [&](const StudyRow& row) {
-      return row.setting.problem == problem && !row.values.empty() && std::isfinite(row.values[q]);
-    });
-    if (any) told.push_back(q);
-  }
-  return told;
-}
-
-std::vector<Results> table_of(const StudyReport& report, const std::string& problem) {
-  const std::vector<std::size_t> told = told_quantities(report, problem);
+std::vector<Results> table_of(const StudyReport& report) {
   std::vector<Results> rows;
   for (std::size_t k = 0; k < report.result.rows.size(); ++k) {
     const StudyRow& row = report.result.rows[k];
-    if (row.setting.problem != problem) continue;
     const Timing& time = row.time;
+    const bool on_front = std::ranges::find(report.result.front, k) != report.result.front.end();
     Results& line = rows.emplace_back();
-    line.add("", "  setting", (on_a_front(report, k) ? "* " : "  ") + row.setting.label());
+    line.add("", "  setting", (on_front ? "* " : "  ") + row.setting.label());
     if (!row.refusal.empty() || time.repetitions == 0) {
       line.note(row.refusal.empty() ? "not timed" : row.refusal);
       continue;
     }
     line.add("", "time", readable_seconds(time.median))
         .add("", "spread", (time.upper_quartile - time.lower_quartile) / time.median, "", {Shown::percent, 2})
-        .add("", "n", time.repetitions);
-    if (report.study.pieces > 0)
-      line.add("", "ns per " + report.study.piece,
-               fmt::format("{:.3g}", 1e9 * time.processor_median / report.study.pieces));
-    for (const std::size_t q : told) {
-      const Quantity& quantity = report.study.quantities[q];
-      line.add("", (quantity.fact ? "" : "err ") + quantity.name,
-               cell(quantity.fact ? row.values[q] : row.errors[q], quantity.fact));
-    }
+        .add("", "n", time.repetitions)
+        .add("", "err " + report.study.quantity, cell(row.error));
   }
   return rows;
 }
 
 Results row_results(const StudyReport& report, const StudyRow& row) {
-  Results setting, values, errors, assured;
+  const std::string& quantity = report.study.quantity;
+  Results setting;
   for (const auto& [name, value] : row.setting.values) setting.set(name, value);
-  for (std::size_t q = 0; q < row.values.size(); ++q) {
-    const Quantity& quantity = report.study.quantities[q];
-    values.set(quantity.name, row.values[q]);
-    if (quantity.fact) continue;
-    errors.set(quantity.name, row.errors[q]);
-    assured.set(quantity.name, row.assured[q]);
-  }
   Results out;
-  out.set("problem", row.setting.problem).set("method", row.setting.method).set("setting", setting);
-  if (row.setting.size > 0) out.set("size", row.setting.size);
-  out.set("resolution", row.setting.resolution)
-      .set("seconds/median", row.time.median)
+  out.set("method", row.setting.method).set("setting", setting).set("resolution", row.setting.resolution);
+  out.set("seconds/median", row.time.median)
       .set("seconds/lower_quartile", row.time.lower_quartile)
       .set("seconds/upper_quartile", row.time.upper_quartile)
       .set("seconds/processor_median", row.time.processor_median)
       .set("seconds/processor_lower_quartile", row.time.processor_lower_quartile)
       .set("seconds/processor_upper_quartile", row.time.processor_upper_quartile)
       .set("seconds/repetitions", row.time.repetitions);
-  out.set("values", values).set("errors", errors).set("assured_errors", assured);
-  return row.refusal.empty() ? out : out.set("refusal", row.refusal);
+  if (!row.refusal.empty()) return out.set("refusal", row.refusal);
+  Results values, errors, assured;
+  if (row.value) values.set(quantity, *row.value), errors.set(quantity, row.error), assured.set(quantity, row.assured);
+  return out.set("values", values).set("errors", errors).set("assured_errors", assured);
 }
 
 Results curve_results(const StudyReport& report, const StudyCurve& curve) {
-  const std::string& quantity = report.study.quantities[curve.quantity].name;
+  const std::string& quantity = report.study.quantity;
   Results out;
-  out.set("problem", curve.problem).set("method", curve.method).set("quantity", quantity);
+  out.set("method", curve.method).set("quantity", quantity);
   out.set("observed_order", nullptr).set("theoretical_order", nullptr).set("cost_exponent", curve.cost_exponent);
-  if (curve.expected) {
-    out.set("theoretical_order", curve.expected->order).set("why", curve.expected->why).set("agrees", curve.agrees);
-  }
+  if (curve.expected) out.set("theoretical_order", *curve.expected).set("agrees", curve.agrees);
   if (!curve.order) return out;
   const ObservedOrder& order = *curve.order;
   out.set("observed_order", order.order).set("uncertainty", order.uncertainty).set("levels", order.levels);
   out.set("range", std::vector{order.coarsest, order.finest});
-  std::vector<std::string> curve_of;
-  for (const std::string& part : {curve.problem, curve.method, quantity})
-    if (!part.empty()) curve_of.push_back(part);
-  std::string text =
-      fmt::format("  {}: order {:.3f}{} over {} levels", joined(curve_of), order.order,
-                  std::isfinite(order.uncertainty) ? fmt::format(" ± {:.2g}", order.uncertainty) : "", order.levels);
-  if (curve.expected) {
-    text += fmt::format("; theory {:g}, {}", curve.expected->order, curve.agrees ? "agrees" : "DIFFERS");
-    if (!curve.expected->why.empty()) text += fmt::format(" ({})", curve.expected->why);
-  }
+  std::string text = fmt::format(
+      "  {}{}: order {:.3f}{} over {} levels", curve.method.empty() ? "" : curve.method + ", ", quantity, order.order,
+      std::isfinite(order.uncertainty) ? fmt::format(" ± {:.2g}", order.uncertainty) : "", order.levels);
+  if (curve.expected) text += fmt::format("; theory {:g}, {}", *curve.expected, curve.agrees ? "agrees" : "DIFFERS");
   return out.block(text + fmt::format("; time as h^{:.2f}\n", -curve.cost_exponent));
 }
 
-Results quantity_results(const Study& study, const Quantity& quantity) {
-  const std::string truth = to_string(study.truth);
+Results quantity_results(const Study& study) {
   Results out;
-  out.set("name", quantity.name).set("label", quantity.label).set("fact", quantity.fact);
-  out.set("relative", quantity.relative).set("truth", truth).set("source", quantity.source);
-  if (quantity.fact) return out;
-  if (study.truth == Truth::known) out.set("true_value", quantity.truth);
-  return out.line(quantity.name, (quantity.label.empty() ? "" : quantity.label + "; ") +
-                                     "truth: " + (quantity.source.empty() ? truth : quantity.source));
+  out.set("name", study.quantity).set("label", study.label).set("relative", study.relative);
+  out.set("truth", to_string(study.truth)).set("source", study.source);
+  if (study.truth == Truth::known) out.set("true_value", study.true_value);
+  return out.line("measured", study.label + "; truth: " + study.source);
 }
 
-Results recommendation_results(const StudyReport& report, const Recommendation& recommendation) {
-  Results out;
-  out.set("problem", recommendation.problem).set("text", recommendation.text).set("best_error", recommendation.best);
-  out.block(recommendation.text + "\n").set("setting", nullptr);
-  return recommendation.row ? out.set("setting", row_results(report, report.result.rows[*recommendation.row])) : out;
+/// An empty series of the k-th method: a line where it has several points.
+Series series_of(std::size_t k, std::size_t points) {
+  using enum PlotColour;
+  struct Look {
+    PlotColour colour;
+    Marker marker;
+    bool filled;
+  };
+  constexpr Look looks[] = {{blue, Marker::circle, true},     {vermilion, Marker::square, true},
+                            {green, Marker::triangle, true},  {orange, Marker::diamond, true},
+                            {purple, Marker::circle, false},  {sky_blue, Marker::square, false},
+                            {black, Marker::triangle, false}, {black, Marker::diamond, true}};
+  const Look& look = looks[k % std::size(looks)];
+  return {.style = points > 1 ? SeriesStyle::line_with_points : SeriesStyle::points,
+          .colour = look.colour,
+          .marker = look.marker,
+          .filled = look.filled};
 }
 
-std::string lines_of(const std::vector<std::string>& sentences) {
-  return joined(
-      sentences, [](const std::string& sentence) { return sentence + "\n"; }, "");
+/// "leapfrog, order 1.98 (theory 2)".
+std::string legend_of(const StudyReport& report, const std::string& method) {
+  std::string order;
+  for (const StudyCurve& curve : report.result.curves) {
+    if (curve.method != method || !curve.order) continue;
+    order = fmt::format("order {:.2f}{}", curve.order->order,
+                        curve.expected ? fmt::format(" (theory {:.3g})", *curve.expected) : "");
+  }
+  if (method.empty()) return order.empty() ? "measured" : order;
+  return literal(order.empty() ? method : method + ", " + order);
+}
+
+/// The rows that were timed, method by method in the order of the study.
+std::vector<std::pair<std::string, std::vector<std::size_t>>> by_method(const StudyReport& report) {
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> methods;
+  for (std::size_t k = 0; k < report.result.rows.size(); ++k) {
+    const StudyRow& row = report.result.rows[k];
+    if (row.time.repetitions == 0) continue;
+    auto at =
+        std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == row.setting.method; });
+    if (at == methods.end()) at = methods.insert(at, {row.setting.method, {}});
+    at->second.push_back(k);
+  }
+  return methods;
 }
 
 }  // namespace
@@ -143,42 +132,39 @@ Results study_results(const StudyReport& report) {
   out.set("command", report.command).set("machine", report.machine.results());
   out.set("seed", report.options.seed).set("rounds", result.rounds).set("budget", report.options.budget);
   out.set("checksum", report.checksum).block(study.title + "\n\n");
-  if (study.pieces > 0) out.set("pieces", study.pieces).set("piece", study.piece);
-  std::vector<Results> quantities, settings, curves, fronts, recommendations;
-  for (const Quantity& quantity : study.quantities) quantities.push_back(quantity_results(study, quantity));
+  std::vector<Results> settings, curves, fronts, recommendations;
   for (const StudyRow& row : result.rows) settings.push_back(row_results(report, row));
   for (const StudyCurve& curve : result.curves) curves.push_back(curve_results(report, curve));
-  for (const StudyFront& front : result.fronts) {
-    const auto label = [&](std::size_t row) { return result.rows[row].setting.label(); };
-    std::vector<std::string> labels;
-    for (const std::size_t row : front.rows) labels.push_back(label(row));
-    fronts.push_back(Results()
-                         .set("problem", front.problem)
-                         .set("quantity", study.quantities[front.quantity].name)
-                         .set("settings", labels));
+  std::vector<std::string> labels;
+  for (const std::size_t row : result.front) labels.push_back(result.rows[row].setting.label());
+  if (!labels.empty()) fronts.push_back(Results().set("quantity", study.quantity).set("settings", labels));
+  if (report.recommendation) {
+    const Recommendation& one = *report.recommendation;
+    Results& told = recommendations.emplace_back();
+    told.set("text", one.text).set("best_error", one.best).block(one.text + "\n").set("setting", nullptr);
+    if (one.row) told.set("setting", row_results(report, result.rows[*one.row]));
   }
-  for (const Recommendation& one : report.recommendations)
-    recommendations.push_back(recommendation_results(report, one));
 
-  out.list("quantities", std::move(quantities)).line("machine", report.machine.text());
+  out.list("quantities", {quantity_results(study)}).line("machine", report.machine.text());
   out.line("timing", fmt::format("{} after one to warm up, all settings in an order drawn anew each time (seed {}); "
                                  "median, quartiles apart, number n",
                                  counted(result.rounds, "round"), report.options.seed));
-  for (const std::string& problem : problems_of(study))
-    out.block("\n" + (problem.empty() ? "" : problem + "\n")).table("", table_of(report, problem));
+  out.block("\n").table("", table_of(report));
   if (!fronts.empty()) out.block("\n* on a front: nothing is both faster and as accurate\n");
   if (std::ranges::any_of(result.curves, [](const StudyCurve& curve) { return curve.order.has_value(); }))
     out.block("\norders, errors as h^p over the finest levels (95 % interval)\n");
-  out.list("orders", std::move(curves)).block("\n" + lines_of(result.advice));
+  out.list("orders", std::move(curves));
+  out.block("\n" + (result.advice.empty() ? "" : result.advice + "\n"));
   if (report.accuracy) out.set("accuracy", *report.accuracy).list("recommendations", std::move(recommendations));
-  out.block(lines_of(study.notes)).set("settings", settings).set("fronts", fronts);
+  for (const std::string& note : study.notes) out.block(note + "\n");
+  out.set("settings", settings).set("fronts", fronts);
   return out.set("advice", result.advice).set("notes", study.notes);
 }
 
 Table study_table(const StudyReport& report) {
   const auto& rows = report.result.rows;
+  const std::string& quantity = report.study.quantity;
   Table table;
-  table.add("problem", rows, [](const StudyRow& r) { return r.setting.problem; });
   table.add("method", rows, [](const StudyRow& r) { return r.setting.method; });
   table.add("setting", rows, [](const StudyRow& r) { return r.setting.label(); });
   table.add("resolution", rows, [](const StudyRow& r) { return r.setting.resolution; });
@@ -187,17 +173,46 @@ Table study_table(const StudyReport& report) {
   table.add("upper_quartile_s", rows, [](const StudyRow& r) { return r.time.upper_quartile; });
   table.add("processor_median_s", rows, [](const StudyRow& r) { return r.time.processor_median; });
   table.add("repetitions", rows, [](const StudyRow& r) { return static_cast<double>(r.time.repetitions); });
-  for (std::size_t q = 0; q < report.study.quantities.size(); ++q) {
-    const Quantity& quantity = report.study.quantities[q];
-    const auto add = [&](const std::string& name, std::vector<double> StudyRow::*values) {
-      table.add(name, rows, [&](const StudyRow& r) { return (r.*values).empty() ? NAN : (r.*values)[q]; });
-    };
-    add(quantity.name, &StudyRow::values);
-    if (quantity.fact) continue;
-    add(quantity.name + "_error", &StudyRow::errors);
-    add(quantity.name + "_assured_error", &StudyRow::assured);
-  }
+  table.add(quantity, rows, [](const StudyRow& r) { return r.value.value_or(NAN); });
+  table.add(quantity + "_error", rows, &StudyRow::error);
+  table.add(quantity + "_assured_error", rows, &StudyRow::assured);
   return table.add("refusal", rows, &StudyRow::refusal);
+}
+
+Plot study_plot(const StudyReport& report) {
+  Plot plot{.title = with_symbols(report.study.title),
+            .x = {.label = "time of computing, s", .logarithmic = true},
+            .y = {.label = with_symbols(report.study.label), .logarithmic = true},
+            .enhanced = true};
+  Series line{.label = "front", .style = SeriesStyle::dashed_line, .colour = PlotColour::black, .column = "front"};
+  for (const std::size_t k : report.result.front) {
+    const StudyRow& row = report.result.rows[k];
+    if (!line.x.empty()) {  // until here nothing is better than the one before
+      line.x.push_back(row.time.median);
+      line.y.push_back(line.y.back());
+    }
+    line.x.push_back(row.time.median);
+    line.y.push_back(row.assured);
+  }
+  plot.series.push_back(std::move(line));
+  std::size_t count = 0;
+  for (const auto& [method, rows] : by_method(report)) {
+    Series series = series_of(count++, rows.size());
+    series.label = legend_of(report, method);
+    series.column = method.empty() ? "error" : method;
+    for (const std::size_t k : rows) {
+      const StudyRow& row = report.result.rows[k];
+      if (!std::isfinite(row.error)) continue;
+      series.x.push_back(row.time.median);
+      series.y.push_back(row.error);
+    }
+    if (!series.x.empty()) plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+std::string study_plot_name(const Study& study) {
+  return study.name + "_" + study.quantity;
 }
 
 }  // namespace equidem

@@ -42,7 +42,13 @@ const casefile::File<StudyCase>& study_file() {
         .keys({key_with<V, std::string>(
                    "key", [](V& varied, const std::string& text) { varied.keys = separated(text); }, required,
                    "a key of the case, such as assembly.rows; several that take the same value: separated by commas"),
-               key("values", &V::values, required, "values that it takes"),
+               key("values", &V::values, or_instead({"names"}, "a setting has a value or a name"),
+                   "values that it takes"),
+               key_with<V, std::string>(
+                   "names", [](V& varied, const std::string& text) { varied.names = separated(text); }, optional,
+                   "words that it takes, separated by commas, such as names of integrators: each is another method"),
+               key("orders", &V::orders, only_with({"names"}, "they are those of methods"),
+                   "that theory expects with each of the names; left out: study.order"),
                key("refines", &V::refines,
                    "larger, smaller: larger or smaller values are finer levels (one [[vary]] at most); not: another "
                    "method")});
@@ -60,6 +66,16 @@ void check_varied(const TomlValue& table, const VariedKey& varied) {
   }
   if (varied.keys.empty())
     fail_at(*table.find("key"), "vary.key", "it is not said what varies", "the key is empty", "Name a key of the case");
+  if (!varied.names.empty()) {
+    if (std::set<std::string>(varied.names.begin(), varied.names.end()).size() != varied.names.size())
+      fail_at(*table.find("names"), "vary.names", "a name is given twice", "each is one setting of the study",
+              "Leave it out once");
+    if (!varied.orders.empty() && varied.orders.size() != varied.names.size())
+      fail_at(*table.find("orders"), "vary.orders",
+              fmt::format("there are {} orders of {} names", varied.orders.size(), varied.names.size()),
+              "each name has one", "Give as many");
+    return;
+  }
   const std::set<double> different(varied.values.begin(), varied.values.end());
   if (different.size() != varied.values.size())
     fail_at(*table.find("values"), "vary.values", "a value is given twice", "each is one setting of the study",
@@ -86,7 +102,10 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
   TomlValue root = parse_toml(content, name);
   StudyCase result = study_file().read(root, folder);
   const TomlValue& study = *root.find("study");
-  if (result.truth == Truth::richardson && !result.order)
+  const bool has_orders = result.order || std::ranges::any_of(result.varied, [](const VariedKey& varied) {
+                            return !varied.orders.empty();
+                          });
+  if (result.truth == Truth::richardson && !has_orders)
     fail_at(study, "study.order", "the order is missing", "the limit is extrapolated by it",
             "Give order, or truth = \"finest\"");
   if (result.truth == Truth::known && result.relative && result.value == 0)
@@ -96,7 +115,7 @@ StudyCase parse_study_case(std::string_view content, const std::string& name, co
   if (result.varied.empty())
     fail_at(study, "study", "nothing is varied", "a study compares settings", "Add [[vary]] with key and values");
   const auto refining = std::count_if(result.varied.begin(), result.varied.end(), [](const VariedKey& varied) {
-    return varied.refines != VariedKey::Refines::not_at_all;
+    return varied.names.empty() && varied.refines != VariedKey::Refines::not_at_all;
   });
   if (refining > 1)
     fail_at(repeated(root, "vary").back(), "vary.refines", fmt::format("{} keys refine", refining),
@@ -114,20 +133,31 @@ StudyCase read_study_case(const std::filesystem::path& path) {
 
 std::vector<StudyPoint> points_of(const StudyCase& study) {
   std::vector<StudyPoint> points(1);
+  points[0].setting.order = study.order;
   for (const VariedKey& varied : study.varied) {
     std::vector<StudyPoint> more;
     for (const StudyPoint& point : points) {
+      const auto add = [&](const std::string& value) -> Setting& {
+        more.push_back(point);
+        for (const std::string& key : varied.keys) more.back().overrides.push_back(key + "=" + value);
+        return more.back().setting;
+      };
+      const auto add_method = [&](Setting& setting, const std::string& name) {
+        setting.method += (setting.method.empty() ? "" : ", ") + name;
+      };
+      for (std::size_t k = 0; k < varied.names.size(); ++k) {
+        Setting& setting = add(varied.names[k]);
+        add_method(setting, varied.names[k]);
+        if (!varied.orders.empty()) setting.order = varied.orders[k];
+      }
       for (const double value : varied.values) {
-        StudyPoint next = point;
-        for (const std::string& key : varied.keys) next.overrides.push_back(key + "=" + as_toml(value));
+        Setting& setting = add(as_toml(value));
         if (varied.refines == VariedKey::Refines::not_at_all) {
-          next.setting.method +=
-              fmt::format("{}{} = {:.6g}", next.setting.method.empty() ? "" : ", ", varied.keys.front(), value);
+          add_method(setting, fmt::format("{} = {:.6g}", varied.keys.front(), value));
         } else {
-          next.setting.values.emplace_back(varied.keys.front(), value);
-          next.setting.resolution = varied.refines == VariedKey::Refines::larger ? 1 / value : value;
+          setting.values.emplace_back(varied.keys.front(), value);
+          setting.resolution = varied.refines == VariedKey::Refines::larger ? 1 / value : value;
         }
-        more.push_back(std::move(next));
       }
     }
     points = std::move(more);

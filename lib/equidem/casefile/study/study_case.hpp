@@ -20,6 +20,8 @@ namespace equidem {
 struct VariedKey {
   std::vector<std::string> keys;  ///< of the case, with the same value: "assembly.rows", "assembly.columns"
   std::vector<double> values;
+  std::vector<std::string> names;  ///< in place of values: words that the keys take, each another method
+  std::vector<double> orders;      ///< of theory with each of the names; empty: StudyCase::order
   /// Whether larger or smaller values are finer levels.
   enum class Refines { larger, smaller, not_at_all } refines = Refines::larger;
 };

@@ -8,7 +8,6 @@
 #include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/dynamics/layout.hpp"
 
-#include "loops.hpp"
 #include "scene.hpp"
 
 #if defined(__x86_64__)

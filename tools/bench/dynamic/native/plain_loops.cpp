@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "loops.hpp"
+#include "bench.hpp"
 #include "scene.hpp"
 
 namespace equidem::bench {
@@ -147,6 +148,36 @@ class PairLoop : public PlainLoop {
   std::vector<Body> force_;
 };
 
+double triad_bandwidth() {
+  constexpr std::size_t count = std::size_t{1} << 24;
+  std::vector<double> a(count, 0.0), b(count, 1.0), c(count, 2.0);
+  double best = 0;
+  for (int round = 0; round < 7; ++round) {
+    const double begin = processor_time();
+    for (std::size_t i = 0; i < count; ++i) a[i] = b[i] + 0.5 * c[i];
+    best = std::max(best, 24.0 * static_cast<double>(count) / (processor_time() - begin));
+    b[static_cast<std::size_t>(round)] = a[count - 1];  // otherwise the compiler could omit rounds
+  }
+  return best;
+}
+
+double peak_arithmetic() {
+  using Lanes = double __attribute__((vector_size(32)));
+  constexpr int chains = 10, repetitions = 4'000'000;
+  Lanes sums[chains] = {};
+  double best = 0;
+  for (int round = 0; round < 7; ++round) {
+    const double begin = processor_time();
+    for (int k = 0; k < repetitions; ++k) {
+#pragma GCC unroll 10
+      for (Lanes& sum : sums) sum = sum * 0.999 + 0.001;
+    }
+    best = std::max(best, 8.0 * chains * repetitions / (processor_time() - begin));
+    for (Lanes& sum : sums) asm volatile("" : "+m"(sum));  // otherwise the compiler could omit all of it
+  }
+  return best;
+}
+
 }  // namespace
 
 std::unique_ptr<Contender> plain_loop_over_neighbours(const Assembly& assembly) {
@@ -155,6 +186,10 @@ std::unique_ptr<Contender> plain_loop_over_neighbours(const Assembly& assembly) 
 
 std::unique_ptr<Contender> plain_loop_over_pairs(const Assembly& assembly) {
   return std::make_unique<PairLoop>(assembly);
+}
+
+Limits machine_limits() {
+  return {.bandwidth = triad_bandwidth(), .arithmetic = peak_arithmetic()};
 }
 
 }  // namespace equidem::bench
