@@ -29,7 +29,7 @@ constexpr const char* footer = R"(Examples:
   equidem help completion bash    completion for the shell
 
 The files of data/cases are installed in share/doc/equidem/examples.
-The tables and figures of published papers are computed by the program equidem-papers.
+The tables and figures of published papers are computed by scripts of the source, tools/papers.
 
 Exit codes: 0 done, of a sweep some of its points; 1 the computation failed or its results could not all be written, and
 the message says why; 2 bad input or usage; 130 interrupted.)";
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
                  {"engines", "what LAMMPS, YADE and PFC carry of a model", engine_features_table}},
       .refusals = {{"--accuracy", "this verb takes no --accuracy", "it has no setting that could be chosen for one",
                     "solve, homogenize, run and study do; 'equidem study --list' shows what accuracy costs"},
-                   {"reproduce", "equidem has no verb 'reproduce'", "papers have a program of their own",
-                    "Use 'equidem-papers PAPER [OPTIONS]'; 'equidem-papers --help' lists the papers"}}};
+                   {"reproduce", "equidem has no verb 'reproduce'", "papers have scripts of their own",
+                    "Run tools/papers/PAPER.py of the source"}}};
   return run_program(program, argc, argv);
 }
