@@ -128,7 +128,7 @@ def measure_table1(quick, progress):
         law = eq._core.Law(variant.law, variant.a, E) if variant.of_paper else None
         rows.append({**variant.head(), "variant": variant, "time_step": step, "run_seconds": 0.0,
                      "law_alone_nanoseconds": math.inf if law else math.nan,
-                     "evaluations_gravity_first": gravity_first(variant, step), "law": law,
+                     "evaluations_gravity_first": gravity_first(variant, step), "alone": law,
                      "samples": samples_of(law) if law else None,
                      "runs": [variant.spheres(balls, step) for _ in range(3)]})
         progress.update(0.5 + 0.2 * len(rows) / 6)
@@ -140,15 +140,15 @@ def measure_table1(quick, progress):
                 run.advance(steps)
                 least = min(least, time.process_time() - before)
             row["run_seconds"] += least
-            if part % 5 == 0 and row["law"]:
+            if part % 5 == 0 and row["alone"]:
                 before = time.perf_counter()
-                row["law"].sum(*row["samples"], 20)
+                row["alone"].sum(*row["samples"], 20)
                 row["law_alone_nanoseconds"] = min(row["law_alone_nanoseconds"],
                                                    (time.perf_counter() - before) * 1e9 / (20 * 4096))
         progress.update(0.7 + 0.3 * (part + 1) / SLICES)
     for row in rows:
         row["evaluations"] = row["runs"][0].counters.evaluations
-        del row["runs"], row["samples"], row["law"]
+        del row["runs"], row["samples"], row["alone"]
     return rows
 
 
@@ -700,8 +700,9 @@ def reproduce(options):
     numbers.update({key: without(r[key], "times", "energies") for key in ("rest", "column")})
 
     names = {"law": "law", "letter": "letter", "a": "a"}
-    of_table1 = {**names, "time_step": "step_s", "evaluations": "evaluations", "run_seconds": "run_s",
-                 "evaluations_gravity_first": "evaluations_gravity_first", "law_alone_nanoseconds": "law_alone_ns"}
+    of_table1 = {**names, "time_step": "step_s", "evaluations": "evaluations",
+                 "evaluations_gravity_first": "evaluations_gravity_first", "run_seconds": "run_s",
+                 "law_alone_nanoseconds": "law_alone_ns"}
     tables = {table: {name: [row[key] for row in r[table]] for key, name in columns.items()}
               for table, columns in (("table1", of_table1), ("table2", names))}
     for k, step in enumerate(TABLE2_STEPS):
