@@ -405,6 +405,9 @@ def draw_block(rows, columns, gauge, path):
 
 
 def reproduce(options):
+    global LARGE_ROWS, SIZES
+    if options.quick:
+        LARGE_ROWS, SIZES, UNEQUAL["samples"] = 33, SIZES[:3], 4
     result = compute(options.rows, options.columns, options.gauge)
     numbers = {key: value for key, value in result.items() if key not in ("edges", "large_points")}
     variations = result["edges"]["variations"].items()
