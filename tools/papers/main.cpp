@@ -10,9 +10,6 @@ constexpr const char* footer = R"(Examples:
   equidem-papers abe1996 --out figures                    and figures: seconds
   equidem-papers abe1996_random --out figures             minutes; with --quick seconds
   equidem-papers fujioka2005 --out figures                minutes; with --quick seconds
-  equidem-papers sukegawa2010 --out box                   an hour or more; with --quick a minute
-  equidem-papers validation --out figures                 minutes; with --quick seconds
-  equidem-papers breakage --out figures                   minutes; with --quick seconds
 
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted.)";
 
@@ -25,9 +22,6 @@ int main(int argc, char** argv) {
       Verb{"abe1996_random", "Abe (1996): the mean field against exact moduli of random assemblies",
            abe1996_random::declare},
       Verb{"fujioka2005", "Fujioka & Ushijima (2005): normal contact laws in collisions", fujioka2005::declare},
-      Verb{"sukegawa2010", "Sukegawa (2010), chapter 8: a box of grains, filled and shaken", sukegawa2010::declare},
-      Verb{"validation", "numbers that others have published, with error bars and verdicts", validation::declare},
-      Verb{"breakage", "strengths against notches, size and scatter, beside theory", breakage::declare},
   };
   return run_program({.name = "equidem-papers",
                       .description = "equidem-papers: tables and figures of published papers, computed again and set "

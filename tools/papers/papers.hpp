@@ -29,16 +29,7 @@ equidem::Run declare(CLI::App& command);
 namespace abe1996_random {
 equidem::Run declare(CLI::App& command);
 }
-namespace breakage {
-equidem::Run declare(CLI::App& command);
-}
 namespace fujioka2005 {
-equidem::Run declare(CLI::App& command);
-}
-namespace sukegawa2010 {
-equidem::Run declare(CLI::App& command);
-}
-namespace validation {
 equidem::Run declare(CLI::App& command);
 }
 

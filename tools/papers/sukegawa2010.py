@@ -12,8 +12,7 @@ import tomllib
 import numpy as np
 from scipy.stats import t as student
 
-from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, plain, points, rows_of, samples_of,
-                    save)
+from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, plain, points, rows_of, samples_of)
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
 TEXTS = tomllib.loads((DATA / "sukegawa2010" / "texts.toml").read_text(encoding="utf-8"))
@@ -531,8 +530,9 @@ def draw_sheet(pictures, title):
     def draw(path):
         from matplotlib import pyplot
         from matplotlib.collections import EllipseCollection
-        rows = -(-len(pictures) // 3)
-        figure, axes = pyplot.subplots(rows, min(3, len(pictures)), squeeze=False, figsize=(4.2 * min(3, len(pictures)), 3.6 * rows))
+        columns = len(pictures) if len(pictures) < 5 else 3
+        figure, axes = pyplot.subplots(-(-len(pictures) // columns), columns, squeeze=False, layout="constrained",
+                                       figsize=(4.2 * columns, 3.6 * -(-len(pictures) // columns)))
         figure.suptitle(title)
         for one in axes.flat:
             one.set_axis_off()
@@ -543,7 +543,8 @@ def draw_sheet(pictures, title):
             low, high = centres.min(axis=0) - half_axes.max(), centres.max(axis=0) + half_axes.max()
             one.plot([0, 0], [0, high[1]], "k", [0, high[0]], [0, 0], "k", [high[0]] * 2, [0, high[1]], "k", linewidth=1)
             one.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=label)
-        save(figure, path)
+        figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
+        pyplot.close(figure)
     return draw
 
 
