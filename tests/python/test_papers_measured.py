@@ -71,7 +71,9 @@ def test_files_that_are_there_are_not_replaced(breakage):
 def test_interrupted_they_stop_soon(name, tmp_path):
     with subprocess.Popen([sys.executable, "-B", PAPERS / f"{name}.py", "--out", tmp_path / "out", "--quiet"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as started:
-        time.sleep(5)
+        while not (tmp_path / "out").exists():  # the computation begins
+            time.sleep(0.1)
+        time.sleep(3)
         started.send_signal(signal.SIGINT)
         stdout, stderr = started.communicate(timeout=60)
     assert (started.returncode, stdout) == (130, ""), stderr

@@ -199,9 +199,10 @@ def csv_text(columns):
 
 class Table:
     """A table of text; cells of a row are separated by " & "."""
-    def __init__(self, head):
+    def __init__(self, *rows):
         self.rows = []
-        self.add(head)
+        for row in rows:
+            self.add(row)
 
     def add(self, row):
         self.rows.append(row.split(" & "))
@@ -209,6 +210,9 @@ class Table:
     def _widths(self, least):
         columns = max(len(row) for row in self.rows)
         return [max([least, *(len(row[k]) for row in self.rows if k < len(row))]) for k in range(columns)]
+
+    def __str__(self):
+        return self.text()
 
     def text(self):
         widths = self._widths(0)
@@ -224,6 +228,11 @@ class Table:
         lines = ["".join(f"| {cell.ljust(width)} " for cell, width in zip(row, widths)) + "|\n" for row in full]
         lines.insert(1, "".join("|" + "-" * (width + 2) for width in widths) + "|\n")
         return "".join(lines)
+
+
+def filled(name, **values):
+    """The text tools/papers/NAME.txt with values, as str.format does it."""
+    return (ROOT / "tools" / "papers" / (name + ".txt")).read_text(encoding="utf-8").format(**values)
 
 
 def counted(count, noun):
@@ -440,16 +449,6 @@ def rows_of(name):
 def columns_of(rows):
     """Rows {key: value} as a table {column: list}."""
     return {key: [row[key] for row in rows] for key in rows[0]}
-
-
-def plain(value):
-    """For result.json: numbers of NumPy as those of Python, what is not finite as null."""
-    if isinstance(value, dict):
-        return {key: plain(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(one) for one in value]
-    value = value.item() if hasattr(value, "item") else value
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def points(label, x, y, colour="black", marker="circle", *, filled=True, joined=False, errors=()):

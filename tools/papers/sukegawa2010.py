@@ -10,9 +10,9 @@ import math
 import tomllib
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
-from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, plain, points, rows_of, samples_of)
+from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, points, rows_of, samples_of)
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
 TEXTS = tomllib.loads((DATA / "sukegawa2010" / "texts.toml").read_text(encoding="utf-8"))
@@ -173,7 +173,7 @@ def variants_text(runs):
 
 
 def half_width(values):
-    return student.ppf(0.975, len(values) - 1) * mean_of(values).standard_error if len(values) > 1 else math.nan
+    return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
 def printed_level(runs):
@@ -581,7 +581,7 @@ def reproduce(options):
     by_name = {run["run"]: run for run in [*missing, *new]}
     runs = new if options.quick else [by_name[run["run"]] for run in old]
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(report(runs, options, fill, missing), plain({"quick": options.quick, "runs": rows}), {"runs": columns_of(rows)},
+    return Output(report(runs, options, fill, missing), {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
                   plots_of(runs, fill))
 
 
