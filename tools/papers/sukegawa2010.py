@@ -25,23 +25,6 @@ VARIANTS = {"": {}, "half_step": {"step_share": 0.25}, "soft": {"softness": 9.0}
             "small": {"columns": 18, "rows": 34, "softness": 9.0},
             "mended_test": {"columns": 18, "rows": 34, "softness": 9.0, "ellipse_contact": "enlarged"},
             "strong_bonds": {"bond_step": NUMBERS["time step"] / 10}}
-VARIANT_ROWS = (  # name, variant, cycles, shape, gal
-    ("as above", "", 10), ("shaken for 5 s, not 1 s", "", 50), ("shaken for 20 s", "", 200), ("half the step", "half_step", 10),
-    ("springs nine times softer", "soft", 10), ("h = 0.1", "less_damping", 10), ("the printed step, 1e-6 s", "printed_step", 10),
-    ("friction limits the spring alone (2.16)", "printed_cap", 10), ("(2.16), shaken for 5 s", "printed_cap", 50),
-    ("(2.16), shaken for 20 s", "printed_cap", 200),
-    ("forces of chapter 2 in increments, friction limits all", "increments_capped", 10),
-    ("forces in increments, (2.16)", "increments", 10), ("the same with the integrator (3.16)-(3.17)", "printed_integrator", 10),
-    ("the same with c_i = 1/s m_i in (3.13)", "mass_damping_1", 10), ("the same with c_i = 10/s m_i", "mass_damping_10", 10),
-    ("the same with beta = 1.05 of (3.1) in the force", "beta_1.05", 10),
-    ("springs of E, nu, rho = (1+e) gamma (2.23)-(2.26)", "bulk_springs", 10),
-    ("rho = (1+e) gamma in springs and masses", "bulk_density", 10), ("rows 0.7 times as high at the start", "low_drop", 10),
-    ("no friction between grains", "smooth", 10), ("friction 0.5", "rough", 10), ("ellipses", "", 10, "ellipses"),
-    ("ellipses, (2.16), 5 s", "printed_cap", 50, "ellipses"), ("612 ellipses, springs nine times softer", "small", 10, "ellipses"),
-    ("the same, contacts by (4.1)-(4.49) corrected", "mended_test", 10, "ellipses"), ("bonded pairs", "", 10, "bonded_pairs"),
-    ("bonded pairs, (2.16), 5 s", "printed_cap", 50, "bonded_pairs"),
-    ("bonded pairs at rest for the same time", "", 10, "bonded_pairs", 0), ("bonded pairs, C_n and C_s tenfold", "strong_bonds", 10,
-                                                                            "bonded_pairs"))
 PRINTED_ROWS = (("forces in increments", "increments"), ("integrator (3.16)-(3.17)", "printed_integrator"),
                 ("c_i = 1/s m_i", "mass_damping_1"), ("c_i = 10/s m_i", "mass_damping_10"), ("beta = 1.05", "beta_1.05"))
 
@@ -163,12 +146,11 @@ def void_ratio_table(runs, before, after):
 
 def variants_text(runs):
     table = Table(" & before & after & change & inner: before & change & seeds")
-    for name, variant, cycles, *rest in VARIANT_ROWS:
-        shape, gal = (*rest, *("discs", 400)[len(rest):])
-        cells = [values_of(runs, key, shape, gal, variant=variant, cycles=cycles)
+    for row in rows_of("sukegawa2010/variants"):
+        cells = [values_of(runs, key, row["shape"], float(row["gal"]), variant=row["variant"], cycles=float(row["cycles"]))
                  for key in (*WHOLE, WHOLE[::-1], INNER[0], INNER[::-1])]
         if cells[3]:
-            table.add(" & ".join([name, *map(spread, cells), str(len(cells[3]))]))
+            table.add(" & ".join([row["name"], *map(spread, cells), str(len(cells[3]))]))
     return TEXTS["variants"].format(table=table.text())
 
 
