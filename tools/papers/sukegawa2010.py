@@ -76,6 +76,20 @@ def plan(quick):
     return [({"run": name_of(*row), **dict(zip(keys, row))}, Fill(row[0], row[2], **{**small, **VARIANTS[row[1]]})) for row in rows]
 
 
+def kept_run(arguments):
+    """A run, kept in two files where a path is given."""
+    *given, path = arguments
+    names = ("numbers", "filling", "falling", "shaking", "pictures")
+    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(names, run_box(given)))}
+    if path:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez_compressed(path.with_suffix(".npz"), *(array for one in found["pictures"] for array in one))
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps({**found, "pictures": []}, default=float), encoding="utf-8")
+        part.rename(path)
+    return found
+
+
 def compute(options):
     """The runs of the plan, those that are in --out already taken from there."""
     kept, wanted, runs = options.out and options.out / "runs", plan(options.quick), {}
@@ -86,21 +100,17 @@ def compute(options):
             if found["fill"] != dataclasses.asdict(fill):
                 raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
                                   "Choose another --out, or remove it")
-            runs[row["run"]] = found
+            with np.load(path.with_suffix(".npz")) as file:
+                arrays = list(file.values())
+            runs[row["run"]] = {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
     todo = [(row, fill) for row, fill in wanted if row["run"] not in runs]
-    for (row, fill), found in zip(todo, samples_of("reproducing Sukegawa 2010:", run_box, [
-            (fill, row["acceleration_gal"], row["frequency_Hz"], row["cycles"]) for row, fill in todo], 1)):
-        numbers, filling, falling, shaking, pictures = found
-        runs[row["run"]] = {"fill": dataclasses.asdict(fill), "numbers": numbers, "filling": filling, "falling": falling,
-                            "shaking": shaking, "pictures": pictures}
-        if kept:
-            kept.mkdir(parents=True, exist_ok=True)
-            text = json.dumps({**runs[row["run"]], "pictures": []}, default=float)
-            (kept / f"{row['run']}.json").write_text(text, encoding="utf-8")
+    runs.update(zip([row["run"] for row, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
+        (fill, row["acceleration_gal"], row["frequency_Hz"], row["cycles"], kept and kept / f"{row['run']}.json")
+        for row, fill in todo], 1)))
     done = []
     for row, _ in wanted:
         found = runs[row["run"]]
-        run = Run({**row, **{key: math.nan if value is None else value for key, value in found["numbers"].items()}})
+        run = Run({**row, **found["numbers"]})
         run.filling, run.falling, run.shaking, run.pictures = (found[key] for key in ("filling", "falling", "shaking", "pictures"))
         done.append(run)
     return done
