@@ -145,6 +145,55 @@ def factorize(assembly: Assembly, springs: Any = None, supports: Iterable[Tables
     return Factor(assembly, Case(assembly=assembly, springs=springs, supports=supports, **tables), error_bound)
 
 
+class StrengthSample:
+    """A free sample that is pulled apart or pressed again and again between frictionless ends, contact after contact in
+    exact equilibrium, with any strengths of its contacts.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        With the groups bottom and top, or along x left and right.
+    springs : as of `Case`
+    axis : str
+        "x" or "y": the direction of the motion.
+    fallen_to : float
+        A test is over where the load has fallen to this share of its peak.
+    rotation : str
+        "from_scene" or "restrained".
+    """
+
+    def __init__(self, assembly: Assembly, springs: Any, *, axis: str = "y", fallen_to: float = 0.5,
+                 rotation: str = "from_scene") -> None:
+        self._native = _core.strength_sample(assembly._native, _springs_of(assembly, springs), axis, float(fallen_to),
+                                             rotation)
+
+    @property
+    def width(self) -> float:
+        """m, across the axis."""
+        return self._native.width
+
+    def strength(self, tension: float, shear: float, *, kind: str = "tension", friction: float = 0.0,
+                 weibull_modulus: float | None = None, seed: int = 1, notch: float | None = None) -> Result:
+        """The largest load over the width, under control of the motion.
+
+        Parameters
+        ----------
+        tension, shear, friction, weibull_modulus, seed
+            Of the contacts, as in the table `strength`; N/m.
+        kind : str
+            "tension" or "compression".
+        notch : float, optional
+            m, length 2a of a straight cut in the middle, across the axis.
+
+        Returns
+        -------
+        Result
+            stress (Pa), events (contacts that broke), energy_error.
+        """
+        stress, events, error = self._native.strength(kind, tension, shear, friction, weibull_modulus, seed, notch)
+        return Result({"stress": stress, "events": events, "energy_error": error})
+
+
 def stiffness_matrix(assembly: Assembly, springs: Any, *, rotation: str = "from_scene") -> bsr_matrix:
     """The assembled stiffness matrix without supports (Abe 1996, section 3), as scipy.sparse.
 

@@ -7,7 +7,10 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from . import _toml
+import numpy.typing as npt
+
+from . import _core, _toml
+from ._arrays import floats, whole
 from .assembly import Assembly
 from .case import Case
 from .result import Result
@@ -80,6 +83,34 @@ def pack(packing: Mapping[str, Any], springs: Any = None, **tables: Any) -> Resu
     60
     """
     return Case(packing=packing, springs=springs, **tables).pack()
+
+
+def pack_discs(radii: npt.ArrayLike, box: tuple[float, float], *, method: str = "growth", sides: str = "periodic",
+               seed: int = 1, overlap: float = 1e-6, attempts: int = 100_000,
+               settling: Mapping[str, float] | None = None) -> Result:
+    """Discs of given radii in a box, as dense as the method gets, without a case.
+
+    Parameters
+    ----------
+    radii : array (n,)
+        m, in the order in which the discs are placed; growth takes them as ratios.
+    box : (width, height)
+        m; falling: the height is not used.
+    method, sides, seed, overlap, attempts
+        Of the table `packing`; falling takes the sides "open_top".
+    settling : dict, optional
+        Of discs that fall: kN and kT in Pa, damping, friction, wall_friction, unbalanced, longest (s).
+
+    Returns
+    -------
+    Result
+        solid_fraction, coordination_number, coordination_number_without_rattlers, rattlers, largest_overlap, seconds;
+        `assembly` is the network of the contacts between the discs.
+    """
+    network, found = _core.pack_discs(floats("radii", radii, (None,)), (float(box[0]), float(box[1])), method, sides,
+                                      whole("seed", seed, 0), float(overlap), whole("attempts", attempts, 1),
+                                      dict(settling or {}))
+    return Result(found, assembly=Assembly._of(network))
 
 
 def simulation(assembly: Assembly | None = None, springs: Any = None, **tables: Any) -> Simulation:

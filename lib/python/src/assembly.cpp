@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/assembly/assembly.hpp"
 
+#include <map>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,9 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/packing/measures.hpp"
+#include "equidem/packing/network.hpp"
+#include "equidem/packing/packing.hpp"
 
 #include "module.hpp"
 
@@ -141,6 +145,46 @@ py::array numbers_of(const Shared& assembly) {
   return view(assembly, values.data(), {py::ssize_t(values.size())}, {sizeof(double)});
 }
 
+/// Discs of these radii in a box, in this order: (the network of their contacts, measures).
+/// \param settling numbers of SettlingOptions by their names
+py::tuple pack_discs(const Floats& radii, std::pair<double, double> box, const std::string& method,
+                     const std::string& sides, std::uint64_t seed, double overlap, std::int64_t attempts,
+                     const std::map<std::string, double>& settling) {
+  PackingOptions options;
+  options.method = enum_from<PackingMethod>(method);
+  options.box = {{box.first, box.second}, enum_from<PackingBox::Sides>(sides)};
+  options.radii.assign(radii.data(), radii.data() + radii.size());
+  options.seed = seed;
+  options.as_dense_as_possible = true;
+  options.overlap = overlap;
+  options.attempts = attempts;
+  SettlingOptions& fall = options.settling;
+  for (const auto& [name, number] : {std::pair{"kN", &fall.springs.kN},
+                                     {"kT", &fall.springs.kT},
+                                     {"damping", &fall.damping},
+                                     {"friction", &fall.friction},
+                                     {"wall_friction", &fall.wall_friction},
+                                     {"unbalanced", &fall.rest},
+                                     {"longest", &fall.longest}})
+    if (const auto given = settling.find(name); given != settling.end()) *number = given->second;
+  PackingMeasures measures;
+  double seconds = 0;
+  Shared network = without_lock([&] {
+    const GrainPacking packing = pack(options);
+    measures = measure(packing);
+    seconds = packing.seconds;
+    return shared(network_of(packing, {}));
+  });
+  py::dict found;
+  found["solid_fraction"] = measures.solid_fraction;
+  found["coordination_number"] = measures.coordination;
+  found["coordination_number_without_rattlers"] = measures.coordination_without_rattlers;
+  found["rattlers"] = measures.rattlers;
+  found["largest_overlap"] = measures.largest_overlap;
+  found["seconds"] = seconds;
+  return py::make_tuple(std::move(network), found);
+}
+
 }  // namespace
 
 void bind_assembly(py::module_& module) {
@@ -173,6 +217,7 @@ void bind_assembly(py::module_& module) {
   module.def("from_arrays", from_arrays);
   module.def("from_json", from_text);
   module.def("triangulated", triangulated);
+  module.def("pack_discs", pack_discs);
   module.def("build_assembly", [](const std::string& case_text) {
     return without_lock([&] { return shared(build_assembly(parse_case(case_text, "case#0", {}))); });
   });

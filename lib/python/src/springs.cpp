@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/breakage/calibrate/strength_test.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/prestress/prestress_choice.hpp"
@@ -82,9 +86,37 @@ py::tuple stiffness_matrix(const Assembly& assembly, const Floats& springs, cons
                         owned(std::move(columns), {blocks}), owned(std::move(first), {rows}));
 }
 
+/// A free sample between two ends, with the springs of its contacts.
+std::unique_ptr<StrengthSample> strength_sample(const std::shared_ptr<Assembly>& assembly, const Floats& springs,
+                                                const std::string& axis, double fallen_to,
+                                                const std::string& rotation) {
+  const LongWork working;
+  const StrengthTestOptions options{
+      .axis = enum_from<LoadAxis>(axis), .fallen_to = fallen_to, .rotation = enum_from<Rotation>(rotation)};
+  return std::make_unique<StrengthSample>(*assembly, springs_of(springs), options);
+}
+
+/// (stress, contacts that broke, energy error) of a test.
+py::tuple strength_of(const StrengthSample& sample, const std::string& kind, double tension, double shear,
+                      double friction, std::optional<double> weibull_modulus, std::uint64_t seed,
+                      std::optional<double> notch) {
+  const SampleStrength found = without_lock([&] {
+    const ContactStrengths strengths = contact_strengths(
+        sample.assembly(),
+        {.tension = tension, .shear = shear, .friction = friction, .weibull_modulus = weibull_modulus, .seed = seed});
+    return sample.strength(kind == "tension" ? StrengthTestKind::tension : StrengthTestKind::compression, strengths,
+                           notch);
+  });
+  return py::make_tuple(found.stress, found.events, found.energy_error);
+}
+
 }  // namespace
 
 void bind_springs(py::module_& module) {
+  py::class_<StrengthSample>(module, "StrengthSample", made_here())
+      .def("strength", strength_of)
+      .def_property_readonly("width", &StrengthSample::width);
+  module.def("strength_sample", strength_sample);
   module.def("springs_at_contacts", springs_at_contacts);
   module.def("stiffness_matrix", stiffness_matrix);
 }

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sukegawa (2010), chapter 8: a box filled with grains and shaken, its void ratio, surface and the motion of grains."""
+import dataclasses
+import math
+import time
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from common import Random, eq, published
+
+# The tables of sections 8.2 to 8.4.
+NUMBERS = {name: row.value for name, row in published("sukegawa2010/published").items()}
+CELL, PAIR_ROW = 0.03, 0.041  # m, distance of places and height of rows of pairs, which take two places of a row
+SAMPLE = 0.01  # s
+REST = 0.5  # s, after the shaking
+PICTURES = ("start", "filled", "during", "after")
+
+
+@dataclasses.dataclass(frozen=True)
+class Fill:
+    """A filling of the box. The start: rows of places at the distance CELL, every other row shifted by half of it, in a
+    box of their width; 40 columns and 75 rows give the thesis's box, 1.215 m wide and filled from 2.25 m."""
+    shape: str = "discs"  # ellipses, bonded_pairs, rigid_pairs
+    seed: int = 1
+    columns: int = 40
+    rows: int = 75
+    softness: float = 1.0  # springs of (2.26) over those used
+    damping: float = 1.0  # h of (2.27)
+    friction: float = NUMBERS["friction"]
+    step_share: float = 0.5  # of the limit of the two lightest bodies
+    step: float = 0.0  # s, in place of that
+    bond_step: float = NUMBERS["time step"]  # s: C_n = m_r/bond_step, C_s = C_n/3
+    row_share: float = 1.0  # height of the rows at the start over that of the thesis
+    bulk: str = ""  # "springs", "all": rho = (1 + e) gamma (2.25) in the springs, in the masses too
+    ellipse_contact: str = "exact"
+    fall: float = 2.0  # s until the shaking
+
+    @property
+    def width(self):
+        return CELL * (self.columns + 0.5)
+
+    @property
+    def pairs(self):
+        return self.shape.endswith("pairs")
+
+    @property
+    def density(self):
+        return NUMBERS["density"] * (1 + NUMBERS["discs, void ratio before"] if self.bulk == "all" else 1)
+
+    def springs(self):
+        """kN, kT of (2.26), from Vs, nu and rho."""
+        shear = NUMBERS["shear wave speed"]**2 * self.density * math.pi / 4
+        if self.bulk == "springs":  # the speeds are those of the medium, the density that of the discs
+            shear *= 1 + NUMBERS["discs, void ratio before"]
+        nu = NUMBERS["poisson ratio"]
+        return shear * 2 * (1 - nu) / (1 - 2 * nu) / self.softness, shear / self.softness
+
+    def followed(self):
+        """The grains of the thesis's numbers 485, 500, ..., 2515, or those in the same places of another grid."""
+        places = [(row, column) for row in (self.rows // 6, self.rows // 2, self.rows * 5 // 6)
+                  for column in (self.columns // 8 - 1, self.columns // 2 - 1, self.columns * 7 // 8 - 1)]
+        numbers = [row * self.columns + column for row, column in places]
+        return [n // 2 if self.shape == "rigid_pairs" else n for n in numbers], [f"No. {n + 1}" for n in numbers]
+
+
+class Bodies:
+    """The bodies of a filling: `radii` drawn, `half_axes` of ellipses, `mass` and `moment` of each grain."""
+    def __init__(self, fill):
+        self.fill, random = fill, Random(fill.seed)
+        columns = fill.columns // 2 if fill.pairs else fill.columns
+        n = columns * fill.rows
+        least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
+        radii = [least + (most - least) * (k + random.uniform()) / n for k in range(n)]
+        for k in range(n, 1, -1):
+            other = random.below(k)
+            radii[k - 1], radii[other] = radii[other], radii[k - 1]
+        turns = [0.0 if fill.shape == "discs" else random.uniform() for _ in range(n)]
+        wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
+        row, column = np.divmod(np.arange(n), columns)
+        places = np.stack([(column + 0.5) * wide + np.where(row % 2 == 1, CELL / 2, 0.0),
+                           (row + 0.5) * high * fill.row_share], axis=1)
+        self.radii, angles = np.array(radii), 2 * math.pi * np.array(turns)
+        self.offsets = np.zeros((1, n, 2))
+        if fill.pairs:
+            self.offsets = np.stack([np.stack([sign * self.radii, np.zeros(n)], axis=1) for sign in (-1, 1)])
+        if fill.shape == "bonded_pairs":
+            along = self.radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            places = np.stack([places - along, places + along], axis=1).reshape(-1, 2)
+            self.radii, angles, self.offsets = np.repeat(self.radii, 2), np.repeat(angles, 2), np.zeros((1, 2 * n, 2))
+        self.places, self.angles = places, angles
+        self.half_axes = np.stack([self.radii, self.radii], axis=1)
+        if fill.shape == "ellipses":  # of the areas of the discs
+            self.half_axes = self.radii[:, None] * np.array([math.sqrt(2), 1 / math.sqrt(2)])
+        self.area = len(self.offsets) * math.pi * self.half_axes.prod(axis=1)
+        self.mass, self.reach = fill.density * self.area, self.half_axes[:, 0] * len(self.offsets)
+        gyration = (self.half_axes**2).sum(axis=1) / 4 + (self.offsets[0]**2).sum(axis=1)
+        self.moment = self.mass * gyration
+        self.diameter = 2 * np.mean(np.sqrt(self.area / math.pi))
+        self.layers = np.arange(n) * 5 // n
+        if fill.shape == "bonded_pairs":
+            self.layers = np.repeat(self.layers, 2)
+
+    def step(self):
+        """The one given, else step_share of the limit of a contact of the two lightest bodies (semi-implicit)."""
+        if self.fill.step:
+            return self.fill.step
+        kN, kT = self.fill.springs()
+        arm = np.zeros(len(self.mass))  # the longest of a normal force
+        if self.fill.shape == "ellipses":
+            arm = self.half_axes[:, 0] - self.half_axes[:, 1]
+        elif self.fill.shape == "rigid_pairs":
+            arm = self.radii
+
+        def limit(stiffness, lever):
+            moved = (0.5 / (1 / self.mass + lever**2 / self.moment)).min()
+            zeta = self.fill.damping * math.sqrt(self.mass.min() / moved)
+            return 2 / (math.sqrt(1 + zeta**2) + zeta) / math.sqrt(stiffness / moved)
+        return self.fill.step_share * min(limit(kN, arm), limit(kT, self.reach))
+
+    def tables(self):
+        """Of the case file."""
+        grains = []
+        for place, angle, axes, r in zip(self.places, self.angles, self.half_axes, self.radii):
+            grain = {"position": place.tolist(), "angle": float(angle)}
+            if self.fill.shape == "ellipses":
+                grain["half_axes"] = axes.tolist()
+            elif self.fill.shape == "rigid_pairs":
+                grain["discs"] = [[-float(r), 0.0, float(r)], [float(r), 0.0, float(r)]]
+            else:
+                grain["radius"] = float(r)
+            grains.append(grain)
+        kN, kT = self.fill.springs()
+        walls = [("floor", (0, 0), (0, 1)), ("left", (0, 0), (1, 0)), ("right", (self.fill.width, 0), (-1, 0))]
+        tables = {"grains": {"density": self.fill.density}, "grain": grains, "springs": {"kN": kN, "kT": kT},
+                  "collisions": {"law": "linear_dashpot", "damping": self.fill.damping, "friction": self.fill.friction,
+                                 "walls": {"friction": NUMBERS["wall friction"]}},
+                  "wall": [{"name": name, "point": [float(x) for x in point], "normal": [float(x) for x in normal]}
+                           for name, point, normal in walls]}
+        if self.fill.shape == "ellipses":
+            tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
+        if self.fill.shape == "bonded_pairs":
+            dashpots = 0.5 * self.mass[::2] / self.fill.bond_step  # a tangential force also turns the disc: a third
+            tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": float(c), "tangential_dashpot": float(c) / 3}
+                              for k, c in enumerate(dashpots)]
+        return tables
+
+
+class Moment:
+    """The box at one time: places in the box, heap, surface, void ratios."""
+    def __init__(self, bodies, places, angles, left, inner=False):
+        self.places, self.angles, self.bodies = places - [left, 0.0], angles, bodies
+        width = bodies.fill.width
+        # The heap: the largest set of bodies of which each is at most a mean diameter from another.
+        pairs = cKDTree(places).query_pairs(2 * bodies.reach.max() + bodies.diameter, output_type="ndarray")
+        gaps = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) - bodies.reach[pairs].sum(axis=1)
+        i, j = pairs[gaps <= bodies.diameter].T
+        _, sets = connected_components(coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places))), directed=False)
+        self.heap = sets == np.argmax(np.bincount(sets))
+        x, heights = self.surface(max(2, int(width / (4 * NUMBERS["largest radius"]))))
+        self.height = heights.mean()
+        self.slope, level = np.polyfit(x, heights, 1)
+        self.roughness = math.sqrt(((heights - level - self.slope * x)**2).sum() / len(x))
+        self.whole = width * self.height / bodies.area[self.heap].sum() - 1
+        self.centre = (bodies.mass[:, None] * self.places).sum(axis=0) / bodies.mass.sum()
+        self.inner = self.inner_void_ratio() if inner else math.nan
+
+    def parts(self, chosen):
+        """Centres, angles and half-axes of discs and ellipses."""
+        axis = np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+        centres = [self.places + offset[:, :1] * axis for offset in self.bodies.offsets]
+        return np.concatenate([c[chosen] for c in centres]), *(
+            np.concatenate([values[chosen]] * len(centres)) for values in (self.angles, self.bodies.half_axes))
+
+    def surface(self, columns):
+        """The middles of columns and the highest place of the heap in each."""
+        wide = self.bodies.fill.width / columns
+        centres, angles, axes = self.parts(self.heap)
+        c, s = np.cos(angles), np.sin(angles)
+        p, q = axes.T**-2.0
+        A, B, C = p * c * c + q * s * s, (p - q) * c * s, p * s * s + q * c * c  # A x² + 2 B x y + C y² = 1
+        D = A * C - B * B
+        half, top = np.sqrt(C / D), -B * np.sqrt(A / D) / A
+        heights = np.full(columns, 0.0)
+        for k in range(columns):
+            low, high = np.maximum(k * wide - centres[:, 0], -half), np.minimum((k + 1) * wide - centres[:, 0], half)
+            there = low <= high
+            x = np.clip(top, low, high)[there]
+            y = centres[there, 1] + (-B[there] * x + np.sqrt(np.maximum(0, C[there] - D[there] * x * x))) / C[there]
+            heights[k] = y.max(initial=0.0)
+        return wide * (np.arange(columns) + 0.5), heights
+
+    def inner_void_ratio(self, pixel=2.5e-4):
+        """Two mean diameters away from walls and floor, three below the lowest place of the surface; by pixels."""
+        strip = 2 * self.bodies.diameter
+        columns = max(1, int(self.bodies.fill.width / (4 * self.bodies.reach.max())))
+        low, high = np.array([strip, strip]), np.array([self.bodies.fill.width - strip,
+                                                        self.surface(columns)[1].min() - 1.5 * strip])
+        count = ((high - low) / pixel).astype(int)
+        if min(high - low) < strip:
+            return math.nan
+        solid, step = np.zeros(count, bool), (high - low) / count
+        for centre, angle, axes in zip(*self.parts(np.ones(len(self.heap), bool))):
+            first = np.clip(((centre - axes[0] - low) / step).astype(int), 0, count)
+            last = np.clip(((centre + axes[0] - low) / step).astype(int) + 1, 0, count)
+            if (first >= last).any():
+                continue
+            x = (low[0] + step[0] * (np.arange(first[0], last[0]) + 0.5) - centre[0])[:, None]
+            y = (low[1] + step[1] * (np.arange(first[1], last[1]) + 0.5) - centre[1])[None, :]
+            c, s = math.cos(angle), math.sin(angle)
+            inside = ((c * x + s * y) / axes[0])**2 + ((c * y - s * x) / axes[1])**2 <= 1
+            solid[first[0]:last[0], first[1]:last[1]] |= inside
+        return 1 / solid.mean() - 1
+
+
+class Stage:
+    """Samples of the filling or of the shaking, and the motion of grains in the box between them."""
+    def __init__(self, first):
+        self.rows, self.first, self.last, self.thrown, self.slope = [], first, first, ~first.heap, abs(first.slope)
+        self.ways = np.zeros((4, len(first.places)))  # all, along x, in the first 0.1 s, rotation
+        self.farthest = first
+
+    def add(self, t, moment):
+        moved = moment.places - self.last.places
+        way = np.hypot(*moved.T)
+        self.ways += [way, np.abs(moved[:, 0]), way * (t < 0.1001), np.abs(moment.angles - self.last.angles)]
+        self.last, self.thrown, self.slope = moment, self.thrown | ~moment.heap, max(self.slope, abs(moment.slope))
+        if abs(moment.centre[0] - self.first.centre[0]) > abs(self.farthest.centre[0] - self.first.centre[0]):
+            self.farthest = moment
+        self.record(t, moment)
+
+    def record(self, t, moment):
+        row = {"time_s": t, "whole_void_ratio": moment.whole, "centre_x_m": moment.centre[0], "slope": moment.slope}
+        for k, grain in enumerate(moment.bodies.fill.followed()[0]):
+            row.update({f"x{k}_m": moment.places[grain, 0], f"y{k}_m": moment.places[grain, 1], f"angle{k}_rad": moment.angles[grain]})
+        self.rows.append(row)
+
+    def moved(self):
+        """Means over all grains."""
+        start, way = self.first.places, self.last.places - self.first.places
+        middle = start[:, 0] - 0.5 * self.first.bodies.fill.width
+        outer = np.abs(middle) > self.first.bodies.fill.width / 6
+        layer = np.empty(len(start), int)
+        layer[np.lexsort((np.arange(len(start)), start[:, 1]))] = np.arange(len(start)) * 10 // len(start)
+        sums, members = np.bincount(layer, way[:, 0], 10), np.maximum(1, np.bincount(layer, minlength=10))
+        squares = (way[:, 0]**2).sum()
+        names = ("path_m", "path_along_x_m", "first_path_m", "turned_rad")
+        return {**dict(zip(names, self.ways.mean(axis=1))), "displaced_x_m": math.sqrt(squares / len(start)),
+                "inward_m": (-np.sign(middle) * way[:, 0])[outer].mean() if outer.any() else 0.0, "sunk_m": -way[:, 1].mean(),
+                "layered": (sums**2 / members).sum() / squares if squares > 0 else 0.0}
+
+
+def swing_of(rows, frequency, cycles):
+    """Amplitude of the centre of mass along x in the box at the frequency of shaking, over its last two cycles: least
+    squares with a constant."""
+    t, x = (np.array([row[name] for row in rows]) for name in ("time_s", "centre_x_m"))
+    chosen = (t * frequency >= cycles - 2) & (t * frequency <= cycles)
+    if chosen.sum() < 8:
+        return math.nan
+    angle = 2 * math.pi * frequency * t[chosen]
+    fit = np.linalg.lstsq(np.stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)], axis=1), x[chosen], rcond=None)[0]
+    return math.hypot(fit[1], fit[2])
+
+
+def run_box(arguments):
+    """Fill the box and shake it by a cos(2 pi f t) along x. Returns the numbers, those of the filling, the histories of
+    both stages and the moments PICTURES."""
+    fill, gal, frequency, cycles = arguments
+    begun, bodies = time.monotonic(), Bodies(fill)
+    step, duration, a = bodies.step(), cycles / frequency, 0.01 * gal / (2 * math.pi * frequency)**2
+    shaken = {"name": "shake", "duration": duration}
+    if gal:
+        shaken["shaking"] = {"acceleration": gal, "unit": "gal", "frequency": frequency, "cycles": cycles}
+    stages = [{"name": "fall", "duration": fill.fall}, shaken, {"name": "rest", "duration": REST}]
+    run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],
+                                                              "integrator": "velocity_verlet"})
+
+    def moment(inner=False):
+        phase = 2 * math.pi * frequency * min(max(run.time - fill.fall, 0.0), duration)
+        return Moment(bodies, np.array(run.positions), np.array(run.angles), a * (1 - math.cos(phase)), inner)
+
+    def advance(stage, end):
+        zero, block = run.time, max(1, round(SAMPLE / step))
+        stage.record(0.0, stage.first)
+        while run.time < end - 0.5 * step:
+            run.advance(min(block, max(1, round((end - run.time) / step))))
+            stage.add(run.time - zero, moment())
+        return stage
+
+    falling = Stage(moment())
+    pictures = [falling.first]
+    advance(falling, fill.fall)
+    filled = moment(inner=True)
+    shaking = advance(Stage(filled), fill.fall + duration + REST)
+    after = moment(inner=True)
+    pictures += [filled, shaking.farthest, after]
+    contacts, energy = run.contacts, run.energy
+    i, j = contacts["bodies"].T
+    bonded = (i // 2 == j // 2) & (j >= 0) if fill.shape == "bonded_pairs" else np.zeros(len(i), bool)
+    numbers = {"void_ratio_before": filled.inner, "void_ratio": after.inner, "whole_void_ratio_before": filled.whole,
+               "whole_void_ratio": after.whole, "surface_height_before_m": filled.height, "surface_height_m": after.height,
+               "roughness_before_m": filled.roughness, "roughness_m": after.roughness,
+               "centre_height_before_m": filled.centre[1], "centre_height_m": after.centre[1], "largest_slope": shaking.slope,
+               "swing_m": swing_of(shaking.rows, frequency, cycles), "thrown": int(shaking.thrown.sum()),
+               "coordination": (1 + (j >= 0))[~bonded].sum() / (len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)),
+               **shaking.moved(), "bond_creep": math.nan, "bond_roll_rad": math.nan,
+               "largest_overlap": contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0] / bodies.radii.min(),
+               "time_step_s": step, "steps": run.step - round(fill.fall / step), "time_s": run.time - fill.fall,
+               "energy_error": energy["error"] / abs(energy["potential"]), "seconds": time.monotonic() - begun}
+    if fill.shape == "bonded_pairs":
+        apart = [np.linalg.norm(m.places[1::2] - m.places[::2], axis=1) for m in (falling.first, after)]
+        rolled = [m.angles[1::2] - m.angles[::2] for m in (falling.first, after)]
+        numbers["bond_creep"] = np.mean(np.abs(apart[1] - apart[0]) / (2 * bodies.radii[::2]))
+        numbers["bond_roll_rad"] = np.mean(np.abs(rolled[1] - rolled[0]))
+    drawn = [(*one.parts(np.ones(len(one.heap), bool)), np.tile(bodies.layers, len(bodies.offsets))) for one in pictures]
+    return {key: float(value) for key, value in numbers.items()}, falling.moved(), falling.rows, shaking.rows, drawn
