@@ -117,7 +117,7 @@ class Plot:
             look = {"color": colour, "label": series.label or "_", "linewidth": 1.4, "markersize": 6,
                     "linestyle": {"points": "", "dashed_line": "--"}.get(series.style, "-"),
                     "marker": MARKERS[series.marker] if shown else "",
-                    "markerfacecolor": colour if series.filled else "white"}
+                    "markerfacecolor": colour if series.filled else "none"}
             if series.low:
                 down = [max(0, y - low) for y, low in zip(series.y, series.low)]
                 up = [max(0, high - y) for y, high in zip(series.y, series.high)]
@@ -128,20 +128,23 @@ class Plot:
             if axis.logarithmic:
                 scale("log")
             limits(axis.low, axis.high)
-        low, high = axes.get_ylim()
-        for series in self.series:  # markers beyond the range are shown at its edge
-            for outside, edge, sign in (([x for x, y in zip(series.x, series.y) if y > high], high, "^"),
-                                        ([x for x, y in zip(series.x, series.y) if y < low], low, "v")):
-                if outside and series.style in ("points", "line_with_points"):
+        (low, high), beyond = axes.get_ylim(), ""
+        for series in (one for one in self.series if one.style in ("points", "line_with_points")):
+            for edge, sign in ((high, "^"), (low, "v")):  # markers beyond the range are shown at its edge
+                outside = [x for x, y in zip(series.x, series.y) if (y > high if sign == "^" else y < low)]
+                if outside:
                     axes.plot(outside, [edge] * len(outside), sign, color=COLOURS[series.colour], markersize=5,
                               clip_on=False)
+                    beyond = "triangles at an edge: beyond it"
         for x, label, colour in self.vertical_lines:
             axes.axvline(x, color=COLOURS[colour], linewidth=1, linestyle=(0, (5, 4)))
             axes.annotate(label, (x, 0.985), (-3, 0), xycoords=("data", "axes fraction"), textcoords="offset points",
                           rotation=90, ha="right", va="top", fontsize=10, color=COLOURS[colour])
         axes.set_xlabel(self.x.label)
         axes.set_ylabel(self.y.label)
-        labels = [series.label for series in self.series if series.label]
+        if beyond:
+            axes.plot([], [], "^", color="#777777", markersize=5, label=beyond)
+        labels = [series.label for series in self.series if series.label] + ([beyond] if beyond else [])
         if labels:
             columns = max(1, min(len(labels), 3, 100 // (8 + max(len(label) for label in labels))))
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=columns, frameon=False, fontsize=10)
