@@ -4,7 +4,7 @@
 # internal.
 cmake_policy(VERSION 3.25)
 
-file(GLOB_RECURSE unread ${source}/tools/command/*.?pp ${source}/tools/equidem/*.?pp ${source}/tools/papers/*.?pp)
+file(GLOB_RECURSE unread ${source}/tools/command/*.?pp ${source}/tools/equidem/*.?pp ${source}/lib/python/src/*.?pp)
 set(headers "")
 while(unread)
   set(found "")

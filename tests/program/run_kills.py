@@ -27,7 +27,7 @@ VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "l
            "sweeps", "rebuilds", "seconds", "threads")
 
 
-def jobs_of(cases, papers):
+def jobs_of(cases):
     """Name -> (program or None, arguments, file from which --resume goes on or None)."""
     no_picture = ("--set", "output.picture=false")
     often = (*no_picture, "--set", "output.checkpoint_interval=0.02")
@@ -55,8 +55,6 @@ def jobs_of(cases, papers):
                          "0,0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1", "--set", "test=none", "--set", support, "--set", load], "sweep.csv"),
         "calibrate": (None, ["calibrate", cases / "calibrate_random.toml"], None),
         "study": (None, ["study", cases.parent / "studies" / "abe_lattice.toml", "--rounds", "3", "--budget", "0"], None),
-        "papers, abe1996": (papers, ["abe1996", "--rows", "17", "--columns", "17"], None),
-        "papers, abe1996_random": (papers, ["abe1996_random", "--quick"], None),
     }
     return jobs
 
@@ -81,8 +79,7 @@ def datasets(path):
 class Killing:
     def __init__(self, arguments, folder):
         self.program = arguments.program
-        self.papers = str(pathlib.Path(arguments.program).parent / "equidem-papers")
-        self.jobs = jobs_of(pathlib.Path(arguments.source) / "data" / "cases", self.papers)
+        self.jobs = jobs_of(pathlib.Path(arguments.source) / "data" / "cases")
         self.random = random.Random(arguments.seed)
         self.folder = folder
         self.findings = []

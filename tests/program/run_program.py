@@ -57,7 +57,7 @@ class Usage(ProgramTest):
     def test_bad_usage_is_exit_code_2_with_the_nearest_word(self):
         self.check_error(equidem(), 2, "a verb is missing", "--help")
         self.check_error(equidem("slove", TENSION), 2, "unknown verb 'slove'", "'solve'")
-        self.check_error(equidem("reproduce", "abe1996"), 2, "'reproduce'", "equidem-papers")
+        self.check_error(equidem("reproduce", "abe1996"), 2, "'reproduce'", "tools/papers")
         self.check_error(equidem("--frob"), 2, "--frob")
         self.check_error(equidem("help", "solv"), 2, "'solve'")
         self.check_error(equidem("solve"), 2, "case file is missing")

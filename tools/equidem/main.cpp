@@ -29,7 +29,7 @@ constexpr const char* footer = R"(Examples:
   equidem help completion bash    completion for the shell
 
 The files of data/cases are installed in share/doc/equidem/examples.
-The tables and figures of published papers are computed by the program equidem-papers.
+The tables and figures of published papers are computed by scripts of the source, tools/papers.
 
 Exit codes: 0 done, of a sweep some of its points; 1 the computation failed or its results could not all be written, and
 the message says why; 2 bad input or usage; 130 interrupted.)";

@@ -15,8 +15,8 @@ import numpy as np
 from common import Axis, Output, Plot, Progress, Series, Table, counted, curve, eq
 
 WEIGHTINGS = ("uniform", "contact_density", "voronoi", "local_contact_density")
-# Numbers of a point by their place: K and G in kN and nu of plane strain of each answer, errors of the mean field (G and
-# K over the exact one, less 1; nu less the exact one), anisotropy of the exact tensor.
+# Numbers of a point by their place: K and G in kN and nu of plane strain of each answer, errors of the mean field (G
+# and K over the exact one, less 1; nu less the exact one), anisotropy of the exact tensor.
 EXACT, MEAN_FIELD, VOIGT, UNIFORM_STRESS, ERRORS, ANISOTROPY = 0, 3, 6, 9, 12, 15
 K, G, NU = 0, 1, 2
 RADIUS = 0.005  # m
@@ -70,16 +70,17 @@ def moduli_of(stiffness):
 
 
 def mean_field(ratio, weighting, phi, z):
-    """nu = (1 - kT/kN)/4 (22); K = phi z/(2 pi) kN for equal springs (21); with the correction (11), springs k/psi, psi
-    of all discs or of the two of a contact, K = phi kN; with springs k h/l, whose facets obey sum h l = 2 A, K = kN/2."""
+    """nu = (1 - kT/kN)/4 (22); K = phi z/(2 pi) kN for equal springs (21); with the correction (11), springs k/psi,
+    psi of all discs or of the two of a contact, K = phi kN; with springs k h/l, whose facets obey sum h l = 2 A,
+    K = kN/2."""
     bulk = {"uniform": phi * z / (2 * math.pi), "voronoi": 0.5}.get(weighting, phi)
     nu = (1 - ratio) / 4
     return [bulk, bulk * (1 - 2 * nu), nu]
 
 
 def compute_cell(plan, family, seed):
-    """Geometry: scatter of branch lengths over their mean, of the contacts of a disc, anisotropy sqrt(a_2² + b_2² + a_4²
-    + b_4²) of psi(theta), phi, z; and the numbers of the points."""
+    """Geometry: scatter of branch lengths over their mean, of the contacts of a disc, anisotropy sqrt(a_2² + b_2² +
+    a_4² + b_4²) of psi(theta), phi, z; and the numbers of the points."""
     cell = family.cell(plan.discs, seed)
     phi, z, points, fabric = cell.solid_fraction, cell.coordination_number, [], None
     for weighting in WEIGHTINGS:
@@ -88,7 +89,8 @@ def compute_cell(plan, family, seed):
             found = eq.homogenize(cell, springs, homogenize={"bounds": "affine"})
             fabric = fabric or found.fabric
             exact, mean = moduli_of(found.stiffness), mean_field(ratio, weighting, phi, z)
-            points.append([*exact, *mean, *moduli_of(found.bounds.voigt), *moduli_of(found.bounds.uniform_stress_estimate),
+            beside = [moduli_of(found.bounds[name]) for name in ("voigt", "uniform_stress_estimate")]
+            points.append([*exact, *mean, *beside[0], *beside[1],
                            mean[K] / exact[K] - 1, mean[G] / exact[G] - 1, mean[NU] - exact[NU], found.anisotropy])
     branches = np.array(cell.levers).sum(axis=1)
     contacts = np.bincount(np.array(cell.contacts).ravel(), minlength=len(cell))
@@ -128,7 +130,7 @@ class Result:
         self.error = np.array([d / math.sqrt(len(points)) for d, points in zip(self.deviation, means)])
 
     def chosen(self, weighting, anisotropic=False, ratio=None):
-        """(family, weighting, ratio) of the points of a weighting on random isotropic families, or on all random ones."""
+        """(family, weighting, ratio) of the points of a weighting on isotropic random families, or all random ones."""
         return [(f, weighting, r) for f, family in enumerate(self.plan.families)
                 if family.random and (anisotropic or family.isotropic)
                 for r, one in enumerate(self.plan.ratios) if ratio is None or one == ratio]
@@ -184,8 +186,8 @@ def describe_weighting(r, w):
             + grid(r, w, "K of the mean field over the exact one, less 1", ERRORS + K))
 
 
-def conclude_errors(r):
-    text = "1. Errors of the mean field (mean field less exact) on isotropic random assemblies\n"
+def errors_of(r):
+    text = ""
     for w, weighting in enumerate(WEIGHTINGS):
         points = r.chosen(w)
         text += f"  {weighting}:\n"
@@ -200,11 +202,10 @@ def conclude_errors(r):
     return text
 
 
-def conclude_disorder(r):
+def effect_of_disorder(r):
     """The exponent of |error| ~ disorder^p between the two least disordered lattices, and errors against kT/kN."""
-    lattices = [f for f, family in enumerate(r.plan.families) if family.lattice and family.random]
-    small, larger = (r.plan.families[f].disorder for f in lattices[:2])
-    without = np.abs(r.mean[0, :, :, ERRORS:ANISOTROPY]).max()
+    lattices = [f for f, family in enumerate(r.plan.families) if family.lattice and family.random][:2]
+    small, larger = (r.plan.families[f].disorder for f in lattices)
     exponents = Table(" & p of nu & p of G")
     against = Table(head_of_ratios(r, "kT/kN, root mean square over isotropic random assemblies"))
     for w, name in enumerate(WEIGHTINGS):
@@ -214,126 +215,77 @@ def conclude_disorder(r):
         by_ratio = [r.chosen(w, ratio=ratio) for ratio in r.plan.ratios]
         against.add(f"{name}: error of nu" + "".join(f" & {r.rms(points, ERRORS + NU):.4f}" for points in by_ratio))
         against.add(f"{name}: error of G, %" + "".join(f" & {100 * r.rms(p, ERRORS + G):.2f}" for p in by_ratio))
-    return (f"2. Without disorder the error is {without:.0e}. From disorder {small:g} to {larger:g}, at kT/kN = "
-            f"{r.plan.ratios[0]:g}, errors grow as disorder^p:\n" + exponents.text() + against.text())
+    return {"without": np.abs(r.mean[0, :, :, ERRORS:ANISOTROPY]).max(), "small": small, "larger": larger,
+            "exponents": exponents, "against_ratio": against}
 
 
-def conclude_causes(r):
+def causes_of_error(r):
     """Causes of the error of G, on the isotropic assembly with the widest scatter of branch lengths."""
     widest = max((f for f, family in enumerate(r.plan.families) if family.isotropic), key=lambda f: r.geometry[f][0])
     k, table = len(r.plan.ratios) // 2, Table(" & branch lengths & non-uniform strain & both")
     for w, name in enumerate(WEIGHTINGS):
         exact, mean, voigt = (r.mean[widest, w, k, answer + G] for answer in (EXACT, MEAN_FIELD, VOIGT))
         table.add(f"{name} & {percent(voigt / mean - 1)} & {percent(exact / voigt - 1)} & {percent(exact / mean - 1)}")
-    return f"""3. Two causes: branch lengths differ from 2a (Voigt against mean field), and discs depart from the uniform\
- strain
-   (exact against Voigt). Change of G of '{r.plan.families[widest].name}' at kT/kN = {r.plan.ratios[k]:g}:
-{table.text()}"""
+    return {"widest": r.plan.families[widest].name, "middle": r.plan.ratios[k], "causes": table}
 
 
-def conclude_correction(r):
+def effect_of_correction(r):
     uniform, corrected, local = (r.chosen(w) for w in (0, 1, 3))
     before, after, local_after = (r.rms(points, ERRORS + NU) for points in (uniform, corrected, local))
-    beyond = sum(abs(r.mean[c][NU] - r.mean[u][NU]) > 2 * math.hypot(r.error[c][NU], r.error[u][NU])
-                 for u, c in zip(uniform, corrected))
-    nearer = int((np.abs(r.values(local, ERRORS + NU)) < np.abs(r.values(uniform, ERRORS + NU))).sum())
-    uneven = max(geometry[2] for family, geometry in zip(r.plan.families, r.geometry) if family.isotropic)
-    text = f"""4. The correction (11) on isotropic random assemblies: root mean square error of nu {before:.4f} without it,\
- {after:.4f} with it
-   ({percent(after / before - 1)}); at {beyond} of {len(uniform)} points nu changes by more than two standard errors. The\
- correction {'helps' if after < 0.9 * before else 'does not help'} there: the
-   anisotropy of psi(theta) is at most {uneven:.3f}.
-   With a local psi, of the two discs of each contact alone (local_contact_density): {local_after:.4f}\
- ({percent(local_after / before - 1)}), smaller at {nearer} of {len(uniform)}
-   points. Each disc then has the springs k times the angle that a contact has to itself, by which its sums over
-   contacts are the integrals (14) to the order of the trapezoidal rule.
-"""
-    for f, family in ((f, family) for f, family in enumerate(r.plan.families) if not family.isotropic):
-        text += (f"   '{family.name}' (anisotropy of psi(theta) {r.geometry[f][2]:.3f}): anisotropy of the exact tensor, "
-                 "error of nu\n")
-        table = Table("kT/kN & uniform & nu & contact_density & change & nu & voronoi & nu & local & nu")
-        for ratio, numbers in zip(r.plan.ratios, np.moveaxis(r.mean[f], 1, 0)):
-            a, nu = numbers[:, ANISOTROPY], numbers[:, ERRORS + NU]
-            table.add(f"{ratio:g} & {a[0]:.4f} & {nu[0]:+.4f} & {a[1]:.4f} & {percent(a[1] / a[0] - 1)} & {nu[1]:+.4f} & "
-                      f"{a[2]:.4f} & {nu[2]:+.4f} & {a[3]:.4f} & {nu[3]:+.4f}")
-        text += table.text()
-    return text
+    table = Table("kT/kN & uniform & nu & contact_density & change & nu & voronoi & nu & local & nu")
+    for ratio, numbers in zip(r.plan.ratios, np.moveaxis(r.mean[-1], 1, 0)):
+        a, nu = numbers[:, ANISOTROPY], [f"{error:+.4f}" for error in numbers[:, ERRORS + NU]]
+        table.add(f"{ratio:g} & {a[0]:.4f} & {nu[0]} & {a[1]:.4f} & {percent(a[1] / a[0] - 1)} & {nu[1]} & "
+                  f"{a[2]:.4f} & {nu[2]} & {a[3]:.4f} & {nu[3]}")
+    sums = r.mean[-1, :, :, ANISOTROPY].sum(axis=1)
+    return {"before": before, "after": after, "after_change": percent(after / before - 1), "count": len(uniform),
+            "beyond": sum(abs(r.mean[c][NU] - r.mean[u][NU]) > 2 * math.hypot(r.error[c][NU], r.error[u][NU])
+                          for u, c in zip(uniform, corrected)),
+            "helps": "helps" if after < 0.9 * before else "does not help",
+            "uneven": max(geometry[2] for family, geometry in zip(r.plan.families, r.geometry) if family.isotropic),
+            "local": local_after, "local_change": percent(local_after / before - 1),
+            "nearer": (np.abs(r.values(local, ERRORS + NU)) < np.abs(r.values(uniform, ERRORS + NU))).sum(),
+            "stretched": r.plan.families[-1], "uneven_stretched": r.geometry[-1][2], "stretched_table": table,
+            "stretched_changes": [percent(sums[w] / sums[0] - 1) for w in (1, 2)],
+            "local_largest": r.largest(local, ERRORS + NU), "local_G": 100 * r.rms(local, ERRORS + G),
+            "local_K": 100 * r.rms(local, ERRORS + K)}
 
 
-def conclude_weighting(r):
+def best_weighting(r):
     table, scores = Table("weighting & error of nu & error of G & error of K & scatter of G, one cell & anisotropy"), []
     for w, name in enumerate(WEIGHTINGS):
         points = r.chosen(w)
-        scores.append([r.rms(points, ERRORS + m) for m in (K, G, NU)])
+        bulk, shear, nu = (r.rms(points, ERRORS + m) for m in (K, G, NU))
+        scores.append((bulk, shear, nu))
         scatter = math.sqrt(np.mean([(r.deviation[p][G] / r.mean[p][G]) ** 2 for p in points]))
-        bulk, shear, nu = scores[-1]
         table.add(f"{name} & {nu:.4f} & {100 * shear:.2f} % & {100 * bulk:.2f} % & {100 * scatter:.2f} % & "
                   f"{r.rms(points, ANISOTROPY):.4f}")
-    best = [WEIGHTINGS[min(range(len(WEIGHTINGS)), key=lambda w: scores[w][m])] for m in (NU, G, K)]
-    return f"""5. Weighting that the mean field describes best: root mean square over isotropic random assemblies and kT/kN
-{table.text()}   Best for nu: {best[0]}; for G: {best[1]}; for K: {best[2]}.
-   With springs k h/l, K = kN/2 within {np.abs(r.mean[:, 2, :, ERRORS + K]).max():.0e} on all assemblies: under an isotropic\
- strain the contact forces of a
-   disc are proportional to h n, their sum around the closed cell is zero, and every disc follows the uniform strain.
-"""
+    return {"scores": table, "best": [WEIGHTINGS[int(np.argmin(np.array(scores)[:, m]))] for m in (NU, G, K)],
+            "worst_bulk": np.abs(r.mean[:, 2, :, ERRORS + K]).max()}
 
 
-def conclude_bounds(r):
+def inside_bounds(r):
     numbers = np.array([r.mean[p] for w in range(len(WEIGHTINGS)) for p in r.chosen(w, True)]).T
-    tiny = 1e-12
-    below = (numbers[EXACT + G] <= numbers[VOIGT + G] * (1 + tiny)).sum()
-    above = (numbers[EXACT + G] >= numbers[UNIFORM_STRESS + G] * (1 - tiny)).sum()
-    ends, nu = np.sort(numbers[[VOIGT + NU, UNIFORM_STRESS + NU]], axis=0), numbers[EXACT + NU]
-    between = ((ends[0] - tiny <= nu) & (nu <= ends[1] + tiny)).sum()
-    return f"""6. Of {numbers.shape[1]} points, G is at most Voigt's in {below} (a bound) and at least the uniform-stress\
- estimate in {above} (not a bound);
-   nu lies between those two in {between}.
-"""
-
-
-def conclude_limit(r):
-    text = "7. Largest nu of any of these assemblies with kT >= 0 (the mean field gives at most 1/4):\n"
-    for w, name in enumerate(WEIGHTINGS):
-        most = max(r.chosen(w, True), key=lambda point: r.mean[point][NU])
-        text += f"  {name:<21} {r.mean[most][NU]:.4f} ± {r.error[most][NU]:.4f} ({r.place(most)})\n"
-    return text
-
-
-def answer(r):
-    """The answer to the paper's open question, from the numbers."""
-    equal, local = r.chosen(0), r.chosen(3)
-
-    def all_three(measure, points):
-        return [measure(points, ERRORS + NU)] + [100 * measure(points, ERRORS + m) for m in (G, K)]
-    at_most, rms = ("{:.3f} in nu, {:.2g} % in G and {:.2g} % in K".format(*all_three(measure, equal))
-                    for measure in (r.largest, r.rms))
-    before, (after, shear, bulk) = r.rms(equal, ERRORS + NU), all_three(r.rms, local)
-    text = f"""On isotropic random assemblies of equal springs the error of Abe's mean field is at most {at_most}
-(root mean square over disorder and kT/kN: {rms}).
-Springs by the local psi of the discs of each contact change the root mean square error of nu to {after:.4f}\
- ({percent(after / before - 1)}), and its
-largest to {r.largest(local, ERRORS + NU):.3f}; errors of G and K: {shear:.2g} % and {bulk:.2g} % (root mean square)."""
-    for f, family in ((f, family) for f, family in enumerate(r.plan.families) if not family.isotropic):
-        sums = r.mean[f, :, :, ANISOTROPY].sum(axis=1)
-        text += f"\nOn '{family.name}', mean over kT/kN, the correction (11) changes the anisotropy by " \
-                f"{percent(sums[1] / sums[0] - 1)}, springs k h/l by {percent(sums[2] / sums[0] - 1)}."
-    return text + "\n\n"
+    ends, nu, tiny = np.sort(numbers[[VOIGT + NU, UNIFORM_STRESS + NU]], axis=0), numbers[EXACT + NU], 1e-12
+    return {"bounded": numbers.shape[1], "below": (numbers[EXACT + G] <= numbers[VOIGT + G] * (1 + tiny)).sum(),
+            "above": (numbers[EXACT + G] >= numbers[UNIFORM_STRESS + G] * (1 - tiny)).sum(),
+            "between": ((ends[0] - tiny <= nu) & (nu <= ends[1] + tiny)).sum()}
 
 
 def report(r):
-    refused = f"{counted(len(r.refusals), 'cell')} without moduli, left out; the first: {r.refusals[0]}\n\n" \
-        if r.refusals else ""
-    return f"""Abe (1996) on random assemblies: the mean field (21), (22) and the correction (11) beside the exact moduli
-
-{r.plan.samples} periodic Delaunay cells of about {r.plan.discs} equal discs of each kind, seeds 1 to {r.plan.samples};\
- rotation free; nu of plane strain.
-Exact: homogenized, mean over the cells. Mean field: phi, z and psi(theta) measured on the same cell.
-
-{refused}{describe_families(r)}
-{''.join(describe_weighting(r, w) for w in range(len(WEIGHTINGS)))}Conclusions
-
-{answer(r)}{conclude_errors(r)}{conclude_disorder(r)}{conclude_causes(r)}{conclude_correction(r)}{conclude_weighting(r)}\
-{conclude_bounds(r)}{conclude_limit(r)}"""
+    """tools/papers/abe1996_random.txt with its numbers."""
+    limits, equal = "", r.chosen(0)
+    for w, name in enumerate(WEIGHTINGS):
+        most = max(r.chosen(w, True), key=lambda point: r.mean[point][NU])
+        limits += f"  {name:<21} {r.mean[most][NU]:.4f} ± {r.error[most][NU]:.4f} ({r.place(most)})\n"
+    at_most, rms = (f"{measure(equal, ERRORS + NU):.3f} in nu, {100 * measure(equal, ERRORS + G):.2g} % in G and "
+                    f"{100 * measure(equal, ERRORS + K):.2g} % in K" for measure in (r.largest, r.rms))
+    return common.filled(
+        "abe1996_random", plan=r.plan, families=describe_families(r), limits=limits, at_most=at_most, rms=rms,
+        weightings="".join(describe_weighting(r, w) for w in range(len(WEIGHTINGS))), errors=errors_of(r),
+        refused=f"{counted(len(r.refusals), 'cell')} without moduli, left out; the first: {r.refusals[0]}\n\n"
+        if r.refusals else "", **effect_of_disorder(r), **causes_of_error(r), **effect_of_correction(r),
+        **best_weighting(r), **inside_bounds(r))
 
 
 LOOKS = [{"colour": colour, "marker": marker} for colour, marker in zip(
@@ -410,7 +362,8 @@ def plots(r):
     for w, name in enumerate(WEIGHTINGS):
         drawn[f"poisson_ratio_{name}"] = poisson_plot(r, w)
         drawn[f"error_poisson_ratio_{name}"] = error_plot(r, w, "ν of the mean field less the exact one", ERRORS + NU)
-        drawn[f"error_shear_modulus_{name}"] = error_plot(r, w, "G of the mean field over the exact one, less 1", ERRORS + G)
+        drawn[f"error_shear_modulus_{name}"] = error_plot(r, w, "G of the mean field over the exact one, less 1",
+                                                          ERRORS + G)
     return drawn
 
 
@@ -418,8 +371,8 @@ def reproduce(options):
     r = Result(Plan(options.quick))
     table = table_of(r)
     points = [dict(zip(table, row)) for row in zip(*table.values())]
-    return Output(report(r), {"discs": r.plan.discs, "samples": r.plan.samples, "refusals": r.refusals, "points": points},
-                  {"mean_field": table}, plots(r))
+    numbers = {"discs": r.plan.discs, "samples": r.plan.samples, "refusals": r.refusals, "points": points}
+    return Output(report(r), numbers, {"mean_field": table}, plots(r))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import time
 import numpy as np
 
 from common import (DATA, Axis, Output, Plot, Series, columns_of, eq, fit_line, machine, main, markdown, mean_of, moved_discs,
-                    plain, points, samples_of)
+                    points, samples_of)
 
 # The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
 TEST_OVER, SCATTERED_TEST_OVER = 0.9, 0.7
@@ -261,7 +261,7 @@ def reproduce(options):
         scattered_test_over=100 * SCATTERED_TEST_OVER, fits=fits_text(fits), count=len(plates), seconds=np.diff(times),
         chain_seeds=4 * seeds, seeds=seeds, chains=sizes_text(chains), plates=sizes_text(samples),
         weakening=weakening_text(samples), error=error)
-    return Output(page, plain({"quick": quick, "fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}}),
+    return Output(page, {"quick": quick, "fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}},
                   {"notches_values": columns_of(plates), "weibull_chains_values": columns_of(chains),
                    "weibull_plates_values": columns_of(samples)},
                   {"notches": notch_plot(plates, fits), "weibull_mean": weibull_plot(chains, samples, False),

@@ -117,7 +117,7 @@ class Plot:
             look = {"color": colour, "label": series.label or "_", "linewidth": 1.4, "markersize": 6,
                     "linestyle": {"points": "", "dashed_line": "--"}.get(series.style, "-"),
                     "marker": MARKERS[series.marker] if shown else "",
-                    "markerfacecolor": colour if series.filled else "white"}
+                    "markerfacecolor": colour if series.filled else "none"}
             if series.low:
                 down = [max(0, y - low) for y, low in zip(series.y, series.low)]
                 up = [max(0, high - y) for y, high in zip(series.y, series.high)]
@@ -128,20 +128,23 @@ class Plot:
             if axis.logarithmic:
                 scale("log")
             limits(axis.low, axis.high)
-        low, high = axes.get_ylim()
-        for series in self.series:  # markers beyond the range are shown at its edge
-            for outside, edge, sign in (([x for x, y in zip(series.x, series.y) if y > high], high, "^"),
-                                        ([x for x, y in zip(series.x, series.y) if y < low], low, "v")):
-                if outside and series.style in ("points", "line_with_points"):
+        (low, high), beyond = axes.get_ylim(), ""
+        for series in (one for one in self.series if one.style in ("points", "line_with_points")):
+            for edge, sign in ((high, "^"), (low, "v")):  # markers beyond the range are shown at its edge
+                outside = [x for x, y in zip(series.x, series.y) if (y > high if sign == "^" else y < low)]
+                if outside:
                     axes.plot(outside, [edge] * len(outside), sign, color=COLOURS[series.colour], markersize=5,
                               clip_on=False)
+                    beyond = "triangles at an edge: beyond it"
         for x, label, colour in self.vertical_lines:
             axes.axvline(x, color=COLOURS[colour], linewidth=1, linestyle=(0, (5, 4)))
             axes.annotate(label, (x, 0.985), (-3, 0), xycoords=("data", "axes fraction"), textcoords="offset points",
                           rotation=90, ha="right", va="top", fontsize=10, color=COLOURS[colour])
         axes.set_xlabel(self.x.label)
         axes.set_ylabel(self.y.label)
-        labels = [series.label for series in self.series if series.label]
+        if beyond:
+            axes.plot([], [], "^", color="#777777", markersize=5, label=beyond)
+        labels = [series.label for series in self.series if series.label] + ([beyond] if beyond else [])
         if labels:
             columns = max(1, min(len(labels), 3, 100 // (8 + max(len(label) for label in labels))))
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=columns, frameon=False, fontsize=10)
@@ -370,3 +373,107 @@ def deliver(options, name, output):
         pathlib.Path(options.json).write_text(numbers, encoding="utf-8")
     if not options.quiet:
         sys.stdout.write(output.report)
+
+
+# ---- random numbers, samples side by side, lines of least squares
+
+class Random:
+    """xoshiro256++ seeded through splitmix64: the numbers of equidem/core/random.hpp."""
+    def __init__(self, seed):
+        self.state = []
+        for _ in range(4):
+            seed = (seed + 0x9E3779B97F4A7C15) % 2**64
+            z = (seed ^ seed >> 30) * 0xBF58476D1CE4E5B9 % 2**64
+            z = (z ^ z >> 27) * 0x94D049BB133111EB % 2**64
+            self.state.append(z ^ z >> 31)
+
+    def bits(self):
+        def turned(x, k):
+            return (x << k | x >> 64 - k) % 2**64
+        a, b, c, d = self.state
+        result = (turned((a + d) % 2**64, 23) + a) % 2**64
+        c, d = c ^ a, d ^ b
+        self.state = [a ^ d, b ^ c, c ^ (b << 17) % 2**64, turned(d, 45)]
+        return result
+
+    def uniform(self, low=0.0, high=1.0):
+        return low + (high - low) * ((self.bits() >> 11) * 2.0**-53)
+
+    def below(self, count):
+        return self.bits() * count >> 64
+
+
+@dataclasses.dataclass
+class Line:
+    """y = intercept + slope x, with standard errors from those of y."""
+    intercept: float
+    slope: float
+    intercept_error: float
+    slope_error: float
+
+
+def fit_line(x, y, errors):
+    """The line of least squares, each y weighted by the inverse square of its standard error."""
+    weights = [1 / error**2 for error in errors]
+    total = sum(weights)
+    x_mean, y_mean = (sum(w * value for w, value in zip(weights, values)) / total for values in (x, y))
+    xx = sum(w * (at - x_mean)**2 for w, at in zip(weights, x))
+    slope = sum(w * (at - x_mean) * (value - y_mean) for w, at, value in zip(weights, x, y)) / xx
+    return Line(y_mean - slope * x_mean, slope, math.sqrt(1 / total + x_mean**2 / xx), math.sqrt(1 / xx))
+
+
+def begin_worker():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    eq.set_threads(1)
+    eq.show_progress(False)
+
+
+workers = []
+
+
+def samples_of(task, function, arguments, at_once=0):
+    """function of each argument, in processes side by side, `at_once` to a process, with progress; in order."""
+    if not workers:
+        workers.append(multiprocessing.get_context("spawn").Pool(eq.threads(), begin_worker))
+    progress, found = Progress(task), []
+    for one in workers[0].imap(function, arguments, at_once or max(1, len(arguments) // 50)):
+        found.append(one)
+        progress.update(len(found) / len(arguments))
+    progress.end()
+    return found
+
+
+def rows_of(name):
+    """The rows of data/papers/NAME.csv as texts."""
+    with open(DATA / (name + ".csv"), newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def columns_of(rows):
+    """Rows {key: value} as a table {column: list}."""
+    return {key: [row[key] for row in rows] for key in rows[0]}
+
+
+def points(label, x, y, colour="black", marker="circle", *, filled=True, joined=False, errors=()):
+    """Points, where wanted joined by a line or with bars of +- one standard error."""
+    return Series(label, list(x), list(y), "line_with_points" if joined else "points", colour, marker, filled,
+                  low=[at - error for at, error in zip(y, errors)], high=[at + error for at, error in zip(y, errors)])
+
+
+def moved_discs(discs, motions, **groups):
+    """Supports of discs, each with its motion, and their groups beside those given."""
+    names = [f"disc {disc}" for disc in discs]
+    return {"supports": [{"group": name, "ux": float(u[0]), "uy": float(u[1])} for name, u in zip(names, motions)],
+            "group": [{"name": name, "discs": [int(disc)]} for name, disc in zip(names, discs)] +
+                     [{"name": name, "discs": members} for name, members in groups.items()]}
+
+
+def markdown(head, rows):
+    """A table of Markdown."""
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in (head, ["---"] * len(head), *rows))
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        names = [line.split(": ", 1)[1].strip() for line in file if line.startswith("model name")]
+    return f"{names[0] if names else 'unknown processor'}, {len(names)} cores; equidem {eq.__version__}"

@@ -56,8 +56,8 @@ class Variant:
     def spheres(self, centres, step, e=E, velocities=None, radius=D / 2, refuse_crossing=True):
         """Spheres over a floor; contacts end at zero overlap as in the paper, those of X where the force is zero."""
         velocities = np.zeros((len(centres), 2)) if velocities is None else np.array(velocities, dtype=float)
-        return eq._core.Spheres(np.array(centres, dtype=float), velocities, radius, self.law, self.a, e, self.of_paper, G,
-                                step, refuse_crossing)
+        return eq._core.Spheres(np.array(centres, dtype=float), velocities, radius, self.law, self.a, e, self.of_paper,
+                                G, step, refuse_crossing)
 
 
 def variants(stiffness):
@@ -128,7 +128,7 @@ def measure_table1(quick, progress):
         law = eq._core.Law(variant.law, variant.a, E) if variant.of_paper else None
         rows.append({**variant.head(), "variant": variant, "time_step": step, "run_seconds": 0.0,
                      "law_alone_nanoseconds": math.inf if law else math.nan,
-                     "evaluations_gravity_first": gravity_first(variant, step), "law": law,
+                     "evaluations_gravity_first": gravity_first(variant, step), "alone": law,
                      "samples": samples_of(law) if law else None,
                      "runs": [variant.spheres(balls, step) for _ in range(3)]})
         progress.update(0.5 + 0.2 * len(rows) / 6)
@@ -140,15 +140,15 @@ def measure_table1(quick, progress):
                 run.advance(steps)
                 least = min(least, time.process_time() - before)
             row["run_seconds"] += least
-            if part % 5 == 0 and row["law"]:
+            if part % 5 == 0 and row["alone"]:
                 before = time.perf_counter()
-                row["law"].sum(*row["samples"], 20)
+                row["alone"].sum(*row["samples"], 20)
                 row["law_alone_nanoseconds"] = min(row["law_alone_nanoseconds"],
                                                    (time.perf_counter() - before) * 1e9 / (20 * 4096))
         progress.update(0.7 + 0.3 * (part + 1) / SLICES)
     for row in rows:
         row["evaluations"] = row["runs"][0].counters.evaluations
-        del row["runs"], row["samples"], row["law"]
+        del row["runs"], row["samples"], row["alone"]
     return rows
 
 
@@ -213,8 +213,8 @@ def impacts(fast):
 
 
 def compare_printed():
-    """Energy after over before an impact by P without gravity over all phases of the contact step, with single equations
-    as the paper prints them; theory: e²."""
+    """Energy after over before an impact by P without gravity over all phases of the contact step, with single
+    equations as the paper prints them; theory: e²."""
     def ratio(reading, law, a, phase):
         depth, closing, first = phase, 1.0, True
         for _ in range(1000):
@@ -303,7 +303,8 @@ def slide_stacked(quick, progress):
     for variant in variants(STIFF):
         curves.append({"variant": variant, "label": variant.label, "points": [slide(variant, step) for step in steps]})
         progress.update(0.2 + 0.3 * len(curves) / 6)
-    curves.append({"variant": variants(STIFF)[0], "label": "C, no lag", "points": [slide_without_lag(s) for s in steps]})
+    without_lag = [slide_without_lag(step) for step in steps]
+    curves.append({"variant": variants(STIFF)[0], "label": "C, no lag", "points": without_lag})
     for one in curves:
         one.update(speed_order=order(one["points"], SPEEDS), parting_order=order(one["points"], PARTINGS))
     return curves
@@ -413,10 +414,6 @@ def of(rows, label):
     return next(row for row in rows if row["variant"].label == label)
 
 
-def decided(holds):
-    return "holds" if holds else "does not hold here"
-
-
 def worst(ratios, first=1, last=20):
     """Largest |ratio - e²| of the impacts from the first-th to the last-th."""
     return max((abs(ratio - THEORY) for ratio in ratios[first - 1:last]), default=0.0)
@@ -426,64 +423,29 @@ def cells(variant):
     return f"{variant.label} & {variant.a:g}"
 
 
-def table_1(rows, quick):
+def printed_steps(label):
+    return [round(PRINTED[f"steps_{label}_1e-{k}"].value) for k in (3, 4, 5)]
+
+
+def table_1(rows):
     table = Table("law & a & step & evaluations & gravity first & run & law alone & printed: evaluations & run & "
                   "one evaluation")
     for row in rows:
-        label, first = row["variant"].label, row["evaluations_gravity_first"]
-        alone = row["law_alone_nanoseconds"] if row["variant"].of_paper else PRINTED[f"law_alone_{label}"].value
-        printed = [PRINTED[f"{name}_{label}"].value for name in ("evaluations", "run", "evaluation")] \
-            if row["variant"].of_paper else []
+        label, first, own = row["variant"].label, row["evaluations_gravity_first"], row["variant"].of_paper
+        alone = row["law_alone_nanoseconds"] if own else PRINTED[f"law_alone_{label}"].value
+        printed = [PRINTED[f"{name}_{label}"].value for name in ("evaluations", "run", "evaluation")] if own else []
         table.add(f"{cells(row['variant'])} & {row['time_step']:.0e} s & {row['evaluations']:.3g} & "
                   f"{format(first, '.3g') if first else '-'} & {row['run_seconds']:.3g} s & {alone:.3g} ns"
                   + (" & {:.3g} & {:g} s & {:.2f} µs".format(*printed) if printed else ""))
-    step, rest = rows[0]["time_step"], math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)
-    c, f, p = (of(rows, letter) for letter in "CFP")
-    shares = [PRINTED[f"evaluations_{letter}"].value / PRINTED["evaluations_C"].value for letter in "FP"]
-    alone, run = (p[key] / c[key] for key in ("law_alone_nanoseconds", "run_seconds"))
-    return f"""Table 1: {BALLS} balls fall and come to rest, {DURATION:g} s; times are of the processor
-{table.text()}  The paper states a step of 1e-5 s and 5e6 steps, 50 s. A rigid ball is at rest from {rest:.4f} s on; 16
-  balls in contact at every later step make {16 * (DURATION - rest) / 1e-6:.3g} evaluations in 5 s with a step of 1e-6 s,\
- which is
-  the printed number of C, but {16 * (50 - rest) / 1e-5:.3g} in 50 s with 1e-5 s: the run was of 5 s and 1e-6 s\
-{f' (here {step:g} s)' if quick else ''}.
-  C itself comes to rest sooner here, since its ratio is low at most phases of the impact.
-  With gravity after the contact force (as Table 2 requires) F and P come to rest like C. The printed
-  counts of F and P, {shares[0]:.2f} and {shares[1]:.2f} of that of C, need balls that continue to bounce; with gravity
-  before the contact force they do, in the same proportion of P to F\
- ({p['evaluations_gravity_first'] / f['evaluations_gravity_first']:.2f}, printed 1.90), though not
-  with the same counts. The printed count of T follows from neither order.
-  X needs no small step: "X stiff" makes the same run with 1e-3 s. The law alone of X: {PRINTED['law_alone_X'].source}.
-  An evaluation of P costs {100 * (alone - 1):+.0f} % against C here (the paper: +4 %), in a loop of evaluations alone,
-  of which the compiler may compute several of C at once;
-  with {p['law_alone_nanoseconds']:.1f} of about {p['run_seconds'] * 1e9 / (16 * DURATION / step):.0f} ns per ball and step\
- the whole run of P takes {100 * (run - 1):+.0f} % against C.
-"""
-
-
-def printed_steps(label):
-    return [round(PRINTED[f"steps_{label}_1e-{k}"].value) for k in (3, 4, 5)]
+    return table
 
 
 def table_2(rows):
     table = Table("law & a & 1e-3 s & 1e-4 s & 1e-5 s & printed")
     for row in rows:
-        beside = ", ".join(map(str, printed_steps(row["letter"]))) if row["variant"].of_paper else ""
-        table.add(cells(row["variant"]) + "".join(f" & {n}" for n in row["steps"]) + (f" & {beside}" if beside else ""))
-    return "Table 2: steps in contact at three time steps, first impact of the slow ball\n" + table.text()
-
-
-def corrections(rows):
-    table = Table("law P & a & mean & least & largest")
-    for name, a, *numbers in rows:
-        table.add(f"{name} & {a:g}" + "".join(f" & {number:.6f}" for number in numbers))
-    return f"""Corrections to the paper
-  (16): f_(j-1)/s_j is a name of the force f^ alone. (18): the left side is the corrected energy E^, not K.
-  (20): d_j is the corrected depth d^. Mode 2: where (21) gives d' <= 0, that is for s >= sqrt(1 - a), the
-  contact is left by (23); the energy a d²/2 would be lost otherwise. (26): h h' + d d' = 0. (31): the step of
-  the sum is (sqrt3/2 - k)/N. Figs. 4, 5: the ratio is e², not e^(1/2). Energy after over before one impact
-  without gravity, over 4000 phases of the contact step (theory 0.49):
-{table.text()}"""
+        beside = " & " + ", ".join(map(str, printed_steps(row["letter"]))) if row["variant"].of_paper else ""
+        table.add(cells(row["variant"]) + "".join(f" & {n}" for n in row["steps"]) + beside)
+    return table
 
 
 def table_of_impacts(laws, key):
@@ -495,34 +457,14 @@ def table_of_impacts(laws, key):
         table.add(f"{cells(law['variant'])} & {len(ratios)}{'+' if len(ratios) == 20 else ' '}{shown} & "
                   f"{worst(ratios, 1, 10):.1e} & {worst(ratios):.1e} & {law['deepest']:.2g} d & "
                   f"{'unstable' if law['ran_away'] else ''}")
-    return table.text()
-
-
-def impact_tables(slow, fast):
-    return f"""Fig. 4: energy ratio of slow impacts (theory 0.49), ball dropped by 0.01 diameters, in two readings
-  1. E = v²/2 + g h of the first step apart over that of the step of contact, v and h of the same step
-{table_of_impacts(slow, RATIOS)}  2. The energy that a flight keeps, v²/2 + g (h - v dt/2), after over before
-{table_of_impacts(slow, 'energy_ratios_of_flights')}  The paper compares the energies before and after the N-th impact,\
- that is reading 1: in it P stays at
-  0.49 over ten impacts, as printed. Velocities of semi-implicit Euler are half a step behind positions, so
-  that E of a step differs from what the flight keeps by g v dt/2, with opposite signs before and after an
-  impact: reading 2 is lower by (e + e²) g dt/v, v the speed of the impact, and is that of the energy that the ball keeps.
-  X at a = 0.1 is the exact answer of the soft spring under gravity; stiff, it follows the rigid ball.
-
-Figs. 5 to 7: fast impacts, 1e5 m/s, 0.444 diameters in a step
-{table_of_impacts(fast, RATIOS)}  C penetrates more than a diameter in the first impact and returns, since the floor is a\
- half space; in
-  the paper it is lost at the second. T with the stiffness of Table 2 is unstable here: it returns more
-  energy than it received; "T soft", with a smaller stiffness, goes on with ratios that are not constant,
-  as the paper describes. Flights are computed in one move, by the closed form of their steps.
-"""
+    return table
 
 
 def point_at(one, step):
     return next((p for p in one["points"] if abs(p["time_step"] / step - 1) < 0.01), None)
 
 
-def stacked_spheres(curves):
+def table_of_stacked(curves):
     table = Table("law & a & d': 1e-3 s & 1e-4 s & 1e-5 s & 1e-6 s & order & T0: 1e-3 s & 1e-4 s & 1e-5 s & 1e-6 s & "
                   "order")
     for one in curves:
@@ -532,21 +474,10 @@ def stacked_spheres(curves):
             row += "".join(f" & {p[key]:.1e}" if p else " & -" for p in found)
             row += f" & {one[key.replace('error', 'order')]:.2f}"
         table.add(row)
-    sweeps = [point_at(of(curves, label), 1e-4)["sweeps_in_a_step"] for label in ("X", "X stiff")]
-    return f"""Figs. 10, 11: stacked spheres; exact d' = {EXACT_SPEED:.12f}, T0 = {EXACT_PARTING:.12f} s (the paper's sum\
- (31) is low by {ERROR_OF_31:g})
-  Relative errors of d' and T0 by the time step
-{table.text()}  Sweeps of X in a step of 1e-4 s: {sweeps[0]:.1f} (a = 0.1), {sweeps[1]:.1f} (a = 4).
-  C stops converging (orders near 0, as printed): its closing speed is the velocity of the previous step
-  along the normal of this step, low by (v_t²/L) dt/2. The damping per step is kept with a, so that the
-  dashpot turns this error into an adhesion that no time step removes. With the closing speed from
-  d_j - d_(j-1) (last line) it vanishes. T has no such error: its damping vanishes with d^(1/4). F and P
-  coincide, since the contacts last and only their first steps differ; in the paper they differ, and F
-  is often the better one. T0 is the time of the step in which B and C part: order 1 at best.
-"""
+    return table
 
 
-def costs(title, curves, key, wanted):
+def costs(curves, key, wanted):
     """Times of the cheapest point with at most the wanted error."""
     table = Table("law & a" + "".join(f" & {accuracy:.0e}" for accuracy in wanted))
     for one in (one for one in curves if one["points"][0]["seconds"] > 0):
@@ -555,16 +486,16 @@ def costs(title, curves, key, wanted):
             least = min((p["seconds"] for p in one["points"] if p[key] <= accuracy), default=None)
             row += " & -" if least is None else f" & {least:.2g} s"
         table.add(row)
-    return title + "\n" + table.text()
+    return table
 
 
-def at_rest(title, laws):
+def at_rest(laws):
     table = Table("law & a & speed, of g dt & energy above rest, of weight x d & "
                   "overlap at the floor, of the static one & steps in contact")
     for law in laws:
         table.add(f"{cells(law['variant'])} & {law['speed_of_g_dt']:.2g} & {max(0.0, law['energy_above_rest']):.1e} & "
                   f"{law['overlap_of_static']:.6f} & {100 * law['share_of_steps_in_contact']:.1f} %")
-    return title + " at rest (not in the paper)\n" + table.text()
+    return table
 
 
 def changes(law):
@@ -572,116 +503,75 @@ def changes(law):
     return [energy / law["energies"][0] - 1 for energy in law["energies"]]
 
 
-def lossless(laws):
-    table = Table("law & a & at the end & largest")
-    for law in laws:
-        table.add(f"{cells(law['variant'])} & {changes(law)[-1]:+.1e} & {max(map(abs, changes(law))):.1e}")
-    return (f"A column of {laws[0]['balls']} balls without loss, e = 1, bounces for {laws[0]['times'][-1]:.0f} s: relative "
-            f"change of the energy (not in the paper)\n" + table.text())
-
-
-def verdicts(r):
-    """The conclusions of the paper, each decided by the numbers."""
-    slow, fast, stacked = r["slow_impacts"], r["fast_impacts"], r["stacked"]
-    ten = {letter: worst(of(slow, letter)[RATIOS], 1, 10) for letter in "CTFP"}
-    late = {letter: worst(of(slow, letter)[RATIOS], 6, 10) for letter in "CTFP"}
-    flights = {letter: worst(of(slow, letter)["energy_ratios_of_flights"], 1, 10) for letter in "PF"}
-    c, t, soft, f, p = (of(fast, label) for label in ("C", "T", "T soft", "F", "P"))
-    worst_f, worst_p = worst(f[RATIOS]), worst(p[RATIOS])
-    border, share, by_124, from_2 = math.sqrt(1 - p["a"]), 100 / len(p["paths"]), 0.0, 0.0
-    for path in p["paths"]:  # through the modes 1, 2 and 4, or parting from mode 2
+def passages(law):
+    """Percent of the impacts of P whose states pass through the modes 1, 2 and 4, and that part from mode 2."""
+    border, share, by_124, from_2 = math.sqrt(1 - law["a"]), 100 / len(law["paths"]), 0.0, 0.0
+    for path in law["paths"]:
         slopes = [closing / depth for depth, closing in path]
         if len(path) == 2 and slopes[0] >= 1 and slopes[1] >= border:
             from_2 += share
         if len(path) == 3 and slopes[0] >= 1 and 0 < slopes[1] < border and slopes[2] < -border:
             by_124 += share
-    table_c, table_p = of(r["table1"], "C"), of(r["table1"], "P")
-    cheap = table_p["law_alone_nanoseconds"] / table_c["law_alone_nanoseconds"] < 1.1
-    shorter = all(table_p[key] < table_c[key] for key in ("run_seconds", "evaluations"))
+    return {"by_124": by_124, "from_2": from_2}
+
+
+def verdicts(r):
+    """What the numbers say of each conclusion of the paper."""
+    slow, fast, table1 = r["slow_impacts"], r["fast_impacts"], r["table1"]
+    ten, late, flights = ({letter: worst(of(slow, letter)[key], first, 10) for letter in "CTFP"} for key, first in
+                          ((RATIOS, 1), (RATIOS, 6), ("energy_ratios_of_flights", 1)))
+    worst_fast = {letter: worst(of(fast, letter)[RATIOS]) for letter in "FP"}
+    t, soft, c, p = of(fast, "T"), of(fast, "T soft"), of(table1, "C"), of(table1, "P")
     agree = sum(n == printed for row in r["table2"] if row["variant"].of_paper
                 for n, printed in zip(row["steps"], printed_steps(row["letter"])))
-    of_c, of_t, of_f, of_p = (of(stacked, letter)["points"] for letter in "CTFP")
-    better = {key: sum(max(of_p[k][key], of_f[k][key]) < min(of_c[k][key], of_t[k][key]) for k in range(len(of_p)))
+    errors = {key: {letter: [q[key] for q in of(r["stacked"], letter)["points"]] for letter in "CTFP"}
               for key in (SPEEDS, PARTINGS)}
-    f_better = sum(a[SPEEDS] < b[SPEEDS] for a, b in zip(of_f, of_p))
-    apart = [abs(a[SPEEDS] / b[SPEEDS] - 1) for a, b in zip(of_f, of_p) if b["time_step"] <= 1.01e-4]
-    last = [points[-1][SPEEDS] for points in (of_p, of_f, of_t, of_c)]
-    return f"""The conclusions of the paper
-5.2 "F and P lie in a narrow range about 0.49, C and T do not":\
- {decided(max(ten['P'], ten['F']) < min(ten['C'], ten['T']))}. Worst of the first ten impacts: P {ten['P']:.4f},\
- F {ten['F']:.4f},
-    T {ten['T']:.4f}, C {ten['C']:.4f}.
-5.2 "In late, slow impacts P is more accurate than F": {decided(late['P'] < late['F'])}. Worst of the impacts 6 to 10:\
- P {late['P']:.4f}, F {late['F']:.4f}.
-    From flight to flight it is {flights['P']:.3f} of P and {flights['F']:.3f} of F over ten impacts.
-5.3 "C passes through the wall at the second impact": {decided(len(c[RATIOS]) < 2)}; it is {c['deepest']:.2f} diameters\
- deep in the first impact ("d exceeds 1"
-    in Fig. 6 holds) and returns from the half space.
-5.3 "T goes on, but its ratio is not constant": {decided(not t['ran_away'])} at a = {t['a']:g} of Table 2, where it\
- returns {t[RATIOS][0]:.1f} times the energy; at
-    a = {soft['a']:g} {'neither' if soft['ran_away'] else 'it holds'}: ratios from {min(soft[RATIOS]):.2f} to\
- {max(soft[RATIOS]):.2f}.
-5.3 "F and P are near the theory": {decided(max(worst_f, worst_p) < 1e-3)}. Worst of {len(p[RATIOS])} impacts:\
- P {worst_p:.0e}, F {worst_f:.0e}.
-5.3 "P passes through modes 1, 2, 4": in {by_124:.0f} % of the impacts; {from_2:.0f} % part from mode 2, where (21) is\
- replaced by (23).
-5.4 "An evaluation of P costs 4 % more": {decided(cheap)}, see Table 1. "The whole run is shorter, since there are fewer\
- evaluations":
-    {decided(shorter)}; {table_p['evaluations']:.3g} of P, {table_c['evaluations']:.3g} of C, {table_p['run_seconds']:.3g}\
- and {table_c['run_seconds']:.3g} s.
-5.5 Table 2, steps in contact: {decided(agree == 12)}. {agree} of 12 counts agree; those of C, F and P do not grow as the\
- step falls, with a
-    held fixed. With the spring held fixed (k in N/m), C would take ten times the steps for a tenth of the step.
-5.6 "P and F are more accurate than C and T": {decided(max(last[:2]) < min(last[2:]))} at the smallest step,\
- {of_p[-1]['time_step']:.0e} s: errors of d' P {last[0]:.0e}, F {last[1]:.0e}, T {last[2]:.0e},
-    C {last[3]:.0e}; at {better[SPEEDS]} of {len(of_p)} steps in d', at {better[PARTINGS]} in T0: not where errors change\
- sign, nor at steps near 1e-3 s.
-5.6 "F is often the more accurate of the two": at {f_better} of {len(of_p)} steps, but the errors of d' differ by at most\
- {max(apart):.0e} of
-    themselves at the {len(apart)} steps up to 1e-4 s.
-"""
-
-
-INTRODUCTION = """Fujioka & Ushijima (2005): normal contact with energy conservation
-
-C: Cundall's spring and dashpot (linear_dashpot), T: Tanaka's Hertz spring (hertz_dashpot), F: the
-authors' earlier model (five_case_map), P: the paper's (energy_map), X: exact_flow, not in the paper.
-e = 0.7, g = 9.8 m/s², spheres of 225 m, step 1e-3 s unless stated.
-Not stated in the paper, but deduced from Table 2: the dimensionless stiffness a = k dt²/m is kept while
-the step changes, 0.10 for C, F and P, 4.62 for T (k d_c^(1/2) dt²/m); velocities are updated first, then
-positions (semi-implicit Euler); gravity is added after the contact force; contacts of C and T last while
-the bodies overlap, e = exp(-pi zeta/sqrt(1 - zeta²)), although the force is then attractive at the end.
-Contacts of X end where the force is zero.
-"""
-ABOUT_X = """X, the law that is more accurate at rest and in clusters
-  During a step all other forces on a contact (gravity, the other contacts of its bodies) are replaced by
-  a force linear in time, m (h0 + h1 t), with the same impulse and first moment. Spring and dashpot obey
-  u'' + 2 zeta w u' + w² u = h0 + h1 t, and u'' = h0 + h1 t while apart, both solved in closed form; a
-  contact begins and ends inside the step, at the instants of these solutions. The impulse of the contact
-  changes the velocities of its bodies, its first moment their positions; the contacts are solved in turn
-  until all agree. One contact is exact at any step and stiffness (any e, any energy, to round-off);
-  straight clusters with e = 1 follow a symplectic map of fourth order, whose energy does not drift and
-  which is stable for w dt < 2.25 in a chain; rest is exact, at m g/k, since a constant force is linear.
-  A contact that begins or ends within the step makes a kink in its force on its neighbours: this is the
-  remaining error of colliding clusters, largest for stiff contacts (a = 4).
-  P moves on an ellipse of the energy of one contact, without gravity and other contacts: one ball comes
-  to rest at (1 + a)/2 of m g/k, a column never.
-  An evaluation of X costs more (Table 1), and a step takes several sweeps over a cluster. For one contact
-  this is repaid a hundredfold, since the step need not resolve the contact; for the stacked spheres it
-  is not: P is cheaper there at equal error of d'.
-"""
+    better = {key: sum(max(p, f) < min(c, t) for c, t, f, p in zip(*e.values())) for key, e in errors.items()}
+    speeds, steps = errors[SPEEDS], [q["time_step"] for q in r["stacked"][0]["points"]]
+    apart = [abs(f / p - 1) for f, p, step in zip(speeds["F"], speeds["P"], steps) if step <= 1.01e-4]
+    last = {letter: error[-1] for letter, error in speeds.items()}
+    holds = {"narrow": max(ten["P"], ten["F"]) < min(ten["C"], ten["T"]), "late": late["P"] < late["F"],
+             "through": len(of(fast, "C")[RATIOS]) < 2, "goes_on": not t["ran_away"],
+             "near": max(worst_fast.values()) < 1e-3, "counts": agree == 12,
+             "cheap": p["law_alone_nanoseconds"] < 1.1 * c["law_alone_nanoseconds"],
+             "shorter": all(p[key] < c[key] for key in ("run_seconds", "evaluations")),
+             "accurate": max(last["P"], last["F"]) < min(last["C"], last["T"])}
+    said = {name: "holds" if one else "does not hold here" for name, one in holds.items()}
+    return {"v": {**said, "soft": "neither" if soft["ran_away"] else "it holds"}, "ten": ten, "late": late, "t": t,
+            "of_flights": flights, "worst_fast": worst_fast, "deepest_of_C": of(fast, "C")["deepest"], "soft": soft,
+            "soft_range": (min(soft[RATIOS]), max(soft[RATIOS])), "impacts_of_P": len(of(fast, "P")[RATIOS]),
+            **passages(of(fast, "P")), "p": p, "c": c, "agree": agree, "smallest": steps[-1], "last": last,
+            "better": better, "steps": len(steps), "apart": max(apart), "fine": len(apart),
+            "f_better": sum(f < p for f, p in zip(speeds["F"], speeds["P"]))}
 
 
 def report(r):
-    return "\n".join([
-        INTRODUCTION, table_1(r["table1"], r["quick"]), table_2(r["table2"]), corrections(r["printed"]),
-        impact_tables(r["slow_impacts"], r["fast_impacts"]), stacked_spheres(r["stacked"]), verdicts(r),
-        costs("Stacked spheres: least time of computing for a relative error of d'", r["stacked"], SPEEDS,
-              (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
-        costs("Bouncing ball, 3 s: least time of computing for an rms error of the height over the drop", r["ball"],
-              "error", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)),
-        at_rest("One ball", r["rest"]), at_rest(f"A column of {r['column'][0]['balls']} balls", r["column"]),
-        lossless(r["lossless"]), ABOUT_X])
+    """tools/papers/fujioka2005.txt with its numbers."""
+    c, f, p = (of(r["table1"], letter) for letter in "CFP")
+    step, rest = c["time_step"], math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)
+    corrections, lossless = Table("law P & a & mean & least & largest"), Table("law & a & at the end & largest")
+    for name, a, *numbers in r["printed"]:
+        corrections.add(f"{name} & {a:g}" + "".join(f" & {number:.6f}" for number in numbers))
+    for law in r["lossless"]:
+        lossless.add(f"{cells(law['variant'])} & {changes(law)[-1]:+.1e} & {max(map(abs, changes(law))):.1e}")
+    return common.filled(
+        "fujioka2005", table1=table_1(r["table1"]), rest=rest, here=f" (here {step:g} s)" if r["quick"] else "",
+        evaluations=[16 * (DURATION - rest) / 1e-6, 16 * (50 - rest) / 1e-5],
+        printed_shares=[PRINTED[f"evaluations_{x}"].value / PRINTED["evaluations_C"].value for x in "FP"],
+        share=p["evaluations_gravity_first"] / f["evaluations_gravity_first"],
+        source_of_X=PRINTED["law_alone_X"].source,
+        more_alone=100 * (p["law_alone_nanoseconds"] / c["law_alone_nanoseconds"] - 1),
+        per_step=p["run_seconds"] * 1e9 / (16 * DURATION / step),
+        more_run=100 * (p["run_seconds"] / c["run_seconds"] - 1), table2=table_2(r["table2"]), corrections=corrections,
+        slow=table_of_impacts(r["slow_impacts"], RATIOS),
+        flights=table_of_impacts(r["slow_impacts"], "energy_ratios_of_flights"),
+        fast=table_of_impacts(r["fast_impacts"], RATIOS), exact_speed=EXACT_SPEED, exact_parting=EXACT_PARTING,
+        error_of_31=ERROR_OF_31, stacked=table_of_stacked(r["stacked"]),
+        sweeps=[point_at(of(r["stacked"], label), 1e-4)["sweeps_in_a_step"] for label in ("X", "X stiff")],
+        cost_of_stacked=costs(r["stacked"], SPEEDS, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
+        cost_of_ball=costs(r["ball"], "error", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)), one_ball=at_rest(r["rest"]),
+        column=at_rest(r["column"]), balls=[r[key][0]["balls"] for key in ("column", "lossless")], lossless=lossless,
+        bounced=r["lossless"][0]["times"][-1], **verdicts(r))
 
 
 LOOKS = {"C": ("orange", "square", True), "T": ("green", "triangle", True), "T soft": ("purple", "triangle", False),
@@ -707,7 +597,8 @@ def ratio_plot(title, laws, low, high, key=RATIOS):
     plot = Plot(title, Axis("impact", 0, 21), Axis("energy after / energy before the impact", low, high),
                 [Series(f"theory e² = {THEORY:.2f}", [0, 21], [THEORY, THEORY])])
     for law in laws:
-        series = series_of(law["variant"], style="dashed_line" if law["variant"].label == "X stiff" else "line_with_points")
+        stiff = law["variant"].label == "X stiff"  # its markers would hide those of P
+        series = series_of(law["variant"], style="dashed_line" if stiff else "line_with_points")
         series.x, series.y = list(range(1, len(law[key]) + 1)), law[key]
         plot.series.append(series)
     return plot
@@ -781,10 +672,11 @@ def plots(r):
         "figure5": ratio_plot(paper + "5: fast impacts; F, P and X lie on the line of theory", fast, 0.4, 0.7),
         "figure6": figure6,
         "figure7": phase_plot(paper + "7: fast impacts of T, F and P", fast, ["F", "P", "T soft", "T"], 0.6),
-        "figure10": curve_plot(paper + "10: final speed d' of the stacked spheres", error, stacked, "time_step", SPEEDS),
+        "figure10": curve_plot(paper + "10: final speed d' of the stacked spheres", error, stacked, "time_step",
+                               SPEEDS),
         "figure11": figure11,
-        "stacked_cost": curve_plot("Stacked spheres: error of d' against the time of computing", error, stacked, "seconds",
-                                   SPEEDS),
+        "stacked_cost": curve_plot("Stacked spheres: error of d' against the time of computing", error, stacked,
+                                   "seconds", SPEEDS),
         "ball_cost": ball, "rest": rest_plot("One ball falls and comes to rest", r["rest"]),
         "column": rest_plot(f"{r['column'][0]['balls']} balls fall and settle", r["column"]),
         "lossless": time_plot(f"{r['lossless'][0]['balls']} balls that lose nothing (e = 1) fall and bounce",
@@ -798,8 +690,8 @@ def reproduce(options):
         return [{key: value for key, value in row.items() if key not in ("variant", *left_out)} for row in rows]
 
     def curves(rows):
-        return [{**one["variant"].head(), **{key: value for key, value in one.items() if key not in ("variant", "points")},
-                 **{key: [p[key] for p in one["points"]] for key in one["points"][0]}} for one in rows]
+        return [{**one["variant"].head(), **without([one], "points")[0],
+                 **{key: [p[key] for p in one["points"]] for key in one["points"][0] if key != "a"}} for one in rows]
     numbers = {"quick": options.quick, "table1": without(r["table1"]), "table2": without(r["table2"]),
                "exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING, "stacked": curves(r["stacked"]),
                "bouncing_ball": curves(r["ball"]),
@@ -807,11 +699,12 @@ def reproduce(options):
     numbers.update({key: without(r[key], "paths") for key in ("slow_impacts", "fast_impacts")})
     numbers.update({key: without(r[key], "times", "energies") for key in ("rest", "column")})
 
-    def columns(rows, names, keys):
-        return dict(zip(("law", "letter", "a", *names), ([row[key] for row in rows] for key in ("law", "letter", "a", *keys))))
-    tables = {"table1": columns(r["table1"], ("step_s", "evaluations", "evaluations_gravity_first", "run_s", "law_alone_ns"),
-                                ("time_step", "evaluations", "evaluations_gravity_first", "run_seconds",
-                                 "law_alone_nanoseconds")), "table2": columns(r["table2"], (), ())}
+    names = {"law": "law", "letter": "letter", "a": "a"}
+    of_table1 = {**names, "time_step": "step_s", "evaluations": "evaluations",
+                 "evaluations_gravity_first": "evaluations_gravity_first", "run_seconds": "run_s",
+                 "law_alone_nanoseconds": "law_alone_ns"}
+    tables = {table: {name: [row[key] for row in r[table]] for key, name in columns.items()}
+              for table, columns in (("table1", of_table1), ("table2", names))}
     for k, step in enumerate(TABLE2_STEPS):
         tables["table2"][f"steps_at_{step:.0e}_s"] = [row["steps"][k] for row in r["table2"]]
     return Output(report(r), numbers, tables, plots(r))

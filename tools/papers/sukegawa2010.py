@@ -10,10 +10,9 @@ import math
 import tomllib
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
-from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, plain, points, rows_of, samples_of,
-                    save)
+from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, points, rows_of, samples_of)
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
 TEXTS = tomllib.loads((DATA / "sukegawa2010" / "texts.toml").read_text(encoding="utf-8"))
@@ -26,23 +25,6 @@ VARIANTS = {"": {}, "half_step": {"step_share": 0.25}, "soft": {"softness": 9.0}
             "small": {"columns": 18, "rows": 34, "softness": 9.0},
             "mended_test": {"columns": 18, "rows": 34, "softness": 9.0, "ellipse_contact": "enlarged"},
             "strong_bonds": {"bond_step": NUMBERS["time step"] / 10}}
-VARIANT_ROWS = (  # name, variant, cycles, shape, gal
-    ("as above", "", 10), ("shaken for 5 s, not 1 s", "", 50), ("shaken for 20 s", "", 200), ("half the step", "half_step", 10),
-    ("springs nine times softer", "soft", 10), ("h = 0.1", "less_damping", 10), ("the printed step, 1e-6 s", "printed_step", 10),
-    ("friction limits the spring alone (2.16)", "printed_cap", 10), ("(2.16), shaken for 5 s", "printed_cap", 50),
-    ("(2.16), shaken for 20 s", "printed_cap", 200),
-    ("forces of chapter 2 in increments, friction limits all", "increments_capped", 10),
-    ("forces in increments, (2.16)", "increments", 10), ("the same with the integrator (3.16)-(3.17)", "printed_integrator", 10),
-    ("the same with c_i = 1/s m_i in (3.13)", "mass_damping_1", 10), ("the same with c_i = 10/s m_i", "mass_damping_10", 10),
-    ("the same with beta = 1.05 of (3.1) in the force", "beta_1.05", 10),
-    ("springs of E, nu, rho = (1+e) gamma (2.23)-(2.26)", "bulk_springs", 10),
-    ("rho = (1+e) gamma in springs and masses", "bulk_density", 10), ("rows 0.7 times as high at the start", "low_drop", 10),
-    ("no friction between grains", "smooth", 10), ("friction 0.5", "rough", 10), ("ellipses", "", 10, "ellipses"),
-    ("ellipses, (2.16), 5 s", "printed_cap", 50, "ellipses"), ("612 ellipses, springs nine times softer", "small", 10, "ellipses"),
-    ("the same, contacts by (4.1)-(4.49) corrected", "mended_test", 10, "ellipses"), ("bonded pairs", "", 10, "bonded_pairs"),
-    ("bonded pairs, (2.16), 5 s", "printed_cap", 50, "bonded_pairs"),
-    ("bonded pairs at rest for the same time", "", 10, "bonded_pairs", 0), ("bonded pairs, C_n and C_s tenfold", "strong_bonds", 10,
-                                                                            "bonded_pairs"))
 PRINTED_ROWS = (("forces in increments", "increments"), ("integrator (3.16)-(3.17)", "printed_integrator"),
                 ("c_i = 1/s m_i", "mass_damping_1"), ("c_i = 10/s m_i", "mass_damping_10"), ("beta = 1.05", "beta_1.05"))
 
@@ -94,6 +76,20 @@ def plan(quick):
     return [({"run": name_of(*row), **dict(zip(keys, row))}, Fill(row[0], row[2], **{**small, **VARIANTS[row[1]]})) for row in rows]
 
 
+def kept_run(arguments):
+    """A run, kept in two files where a path is given."""
+    *given, path = arguments
+    names = ("numbers", "filling", "falling", "shaking", "pictures")
+    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(names, run_box(given)))}
+    if path:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        np.savez_compressed(path.with_suffix(".npz"), *(array for one in found["pictures"] for array in one))
+        part = path.with_suffix(".part")
+        part.write_text(json.dumps({**found, "pictures": []}, default=float), encoding="utf-8")
+        part.rename(path)
+    return found
+
+
 def compute(options):
     """The runs of the plan, those that are in --out already taken from there."""
     kept, wanted, runs = options.out and options.out / "runs", plan(options.quick), {}
@@ -104,21 +100,17 @@ def compute(options):
             if found["fill"] != dataclasses.asdict(fill):
                 raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
                                   "Choose another --out, or remove it")
-            runs[row["run"]] = found
+            with np.load(path.with_suffix(".npz")) as file:
+                arrays = list(file.values())
+            runs[row["run"]] = {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
     todo = [(row, fill) for row, fill in wanted if row["run"] not in runs]
-    for (row, fill), found in zip(todo, samples_of("reproducing Sukegawa 2010:", run_box, [
-            (fill, row["acceleration_gal"], row["frequency_Hz"], row["cycles"]) for row, fill in todo], 1)):
-        numbers, filling, falling, shaking, pictures = found
-        runs[row["run"]] = {"fill": dataclasses.asdict(fill), "numbers": numbers, "filling": filling, "falling": falling,
-                            "shaking": shaking, "pictures": pictures}
-        if kept:
-            kept.mkdir(parents=True, exist_ok=True)
-            text = json.dumps({**runs[row["run"]], "pictures": []}, default=float)
-            (kept / f"{row['run']}.json").write_text(text, encoding="utf-8")
+    runs.update(zip([row["run"] for row, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
+        (fill, row["acceleration_gal"], row["frequency_Hz"], row["cycles"], kept and kept / f"{row['run']}.json")
+        for row, fill in todo], 1)))
     done = []
     for row, _ in wanted:
         found = runs[row["run"]]
-        run = Run({**row, **{key: math.nan if value is None else value for key, value in found["numbers"].items()}})
+        run = Run({**row, **found["numbers"]})
         run.filling, run.falling, run.shaking, run.pictures = (found[key] for key in ("filling", "falling", "shaking", "pictures"))
         done.append(run)
     return done
@@ -164,17 +156,16 @@ def void_ratio_table(runs, before, after):
 
 def variants_text(runs):
     table = Table(" & before & after & change & inner: before & change & seeds")
-    for name, variant, cycles, *rest in VARIANT_ROWS:
-        shape, gal = (*rest, *("discs", 400)[len(rest):])
-        cells = [values_of(runs, key, shape, gal, variant=variant, cycles=cycles)
+    for row in rows_of("sukegawa2010/variants"):
+        cells = [values_of(runs, key, row["shape"], float(row["gal"]), variant=row["variant"], cycles=float(row["cycles"]))
                  for key in (*WHOLE, WHOLE[::-1], INNER[0], INNER[::-1])]
         if cells[3]:
-            table.add(" & ".join([name, *map(spread, cells), str(len(cells[3]))]))
+            table.add(" & ".join([row["name"], *map(spread, cells), str(len(cells[3]))]))
     return TEXTS["variants"].format(table=table.text())
 
 
 def half_width(values):
-    return student.ppf(0.975, len(values) - 1) * mean_of(values).standard_error if len(values) > 1 else math.nan
+    return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
 def printed_level(runs):
@@ -531,8 +522,9 @@ def draw_sheet(pictures, title):
     def draw(path):
         from matplotlib import pyplot
         from matplotlib.collections import EllipseCollection
-        rows = -(-len(pictures) // 3)
-        figure, axes = pyplot.subplots(rows, min(3, len(pictures)), squeeze=False, figsize=(4.2 * min(3, len(pictures)), 3.6 * rows))
+        columns = len(pictures) if len(pictures) < 5 else 3
+        figure, axes = pyplot.subplots(-(-len(pictures) // columns), columns, squeeze=False, layout="constrained",
+                                       figsize=(4.2 * columns, 3.6 * -(-len(pictures) // columns)))
         figure.suptitle(title)
         for one in axes.flat:
             one.set_axis_off()
@@ -543,7 +535,8 @@ def draw_sheet(pictures, title):
             low, high = centres.min(axis=0) - half_axes.max(), centres.max(axis=0) + half_axes.max()
             one.plot([0, 0], [0, high[1]], "k", [0, high[0]], [0, 0], "k", [high[0]] * 2, [0, high[1]], "k", linewidth=1)
             one.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=label)
-        save(figure, path)
+        figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
+        pyplot.close(figure)
     return draw
 
 
@@ -580,7 +573,7 @@ def reproduce(options):
     by_name = {run["run"]: run for run in [*missing, *new]}
     runs = new if options.quick else [by_name[run["run"]] for run in old]
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(report(runs, options, fill, missing), plain({"quick": options.quick, "runs": rows}), {"runs": columns_of(rows)},
+    return Output(report(runs, options, fill, missing), {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
                   plots_of(runs, fill))
 
 

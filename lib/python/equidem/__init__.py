@@ -31,9 +31,9 @@ __version__: str = _core.version
 
 __all__ = [
     "Assembly", "BadInput", "Case", "ComputationFailed", "EquidemError", "Factor", "Frame", "Interrupted", "Result",
-    "Simulation", "Springs", "StrengthSample", "assembly", "calibrate", "delaunay", "factorize", "hexagonal", "homogenize",
-    "pack", "pack_discs", "plot", "read", "run", "set_threads", "show_progress", "simulation", "solve", "square",
-    "stability", "stiffness_matrix", "study", "sweep", "tension_test", "threads", "triangulated",
+    "Simulation", "Springs", "StrengthSample", "assembly", "calibrate", "delaunay", "factorize", "hexagonal",
+    "homogenize", "pack", "pack_discs", "plot", "read", "run", "set_threads", "show_progress", "simulation", "solve",
+    "square", "stability", "stiffness_matrix", "study", "sweep", "tension_test", "threads", "triangulated",
 ]
 
 
