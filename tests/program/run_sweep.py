@@ -197,11 +197,8 @@ class Sweep(ProgramTest):
                             "--dry-run")
         self.assertEqual(result["number_of_points"], 6)
         self.assertIn("6 points of ratio, assembly.rows", result["report"])
-        self.assertGreater(result["estimated_seconds_of_sweep"], result["estimated_seconds"])
         failing = self.sweep(TENSION, "--key", "springs.kN", "--values", "-1,1e9", "--dry-run")
         self.assertIn("2 points of springs.kN; point 2:", failing["report"])
-        self.assertIn("1 of those asked cannot be computed", failing["report"])
-        self.assertGreater(failing["estimated_seconds_of_sweep"], 0)
         self.assertGreater(result["unknowns"], 100)
 
     def test_bad_input_is_one_error(self):

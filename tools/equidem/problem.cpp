@@ -365,10 +365,8 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
 }
 
 /// \param resident bytes of the process before it solves
-/// \param before s of what is done beside these solutions
 /// \param memory_limit bytes; 0: what is available
-Results estimate_results(const SolveEstimate& e, double resident, double solutions, double before, double memory_limit,
-                         const std::string& trust) {
+Results estimate_results(const SolveEstimate& e, double resident, double memory_limit) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory")
@@ -389,15 +387,16 @@ Results estimate_results(const SolveEstimate& e, double resident, double solutio
         .add("other_peak_bytes", "about", e.other_bytes, "at the peak", {Shown::bytes})
         .add("other_time_ratio", "", e.other_seconds, "times the time", {.digits = 2});
   }
-  const double seconds = before + estimate_seconds(e, solutions, measure_solve_rates(e.method), thread_count());
-  results.line("time").add("estimated_seconds", "about", seconds, "s with these threads, " + trust, {.digits = 2});
+  const double seconds = estimate_seconds(e, 1, measure_solve_rates(e.method), thread_count());
+  results.line("time").add("estimated_seconds", "about", seconds,
+                           "s with these threads for one solution, mostly within a factor of two", {.digits = 2});
   return results.block("nothing was solved (--dry-run)\n");
 }
 
 }  // namespace
 
-Results dry_run_results(const Problem& problem, double solutions, const Results& further, AssemblyKeys keys,
-                        double complex_solutions, const std::string& trust, std::optional<double> inertia) {
+Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys, bool complex_factor,
+                        std::optional<double> inertia) {
   const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   EquilibriumOptions options = problem.options();
@@ -412,17 +411,13 @@ Results dry_run_results(const Problem& problem, double solutions, const Results&
   constexpr double bytes_of_breaking_contact = 450;
   if (problem.breaks)
     estimate.peak_bytes += bytes_of_breaking_contact * static_cast<double>(problem.assembly.contacts.size());
-  double before = problem.times.total();
-  if (complex_solutions > 0) {
-    constexpr double work = 4;  // multiplications of two complex numbers over those of real ones
+  if (complex_factor) {
     const SolveEstimate of_complex = estimate_harmonic(problem.assembly, problem.springs.springs, effects);
     estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + of_complex.peak_bytes);
-    before +=
-        estimate_seconds(of_complex, work * complex_solutions, measure_solve_rates(of_complex.method), thread_count());
   }
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, resident, solutions, before, problem.resolved.solver.memory_limit, trust));
+      .append(estimate_results(estimate, resident, problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -162,14 +162,11 @@ Results problem_results(const Problem& problem, const AssemblySummary& summary, 
 /// The largest circle that no disc reaches into; nothing where there is none.
 void add_largest_void(Results& results, const Assembly& assembly);
 
-/// The problem, further results, size, memory and work of a factorization, and the time of all, for --dry-run.
-/// \param solutions factorizations with the solution of a load case each
-/// \param complex_solutions likewise, of complex numbers, beside the factor of the others
+/// The problem, further results, size and memory, work and time of one factorization with one solution, for --dry-run.
+/// \param complex_factor whether one of complex numbers lies beside the factor
 /// \param inertia whether L D L^T decides it, with so many vectors kept beside it; none: K u = f is solved
-/// \param trust behind the time: by how much it may be wrong
-Results dry_run_results(const Problem& problem, double solutions, const Results& further = {},
-                        AssemblyKeys keys = AssemblyKeys::all, double complex_solutions = 0,
-                        const std::string& trust = "mostly within a factor of two", std::optional<double> inertia = {});
+Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all,
+                        bool complex_factor = false, std::optional<double> inertia = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

@@ -51,18 +51,10 @@ std::vector<SeededSample> build_samples(const Problem& first) {
 }
 
 int dry_run_strengths(const CommonOptions& options, Problem& problem) {
-  constexpr double values = 8;  // of the unknown: as many as calibrations took
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
-  const StrengthTargetCase& target = *problem.resolved.strength_target;
-  const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
-  const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
-  constexpr double of_break = 0.13, broken = 0.1;  // solutions; the share of contacts that break
-  const double solutions = 1 + of_break * broken * static_cast<double>(problem.assembly.contacts.size());
   Results results;
   add_unused(results, problem.resolved);
-  results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});
-  results.note(", in each of which a tenth of the contacts breaks");
-  deliver(options, "dry_run", dry_run_results(problem, tests * solutions, results, AssemblyKeys::size), problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
   return 0;
 }
 

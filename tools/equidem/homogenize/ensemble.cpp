@@ -93,58 +93,10 @@ std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
   return result;
 }
 
-std::string describe_plan(const EnsemblePlan& plan, double confidence) {
+std::string describe_plan(const EnsemblePlan& plan) {
   const std::string sizes = joined(plan.discs, [](std::int64_t discs) { return fmt::format("{}", discs); });
-  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence",
-                     counted(plan.samples, "cell"), sizes, plan.first_seed,
-                     plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence);
-}
-
-struct EnsembleTime {
-  double seconds = 0;
-  std::vector<std::int64_t> measured = {};  ///< discs of the cells that were made for it
-};
-
-/// s of a cell on one thread; one that fails counts with the time until it does.
-double seconds_of_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
-  const int threads = thread_count();
-  set_thread_count(1);
-  const Stopwatch watch;
-  std::optional<Error> failure;
-  try {
-    static_cast<void>(homogenize_cell(resolved, discs, seed));
-  } catch (const Error& error) {
-    failure = error;
-  }
-  set_thread_count(threads);
-  if (failure && failure->kind() != ErrorKind::computation_failed) throw *failure;
-  return watch.seconds();
-}
-
-/// From one cell of each size up to a second in all, at least one; the time of larger cells grows with a power of the
-/// discs.
-EnsembleTime time_of(const Case& resolved, const EnsemblePlan& plan) {
-  constexpr double enough = 1;           // s
-  constexpr double power = 1.3;          // measured between 1.1 and 1.4 of triangulations and packings that grow
-  constexpr double second_thread = 0.8;  // of a large cell that all threads share
-  constexpr std::int64_t small = 2000;   // discs of the cell that is made where all are larger
-  EnsembleTime result;
-  std::int64_t before = std::min(plan.discs.front(), small);
-  double each = seconds_of_cell(resolved, before, plan.first_seed), spent = each;
-  result.measured.push_back(before);
-  for (const std::int64_t discs : plan.discs) {
-    if (discs != before) each *= std::pow(static_cast<double>(discs) / static_cast<double>(before), power);
-    if (discs != before && spent + each < enough) {
-      each = seconds_of_cell(resolved, discs, plan.first_seed);
-      spent += each;
-      result.measured.push_back(discs);
-    }
-    before = discs;
-    const int at_once = cells_at_once(discs);
-    const double share = at_once > 1 ? 1 : 1 / (1 + second_thread * (thread_count() - 1));
-    result.seconds += share * each * std::ceil(static_cast<double>(plan.samples) / at_once);
-  }
-  return result;
+  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of 95 % confidence", counted(plan.samples, "cell"),
+                     sizes, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1);
 }
 
 /// \throws Error (computation_failed) where the largest cell surely does not fit into memory
@@ -169,21 +121,13 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
     results.set("refusal", error.what());
     results.line("memory", fmt::format("The computation would be refused: {}", error.what()));
   }
-  const EnsembleTime time = time_of(resolved, plan);
-  results.line("time")
-      .add("estimated_seconds", "about", time.seconds, "s with these threads", {.digits = 2})
-      .note(fmt::format(", from one cell of {} discs", fmt::join(time.measured, ", ")));
-  results.block("the other cells were not solved (--dry-run)\n");
+  results.block("nothing was solved (--dry-run)\n");
   results.set("samples", plan.samples).set("discs", plan.discs).set("unknowns", unknowns);
   deliver(options, "dry_run", results, {});
   return 0;
 }
 
 }  // namespace
-
-double estimated_seconds(const Case& resolved, const EnsemblePlan& plan) {
-  return time_of(resolved, plan).seconds;
-}
 
 const char* joins_sides(const AssemblyCase& assembly) {
   return assembly.packing ? "packing.sides = \"periodic\"" : "assembly.periodic = true";
@@ -242,7 +186,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}};
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
-  Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
+  Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
   OutputPlan(options).expect_json();
   if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
@@ -265,7 +209,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
   result.samples = std::move(sampled.samples);
-  result.statistics = analyze_ensemble(result.plan, result.samples, asked.confidence);
+  result.statistics = analyze_ensemble(result.plan, result.samples, result.statistics.confidence);
 
   results.append(ensemble_results(result));
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);

@@ -47,9 +47,6 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
 void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results, StageTimes times,
                       const std::function<void()>& save_samples, const std::optional<Error>& failure);
 
-/// s for the cells of a plan, from some of its cells.
-double estimated_seconds(const Case& resolved, const EnsemblePlan& plan);
-
 /// \throws Error (bad_input) where a file of an ensemble could not be written
 void check_ensemble_outputs(const CommonOptions& options);
 

@@ -154,19 +154,16 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
                                           "about as large as this",
                                           names));
   results.set("factorizations", boundaries.size());
-  double complex_solutions = 0;
   if (problem.resolved.viscoelastic) {
     const Viscoelasticity springs = build_viscoelasticity(problem.resolved, problem.springs.constants);
     const std::vector<double> frequencies = frequencies_of(problem.resolved, springs);
     results.line("viscoelastic", fmt::format("{} more, each of complex numbers: about four times the work",
                                              counted(std::ssize(frequencies), "factorization")));
-    complex_solutions = 2 * static_cast<double>(frequencies.size());
     add_solver_of_fronts(results, problem.resolved.solver);
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   deliver(options, "dry_run",
-          dry_run_results(problem, 2 * static_cast<double>(boundaries.size()), results, AssemblyKeys::all,
-                          complex_solutions),
+          dry_run_results(problem, results, AssemblyKeys::all, problem.resolved.viscoelastic.has_value()),
           problem.times);
   return 0;
 }

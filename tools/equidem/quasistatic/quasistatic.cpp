@@ -182,14 +182,12 @@ struct Sequence {
   }
 };
 
-/// Size and memory of a path, and the time of its first state: how many events follow is not known before.
+/// Size and memory of a path, and the time of its first state.
 int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
-  further.line("events", "their number is not known before: the time below is that of the first state alone");
-  deliver(options, "dry_run", dry_run_results(problem, 1, further, AssemblyKeys::all, 0, "of the first state"),
-          problem.times);
+  deliver(options, "dry_run", dry_run_results(problem, further), problem.times);
   return 0;
 }
 

@@ -144,7 +144,7 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   if (options.dry_run) {
     Results further;
     if (accuracy) further = accuracy_plan(*accuracy, searched ? BlockSearch::plan : bound_is_compared);
-    deliver(options, "dry_run", dry_run_results(*problem, 1, further), problem->times);
+    deliver(options, "dry_run", dry_run_results(*problem, further), problem->times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);
