@@ -67,7 +67,7 @@ method = "umfpack"
 max_refinements = 2
 memory_limit = "4 GB"
 [output]
-picture = false
+files = ["csv", "vtk"]
 )";
 
 inline const std::string ensemble_case = R"(schema = "equidem/1"
@@ -91,7 +91,6 @@ bounds = "all"
 discs = [30, 60, 120]
 samples = 4
 accuracy = 0.02
-confidence = 0.9
 )";
 
 inline const std::string motion_case = R"(schema = "equidem/1"

@@ -100,7 +100,7 @@ TEST_CASE("a_wrong_case_of_grains_is_refused_with_line_key_and_remedy") {
       {"schedule = \"shake\"\n", "", "displacement", "wall.displacement", {"without schedule", "its point"}},
       {"name = \"floor\"", "name = \"steel\"", "name = \"steel\"", "wall.name", {"both called"}},
       {"[collisions.walls]", "[collisions.wall]", "[collisions.wall]", "collisions.wall", {"collisions"}},
-      {"probe_interval = 0.01", "vtk = true", "vtk = true", "output.vtk", {"Known here"}},
+      {"probe_interval = 0.01", "vtk = true", "vtk = true", "output.vtk", {"earlier version", "files"}},
   };
   for (const Wrong& wrong : cases) {
     const std::string text = changed(grain_case, wrong.what, wrong.by);

@@ -11,7 +11,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 PROGRAM, PARALLEL, MPIRUN, SOURCE = sys.argv[1:5]
 CASES = pathlib.Path(SOURCE, "data", "cases")
-SERIAL_FILES = ("--set", "output.csv=false", "--set", "output.picture=false")
+SERIAL_FILES = ("--set", "output.files=['vtk']")
 LIMIT = 600  # s: ends a command that hangs, also on a busy machine
 CUT = ("--set", "assembly.columns=41", "--set", "assembly.rows=23")
 

@@ -97,7 +97,7 @@ class RunTest(ProgramTest):
 
     def history(self, case, *options):
         out = self.folder / "history"
-        self.run_case(case, "--out", out, "--overwrite", "--set", "output.picture=false", *options)
+        self.run_case(case, "--out", out, "--overwrite", "--set", "output.files=['csv', 'vtk']", *options)
         return table(out / "history.csv")
 
     def check_near(self, computed, expected, tolerance):

@@ -397,7 +397,7 @@ legs = [1.0]
                          "strength_target: a notch of 0.2 m in a sample", "Give shorter notches")
         self.check_error(equidem("calibrate", STRENGTH, *notched), 2, "strength_target: a toughness needs notches")
         result = self.calibrated(STRENGTH, "--dry-run")
-        self.assertEqual(result["estimated_tests"], 64)
+        self.assertGreater(result["peak_bytes"], 0)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from motion import RunTest, table
 from program import CASES, equidem
 
 SHEARED = CASES / "grains_sheared_cell.toml"
-NO_PICTURE = ("--set", "output.picture=false")
+NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 DISCS = """schema = "equidem/1"
 [grains]
 density = 2500.0

@@ -16,7 +16,7 @@ from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
 BOX, BALL = CASES / "grains_shaken.toml", CASES / "grains_between_walls.toml"
 STUDY = CASES.parent / "studies" / "abe_lattice.toml"
 CELL, ENSEMBLE, PACK = CASES / "random_cell.toml", CASES / "ensemble.toml", CASES / "pack_graded.toml"
-NO_PICTURE = ("--set", "output.picture=false")
+NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 MEASURED = ("--set", "shaking.start=0.02", "--set", "output.probe_interval=4e-3", "--set", "output.frame_interval=7e-3")
 VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "sweeps", "rebuilds")  # in result.json
 
@@ -105,7 +105,7 @@ class Damage(RunTest):
             self.assertTrue(any("digit" in damage for damage in refused[name]), refused)
 
     def test_of_bonded_discs_all_that_counts_is_checked(self):
-        case = ("run", SHAKE, "--threads", 1, "--quiet", *NO_PICTURE, "--set", "output.vtk=false", "--set",
+        case = ("run", SHAKE, "--threads", 1, "--quiet", "--set", "output.files=['csv']", "--set",
                 "run.step_rule=bound")
         self.check_damaged((*case, "--set", "run.duration=1.01e-3"), (*case, "--set", "run.duration=2e-3", "--resume"),
                            ("run.checkpoint.h5", "frames", "frames.pvd", "history.csv"))

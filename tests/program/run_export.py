@@ -296,7 +296,7 @@ force = [0.0, 1.0]
         self.assertTrue(1e-4 < abs(bulk["halfway"] / bulk["radii"] - 1) < 1e-2, bulk)
 
     def test_ellipses_and_clumps(self):
-        self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "neither discs nor spheres", "here grain 1, an ellipse")
+        self.check_refused(CASES / "grains_ellipses.toml", ENGINES, "neither discs nor spheres", "here grain 1")
 
     def test_laws_of_collision(self):
         case = self.grains()
@@ -366,7 +366,7 @@ force = [0.0, 1.0]
         self.check_refused(self.folder / "cell.toml", [])
         small = self.folder / "small.toml"
         small.write_text((self.folder / "cell.toml").read_text().replace("columns = 8", "columns = 2"))
-        self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry", "a cell that is too short")
+        self.check_error(self.export(small, "lammps", out="small"), 2, "does not carry")
 
     def test_spheres_and_springs_that_differ(self):
         self.check_refused(self.bonds(assembly='body = "sphere"'), [])

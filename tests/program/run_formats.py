@@ -13,7 +13,7 @@ from motion import RunTest, frames_of, needs_vtk, poly_data
 from program import CASES, SOURCE, TENSION, equidem, parse_json
 
 PAGE = (SOURCE / "docs" / "file_formats.md").read_text(encoding="utf-8")
-NO_PICTURE = ("--set", "output.picture=false")
+NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 
 
 def section(title):

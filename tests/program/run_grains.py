@@ -52,7 +52,7 @@ class GrainTest(RunTest):
     def end_of(self, case, *options):
         """Result, and rows of grains.csv."""
         out = self.folder / "end"
-        result = self.run_case(case, "--out", out, "--overwrite", "--set", "output.picture=false", *options)
+        result = self.run_case(case, "--out", out, "--overwrite", "--set", "output.files=['csv', 'vtk']", *options)
         return result, rows_of(out / "grains.csv")
 
 
@@ -108,7 +108,7 @@ class Motion(GrainTest):
 
     def test_the_end_of_a_run_is_read_back_as_a_start(self):
         out = self.folder / "first"
-        self.run_case(PISTON, "--out", out, "--set", "run.duration=0.3", "--set", "output.picture=false")
+        self.run_case(PISTON, "--out", out, "--set", "run.duration=0.3", "--set", "output.files=['csv', 'vtk']")
         result, grains = self.end_of(PISTON, "--set", f'grains.path="{out / "grains.csv"}"', "--set", "run.duration=1e-4")
         self.assertEqual(result["grains"], 24)
         for a, b in zip(rows_of(out / "grains.csv"), grains):
@@ -133,7 +133,7 @@ class Files(GrainTest):
     @needs_vtk
     def test_contact_forces_in_frames_add_up_to_mass_times_acceleration(self):
         out = self.folder / "out"
-        result = self.run_case(PISTON, "--out", out, "--set", "run.duration=0.35", "--set", "output.picture=false",
+        result = self.run_case(PISTON, "--out", out, "--set", "run.duration=0.35", "--set", "output.files=['csv', 'vtk']",
                                "--set", "output.frame_interval=1e-30")
         frames, grains = frames_of(out, 200), rows_of(out / "grains.csv")
         mass = numpy.array([math.pi * float(g["density_kg_per_m3"]) * float(g["radius_m"]) ** 2 for g in grains])[:, None]
@@ -158,13 +158,13 @@ class Files(GrainTest):
                 first, second = self.folder / "first", self.folder / "second"
                 for source, out in ((case, first), (first / "case.toml", second)):
                     self.run_case(source, "--out", out, "--overwrite", "--set", "run.duration=0.2",
-                                  "--set", "output.picture=false")
+                                  "--set", "output.files=['csv', 'vtk']")
                 self.assertEqual((first / "grains.csv").read_bytes(), (second / "grains.csv").read_bytes())
                 self.assertEqual((first / "case.toml").read_text(), (second / "case.toml").read_text())
 
     def test_columns_of_energy_add_up(self):
         out = self.folder / "out"
-        self.run_case(BETWEEN, "--out", out, "--set", "output.picture=false")
+        self.run_case(BETWEEN, "--out", out, "--set", "output.files=['csv', 'vtk']")
         h = table(out / "history.csv")
         terms = {name: column for name, column in h.items() if name.endswith("_J_per_m") and name != "error_J_per_m"}
         lacks = sum(-column if name.startswith(("work", "initial")) else column for name, column in terms.items())
@@ -180,7 +180,7 @@ class Files(GrainTest):
 
 
 class Resume(GrainTest):
-    SETTINGS = ("--set", "output.checkpoint_interval=0.01", "--set", "output.picture=false")
+    SETTINGS = ("--set", "output.checkpoint_interval=0.01", "--set", "output.files=['csv', 'vtk']")
 
     def check_same(self, a, b):
         for name in ("grains.csv", "contacts.csv", "history.csv", "energy.csv", "case.toml"):
@@ -214,7 +214,7 @@ class Resume(GrainTest):
         for law in LAWS:
             with self.subTest(law=law):
                 out, whole = self.folder / f"out_{law}", self.folder / f"whole_{law}"
-                options = ("--set", f"collisions.law={law}", "--set", "output.picture=false")
+                options = ("--set", f"collisions.law={law}", "--set", "output.files=['csv', 'vtk']")
                 if law == "hertz_dashpot":
                     options += ("--set", "collisions.stiffness=1e9", "--set", "collisions.largest_overlap=none")
                 if law == "five_case_map":

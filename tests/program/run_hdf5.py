@@ -19,7 +19,7 @@ except ImportError:
     h5py = None
 
 CELL = CASES / "random_cell.toml"
-SMALL = ("--set", "assembly.discs=200", "--set", "output.picture=false", "--set", "output.vtk=false")
+SMALL = ("--set", "assembly.discs=200", "--set", "output.files=['csv']")
 needs_h5py = unittest.skipUnless(h5py, "python3-h5py is not installed")
 
 
@@ -46,12 +46,11 @@ class Hdf5(ProgramTest):
                                   ("calibrate", "calibrate_random", {"assembly.json"}),
                                   ("pack", "pack_pairs", {"assembly.json", "assembly_with_walls.json"})):
             few = ("--set", "packing.grains=30") if verb == "pack" else ()
-            vtk = () if verb == "pack" else ("--set", "output.vtk=false")
             for chosen, end in ((None, ".json"), ("json", ".json"), ("hdf5", ".h5")):
                 with self.subTest(verb=verb, chosen=chosen):
                     out = self.folder / f"{verb}_{chosen}"
                     key = ("--set", f"output.assembly={chosen}") if chosen else ()
-                    self.check_done(equidem(verb, CASES / f"{case}.toml", "--out", out, "--set", "output.picture=false", *vtk,
+                    self.check_done(equidem(verb, CASES / f"{case}.toml", "--out", out, "--set", "output.files=['csv']",
                                             *few, *key))
                     names = {path.name for path in out.glob("assembly*")}
                     stems = {pathlib.Path(name).stem for name in alone} or ({"assembly"} if chosen else set())
@@ -65,7 +64,7 @@ class Hdf5(ProgramTest):
                 re.findall(r"^\| `(\S+)` \| \([^)]*\) \| (\w+) \| ([^|]*?) ?\|", text, re.MULTILINE)}
         out = self.folder / "cantilever"
         self.check_done(equidem("solve", CASES / "cantilever.toml", "--out", out, "--set", "output.assembly=hdf5", "--set",
-                                "output.picture=false"))
+                                "output.files=['csv', 'vtk']"))
         found = {}
         for path in (self.written(), out / "assembly.h5"):
             with h5py.File(path) as file:
@@ -128,7 +127,7 @@ class Hdf5(ProgramTest):
     def test_a_file_that_cannot_be_written_whole_leaves_nothing(self):
         limit = 20000
         out = self.folder / "full"
-        done = subprocess.run([PROGRAM, "homogenize", CELL, *SMALL, "--set", "output.assembly=hdf5", "--set", "output.csv=false",
+        done = subprocess.run([PROGRAM, "homogenize", CELL, *SMALL, "--set", "output.assembly=hdf5", "--set", "output.files=[]",
                                "--out", out], capture_output=True, text=True, timeout=120,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         self.assertEqual(done.returncode, 1, done.stderr)

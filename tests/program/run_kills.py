@@ -29,7 +29,7 @@ VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "l
 
 def jobs_of(cases):
     """Name -> (program or None, arguments, file from which --resume goes on or None)."""
-    no_picture = ("--set", "output.picture=false")
+    no_picture = ("--set", "output.files=['csv', 'vtk']")
     often = (*no_picture, "--set", "output.checkpoint_interval=0.02")
     support = "support=[{group = \"bottom\", ux = 0.0, uy = 0.0}]"
     load = "load=[{group = \"top\", kind = \"total\", force = [0.0, 1.0]}]"

@@ -15,7 +15,7 @@ import at_rest  # noqa: E402
 import readings  # noqa: E402
 import samples  # noqa: E402
 
-QUIET = ("--set", "output.picture=false")
+QUIET = ("--set", "output.files=['csv', 'vtk']")
 
 
 class Laboratory(RunTest):

@@ -182,7 +182,7 @@ time_step = 4.0e-6
 integrator = "velocity_verlet"
 gravity = [0.0, -9.8]
 """)
-        self.check_done(equidem("run", run, "--out", self.folder / "ran", "--set", "output.picture=false"))
+        self.check_done(equidem("run", run, "--out", self.folder / "ran", "--set", "output.files=['csv', 'vtk']"))
         before, after = rows_of(out / "grains.csv"), rows_of(self.folder / "ran" / "grains.csv")
         moved = max(math.dist((float(a["x_m"]), float(a["y_m"])), (float(b["x_m"]), float(b["y_m"])))
                     for a, b in zip(before, after))

@@ -13,7 +13,7 @@ import unittest
 from program import CASES, PROGRAM, ProgramTest, equidem, parse_json
 
 NOTCH = CASES / "notched_plate.toml"
-NO_PICTURE = ("--set", "output.picture=false")
+NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 
 
 class QuasistaticResume(ProgramTest):

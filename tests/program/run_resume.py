@@ -105,7 +105,7 @@ class Resume(RunTest):
     # Long enough to be caught in the middle; checkpoints as often as a run can be stopped.
     SETTINGS = {CORNER: ("--set", "run.duration=0.15", "--set", "output.frame_interval=2e-3"),
                 SHAKE: ("--set", "run.duration=0.04", "--set", "output.frame_interval=1e-3")}
-    COMMON = ("--set", "output.checkpoint_interval=0.02", "--set", "output.vtk=false", "--set", "output.picture=false",
+    COMMON = ("--set", "output.checkpoint_interval=0.02", "--set", "output.files=['csv']",
               "--threads", "1")
 
     def start(self, case, out):
@@ -210,7 +210,7 @@ class Resume(RunTest):
         for n in (1, 2, 3):
             outs.append(self.folder / f"threads_{n}")
             self.check_done(equidem("run", SHAKE, "--threads", n, "--out", outs[-1], "--set", "run.duration=2e-3",
-                                    "--set", "assembly.rows=61", "--set", "output.picture=false"))
+                                    "--set", "assembly.rows=61", "--set", "output.files=['csv', 'vtk']"))
         for out in outs[1:]:
             self.check_same(outs[0], out)
 
@@ -234,7 +234,7 @@ class Resume(RunTest):
             with self.subTest(option=option):
                 self.check_error(equidem("run", SHAKE, *short, "--resume", "--set", option), 2, "another case", *words)
         # What is written and printed may change.
-        self.run_case(SHAKE, *short, "--resume", "--set", "title=again", "--set", "output.vtk=false")
+        self.run_case(SHAKE, *short, "--resume", "--set", "title=again", "--set", "output.files=['csv']")
 
     def test_files_that_a_case_names_are_part_of_it(self):
         text = "[springs]\nkN = 1e9\nkT = 0.0\n[run]\nduration = 1e-4\n"

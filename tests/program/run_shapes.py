@@ -22,7 +22,7 @@ class ShapeTest(RunTest):
     def run_to(self, name, case, *options):
         """Result, and the folder."""
         out = self.folder / name
-        self.check_done(equidem("run", case, "--out", out, "--set", "output.picture=false", *options))
+        self.check_done(equidem("run", case, "--out", out, "--set", "output.files=['csv', 'vtk']", *options))
         return parse_json((out / "result.json").read_text()), out
 
 

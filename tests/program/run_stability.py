@@ -126,12 +126,6 @@ class OtherCases(StabilityTest):
         self.assertNotIn("natural_frequencies", self.stability(TENSION, "--frequencies", "0"))
         self.assertNotIn("natural_frequencies", self.stability(TENSION, "--set", "springs.kT=-0.1e9"))
 
-    def test_the_critical_ratio_can_be_left_out(self):
-        result = self.stability(TENSION, "--without-critical-ratio")
-        self.assertIsNone(result["critical_ratio"])
-        self.assertEqual(result["status"], "stable")
-        self.assertIn("not asked for", result["critical_ratio_searched"])
-
     def test_mechanisms_have_no_natural_frequency(self):
         square = ("--set", "assembly.kind=square", "--set", "springs.kT=0", "--set", "assembly.columns=70",
                   "--set", "assembly.rows=70")

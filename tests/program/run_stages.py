@@ -11,7 +11,7 @@ from motion import RunTest, table
 from program import CASES, equidem
 
 BIAXIAL = CASES / "grains_biaxial.toml"
-NO_PICTURE = ("--set", "output.picture=false")
+NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 
 PRESS = """schema = "equidem/1"
 [grains]

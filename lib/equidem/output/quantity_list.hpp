@@ -244,7 +244,6 @@ inline constexpr ResultQuantity quantities[] = {
     {"strength/shear", "N/m", "least and largest strength in shear"},
     {"strength/friction", "", "friction of the strength in shear"},
     {"strength/residual_friction", "", "friction of contacts without a bond, where they have friction"},
-    {"estimated_tests", "", "number of strength tests for which the time is estimated"},
     {"width", "m", "width of a sample, by which loads are divided"},
     {"tests", "", "number of strength tests"},
     {"sample_count", "", "number of samples"},

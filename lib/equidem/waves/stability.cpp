@@ -84,7 +84,6 @@ CriticalMotion find_critical_motion(const Assembly& assembly, const ContactSprin
                 "bending springs resist rotations too, so that no single kT/kN tells what gives way; with kT of 0 "
                 "or more and kM of 0 or more nothing does"};
   if (survey) return critical_of_survey(*survey);
-  if (!options.critical_ratio) return {.sought = false, .searched = "it was not asked for"};
   if (assembly.periodic()) return critical_of_large_cell(assembly, springs, rotation);
   const CriticalRatio found = find_critical_ratio(assembly, springs, supports, {.rotation = rotation});
   CriticalMotion critical{.ratio = found.ratio};

@@ -30,7 +30,6 @@ struct StabilityOptions {
   Body body = Body::disc;
   SolverOptions solver = {};    ///< of the homogenized continuum and of natural frequencies
   int natural_frequencies = 4;  ///< number of the lowest, >= 0
-  bool critical_ratio = true;   ///< whether it is sought by factorizations, some 15 of the whole assembly
 };
 
 /// The critical ratio and the motion that loses its stiffness there.

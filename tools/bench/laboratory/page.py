@@ -62,7 +62,7 @@ class Laboratory:
         words = [word for setting in settings for word in ("--set", setting)]
         start = time.monotonic()
         text = call([self.equidem, "run", CASES / f"grains_{name}.toml", "--out", out, "--threads", 1, "--json", "-", "--quiet", "--set",
-                     "output.picture=false", *words])
+                     "output.files=['csv', 'vtk']", *words])
         seconds = time.monotonic() - start
         tell(f"{name} {' '.join(settings)}: {seconds:.1f} s")
         return out, json.loads(text), seconds

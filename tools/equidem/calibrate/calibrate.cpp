@@ -95,30 +95,6 @@ std::string text_of_springs(const Case& resolved, const Assembly& assembly, cons
                       resolved.title, comment + fmt::format("\nBy equidem calibrate, {}.", found.method));
 }
 
-/// Factorizations that calibrations took: of lattices one, of triangulations ten, of packings, in which nu does not
-/// fall throughout with kT/kN, 17 to 21.
-int expected_factorizations(AssemblyKind kind) {
-  switch (kind) {
-    case AssemblyKind::lattice:
-      return 1;
-    case AssemblyKind::delaunay:
-      return 10;
-    case AssemblyKind::packing:
-    case AssemblyKind::file:
-      return 20;
-  }
-  return 0;
-}
-
-int dry_run_calibration(const CommonOptions& options, const Problem& problem) {
-  const int factorizations = expected_factorizations(problem.resolved.assembly.kind);
-  Results results;
-  results.line("factorizations", "about ").add("factorizations", "", factorizations, "of this size");
-  if (factorizations > 1) results.note(", each with three solutions and their derivatives by kT/kN");
-  deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
-  return 0;
-}
-
 /// The case with springs that are not known yet.
 Problem problem_with_material(Case resolved) {
   if (!resolved.material) {
@@ -151,7 +127,10 @@ int calibrate(const CalibrateVerb& options) {
   const auto lock = lock_out(common);
   Problem problem = problem_with_material(std::move(read));
   const Case& resolved = problem.resolved;
-  if (common.dry_run) return dry_run_calibration(common, problem);
+  if (common.dry_run) {
+    deliver(common, "dry_run", dry_run_results(problem, {}, AssemblyKeys::size), problem.times);
+    return 0;
+  }
 
   const ElasticModuli& wanted = resolved.material->moduli;
   const CalibrateOptions how = calibrate_options(resolved);

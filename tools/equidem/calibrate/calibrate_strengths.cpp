@@ -51,14 +51,9 @@ std::vector<SeededSample> build_samples(const Problem& first) {
 }
 
 int dry_run_strengths(const CommonOptions& options, Problem& problem) {
-  constexpr double values = 8;  // of the unknown: as many as calibrations took
   problem.resolved.solver = factor_to_update(problem.resolved.solver);
-  const StrengthTargetCase& target = *problem.resolved.strength_target;
-  const double of_value = 1 + (target.wanted.compressive ? 1.0 : static_cast<double>(target.wanted.notches.size()));
-  const double tests = values * of_value * static_cast<double>(number_of_samples(problem.resolved));
   Results results;
   add_unused(results, problem.resolved);
-  results.line("tests").add("estimated_tests", "about", std::llround(tests), "test", {Shown::count});
   deliver(options, "dry_run", dry_run_results(problem, results, AssemblyKeys::size), problem.times);
   return 0;
 }

@@ -59,7 +59,7 @@ Run declare_export(CLI::App& command) {
       "  equidem export data/cases/abe1996_fig6.toml --to lammps --out tension      then lmp -in in.equidem\n"
       "  equidem export data/cases/delaunay_tension.toml --to yade --out tension    then yade run_equidem.py\n"
       "  equidem export data/cases/grains_cradle.toml --set collisions.law=linear_dashpot --to yade --out cradle\n"
-      "  equidem export data/cases/cantilever.toml --to matrix-market --out beam    then python3 beam/solve.py");
+      "  equidem export data/cases/cantilever.toml --to matrix-market --out beam");
   return [options] { return export_case(*options); };
 }
 

@@ -54,7 +54,7 @@ struct ExportFormat {
 inline constexpr std::array export_formats{
     ExportFormat{"lammps", "in.equidem and its data file", export_to_lammps},
     ExportFormat{"yade", "run_equidem.py", export_to_yade},
-    ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx), solve.py", export_to_matrix_market},
+    ExportFormat{"matrix-market", "K, right-hand sides, rigid motions (.mtx)", export_to_matrix_market},
 };
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The equations of a case as Matrix Market files, with a script that solves them by SciPy.
+/// The equations of a case as Matrix Market files.
 #include "equidem/output/files/matrix_market.hpp"
 
 #include <memory>
@@ -26,42 +26,8 @@ constexpr const char* motions_file = "rigid_motions.mtx";
 constexpr const char* unknowns_file = "unknowns.csv";
 constexpr const char* held_file = "held.csv";
 constexpr const char* readme_file = "README.txt";
-constexpr const char* script_file = "solve.py";
 constexpr const char* units = "SI units per metre of depth; README.txt says more";
 constexpr const char* component_names[] = {"ux", "uy", "rotation"};
-
-/// Held components stand in held.csv, all others in unknowns.csv.
-constexpr const char* script = R"(#!/usr/bin/env python3
-"""Solves the equations of this folder by SciPy: displacements.csv."""
-import csv
-from pathlib import Path
-
-import numpy as np
-import scipy.io
-import scipy.sparse.linalg
-
-here = Path(__file__).resolve().parent
-K = scipy.io.mmread(here / "stiffness.mtx").tocsc()
-f = scipy.io.mmread(here / "right_hand_sides.mtx")
-factor = scipy.sparse.linalg.splu(K, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
-u = factor.solve(f)
-u += factor.solve(f - K @ u)
-
-motions = {}  # (disc, component): one value for each right-hand side
-with open(here / "unknowns.csv", newline="") as file:
-    for row in csv.DictReader(file):
-        motions[int(row["disc"]), row["component"]] = u[int(row["unknown"])] * float(row["scale"])
-with open(here / "held.csv", newline="") as file:
-    for row in csv.DictReader(file):
-        motions[int(row["disc"]), row["component"]] = np.full(f.shape[1], float(row["value"]))
-with open(here / "displacements.csv", "w", newline="") as file:
-    table = csv.writer(file)
-    table.writerow(["right_hand_side", "disc", "ux_m", "uy_m", "rotation_rad"])
-    for k in range(f.shape[1]):
-        for disc in sorted({disc for disc, _ in motions}):
-            values = (motions.get((disc, name)) for name in ("ux", "uy", "rotation"))
-            table.writerow([k, disc, *(0.0 if value is None else float(value[k]) for value in values)])
-)";
 
 struct Component {
   std::int64_t disc;
@@ -115,9 +81,9 @@ std::string readme(const Problem& problem, const LinearSystem& system) {
       "SI units per metre of depth: K in Pa, f in N/m, u in m. {} says which component of which disc each\n"
       "unknown is; times its scale it is a displacement in m or a rotation in rad. {} has the components that\n"
       "are not unknown, in m and rad. {} spans the near-null space (translations along x and y, rotation),\n"
-      "for algebraic multigrid. \"python3 {}\" (needs python3-scipy) solves and writes displacements.csv.\n",
+      "for algebraic multigrid.\n",
       title, title.empty() ? "" : "\n", counted(system.size(), "unknown"), stiffness_file, listed(system.names),
-      loads_file, unknowns_file, held_file, motions_file, script_file);
+      loads_file, unknowns_file, held_file, motions_file);
 }
 
 /// The equations of the verb solve where something acts on the assembly, else of homogenize on the periodic cell.
@@ -180,7 +146,6 @@ Exported export_to_matrix_market(const ExportOptions& options) {
   file(unknowns_file, [system] { return table_of_unknowns(*system).csv(); });
   file(held_file, [system] { return table_of_held(*system).csv(); });
   file(readme_file, [system, problem] { return readme(*problem, *system); });
-  file(script_file, [] { return std::string(script); });
   made.write_case = [problem](const CommonOptions& into) { write_case(into, problem->resolved); };
   return made;
 }

@@ -93,11 +93,10 @@ std::vector<EnsembleSample> with_kept(const std::vector<EnsembleSample>& done,
   return result;
 }
 
-std::string describe_plan(const EnsemblePlan& plan, double confidence) {
+std::string describe_plan(const EnsemblePlan& plan) {
   const std::string sizes = joined(plan.discs, [](std::int64_t discs) { return fmt::format("{}", discs); });
-  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of {:.4g} % confidence",
-                     counted(plan.samples, "cell"), sizes, plan.first_seed,
-                     plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1, 100 * confidence);
+  return fmt::format("{} of {} discs each, seeds {} to {}; intervals of 95 % confidence", counted(plan.samples, "cell"),
+                     sizes, plan.first_seed, plan.first_seed + static_cast<std::uint64_t>(plan.samples) - 1);
 }
 
 /// \throws Error (computation_failed) where the largest cell surely does not fit into memory
@@ -187,7 +186,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       .title = resolved.title, .plan = asked.plan, .accuracy = asked.accuracy, .samples = {}, .statistics = {}};
   result.plan.first_seed = resolved.assembly.seed();
   const EnsemblePlan& plan = result.plan;
-  Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan, asked.confidence));
+  Results results = cell_results(resolved, plan.discs.front(), plan.first_seed, describe_plan(plan));
   OutputPlan(options).expect_json();
   if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
@@ -210,7 +209,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
   times.add("sampling", watch.lap());
   result.samples = std::move(sampled.samples);
-  result.statistics = analyze_ensemble(result.plan, result.samples, asked.confidence);
+  result.statistics = analyze_ensemble(result.plan, result.samples, result.statistics.confidence);
 
   results.append(ensemble_results(result));
   const std::size_t wanted = result.plan.discs.size() * static_cast<std::size_t>(result.plan.samples);

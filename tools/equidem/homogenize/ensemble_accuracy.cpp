@@ -72,9 +72,7 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
   OutputPlan(options).expect_json();
   if (!options.dry_run) check_ensemble_outputs(options);
   const auto lock = lock_out(options);
-  EnsembleAccuracy wanted{.accuracy = accuracy,
-                          .confidence = resolved.ensemble.value_or(EnsembleCase{}).confidence,
-                          .first_seed = resolved.assembly.seed()};
+  EnsembleAccuracy wanted{.accuracy = accuracy, .first_seed = resolved.assembly.seed()};
   if (resolved.assembly.packing) wanted.smallest = smallest_packing;
   Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
   if (options.dry_run) {

@@ -186,7 +186,6 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
-  further.line("events", "their number is not known before");
   deliver(options, "dry_run", dry_run_results(problem, further), problem.times);
   return 0;
 }

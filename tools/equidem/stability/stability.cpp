@@ -29,7 +29,6 @@ namespace {
 
 struct StabilityCommand : CommonOptions {
   int frequencies = StabilityOptions{}.natural_frequencies;
-  bool without_critical_ratio = false;
 };
 
 /// The density of the discs, or 1.
@@ -39,8 +38,7 @@ StabilityOptions options_of(const Problem& problem, const StabilityCommand& comm
           .density = disc_density(resolved, problem.assembly).value_or(1),
           .body = resolved.assembly.body,
           .solver = resolved.solver,
-          .natural_frequencies = command.frequencies,
-          .critical_ratio = !command.without_critical_ratio};
+          .natural_frequencies = command.frequencies};
 }
 
 /// Whether the contacts also carry what the loads and the motions of supports of the case cause: where prestress is
@@ -102,11 +100,9 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
   const Assembly& assembly = problem.assembly;
   const ContactSprings& springs = problem.springs.springs;
   const Effects effects = derive_effects(assembly, springs, problem.resolved.rotation);
-  const int factorizations = (assembly.periodic() ? 50 : 15) + (acted_on ? 1 : 0);
   Results results;
   if (acted_on) results.line("forces at rest", "those of the loads and motions of the case count: one more solution");
-  results.line("factorizations", "about ").add("factorizations", "", factorizations, "of the size below").line("waves");
-  results.set("waves", Results());
+  results.line("waves").set("waves", Results());
   if (assembly.periodic()) {
     const PrimitiveCell cell = primitive_cell(assembly, springs);
     results.set("waves/primitive_cell_discs", cell.size());
@@ -187,9 +183,6 @@ Run declare_stability(CLI::App& command) {
       ->check(whole_number(0, 50))
       ->capture_default_str()
       ->type_name("N");
-  command.add_flag("--without-critical-ratio", options->without_critical_ratio,
-                   "do not seek the critical kT/kN of an assembly without a small cell,\n"
-                   "which takes most of the time of large ones");
   command.footer(
       "A periodic assembly needs neither supports nor loads; a free one is judged with its [[support]]\n"
       "or [test], or as a free body.\n"

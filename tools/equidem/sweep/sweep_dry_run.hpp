@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Size and time of a sweep before it is made.
+/// Size of a sweep before it is made.
 #pragma once
 
 #include "equidem/output/results.hpp"
@@ -9,7 +9,7 @@
 
 namespace equidem {
 
-/// Delivers the dry run of a point and the time of all, which follows from the dry runs of some of them.
+/// Delivers the number of points and the dry run of the first that can be computed.
 /// \param results of the keys, which the others follow
 /// \return the exit code
 int dry_run_sweep(const Sweep& sweep, Results results);

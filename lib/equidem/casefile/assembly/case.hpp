@@ -91,6 +91,15 @@ struct QuasistaticCase {
   friend bool operator==(const QuasistaticCase&, const QuasistaticCase&) = default;
 };
 
+enum class OutputFile { csv, vtk, picture };
+
+template <>
+struct EnumNames<OutputFile> {
+  static constexpr const char* what = "kind of output";
+  static constexpr NamedValue<OutputFile> list[] = {
+      {OutputFile::csv, "csv"}, {OutputFile::vtk, "vtk"}, {OutputFile::picture, "picture"}};
+};
+
 /// [output]: files written with --out, in addition to result.json and case.toml.
 struct OutputCase {
   bool csv = true;
@@ -105,9 +114,8 @@ struct OutputCase {
 
 /// [ensemble]: random samples of one kind, from the seeds s, s + 1, ..., s that of the assembly.
 struct EnsembleCase {
-  EnsemblePlan plan;                                    ///< its sizes are instead of that of the assembly
-  std::optional<double> accuracy;                       ///< target relative accuracy of the moduli
-  double confidence = EnsembleStatistics{}.confidence;  ///< of intervals
+  EnsemblePlan plan;               ///< its sizes are instead of that of the assembly
+  std::optional<double> accuracy;  ///< target relative accuracy of the moduli
 };
 
 /// [material].

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/case_tables.hpp"
 
+#include <algorithm>
+
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
@@ -268,8 +270,7 @@ void bind_tasks(File<CaseTables>& file) {
            key("samples", &EnsembleCase::plan, &EnsemblePlan::samples, from(2, 1e6),
                "samples of each size, made from the seed of the assembly, seed + 1, ..."),
            key("accuracy", &EnsembleCase::accuracy, between(0, 1),
-               "wanted of the moduli, relative, such as 0.01: the report says which size reaches it"),
-           key("confidence", &EnsembleCase::confidence, between(0.5, 1), "level of the intervals that are reported")});
+               "wanted of the moduli, relative, such as 0.01: the report says which size reaches it")});
   file.table("solver", &CaseTables::solver, completed, "how the equations are solved")
       .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
              key("ordering", &SolverOptions::ordering, when("method", {to_string(SolverMethod::cholmod)}),
@@ -285,11 +286,19 @@ void bind_tasks(File<CaseTables>& file) {
 
 std::vector<Key<OutputCase>> output_keys() {
   return {
-      key("csv", &OutputCase::csv, "discs.csv, contacts.csv"),
-      key("vtk", &OutputCase::vtk, "state for ParaView"),
-      key("picture", &OutputCase::picture,
-          "picture.svg, picture.png; of bodies that collide at segments, and whose paths are not drawn, those "
-          "are left out that lie farther from the box round these walls and the start than half its larger side"),
+      key_with<OutputCase, std::vector<OutputFile>>(
+          "files",
+          [](OutputCase& output, const std::vector<OutputFile>& wanted) {
+            const auto has = [&](OutputFile file) { return std::ranges::find(wanted, file) != wanted.end(); };
+            output.csv = has(OutputFile::csv);
+            output.vtk = has(OutputFile::vtk);
+            output.picture = has(OutputFile::picture);
+          },
+          choices(names_of<OutputFile>()),
+          by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
+          "csv: tables of bodies and contacts; vtk: an assembly for ParaView; picture: picture.svg, picture.png, of "
+          "bodies that collide at segments, and whose paths are not drawn, without those that lie farther from "
+          "the box round these walls and the start than half its larger side; [] for none of them"),
       key("assembly", &OutputCase::assembly,
           "discs and contacts in assembly.json or, read and written faster, assembly.h5 (HDF5); without it pack and "
           "calibrate write json, solve and homogenize none"),

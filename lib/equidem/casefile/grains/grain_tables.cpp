@@ -83,9 +83,7 @@ const File<GrainTables>& grain_file() {
     bind_cell(made);
     bind_collisions(made);
     bind_run(made);
-    std::vector<Key<OutputCase>> output = output_keys();
-    std::erase_if(output, [](const auto& key) { return key.spec.name == "vtk"; });
-    made.table("output", &GrainTables::output, completed, "what is written with --out").keys(std::move(output));
+    made.table("output", &GrainTables::output, completed, "what is written with --out").keys(output_keys());
     return made;
   }();
   return file;

@@ -49,8 +49,15 @@ void bind_springs_and_output(File<PackTables>& file) {
              key("density", &S::density, unit("kg/m³"), positive, "of the bodies, as packing.density")});
   bind_springs_file(file);
   file.table("output", completed, "what is written with --out")
-      .keys({key_in<PackTables>("csv", &PackCase::csv, "grains.csv, for [grains] path"),
-             key_in<PackTables>("picture", &PackCase::picture),
+      .keys({key_with<PackTables, std::vector<OutputFile>>(
+                 "files",
+                 [](PackTables& tables, const std::vector<OutputFile>& wanted) {
+                   tables.csv = std::ranges::find(wanted, OutputFile::csv) != wanted.end();
+                   tables.picture = std::ranges::find(wanted, OutputFile::picture) != wanted.end();
+                 },
+                 choices(names_of<OutputFile>()),
+                 by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
+                 "csv: grains.csv, for [grains] path; picture: picture.png; [] for none of them"),
              key_in<PackTables>("assembly", &PackCase::assembly,
                                 "assembly.json or, read and written faster, assembly.h5 (HDF5)")});
 }

@@ -24,37 +24,15 @@ std::string tick_text(double value) {
   return text.front() == '-' ? "−" + text.substr(1) : text;
 }
 
-void draw_colour_bar(Canvas& canvas, const PictureScene& scene) {
-  const ColourScale& scale = scene.colours;
+/// Beside the drawing area, its label above.
+void draw_colours(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
-  const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
   constexpr double width = 18, tip = 14;
   const double area_top = frame.origin.y + 0.5 * (frame.scale * frame.extent.y - frame.room.y);
   const double length = std::min(frame.room.y - 2 * tip - 50, 420.0);
   const double left = frame.width - 92.0;
   const double top = area_top + 0.5 * (frame.room.y - length) + 20;
-  const auto height_of = [&](double value) { return top + length * (high - value) / (high - low); };
-
-  constexpr int per_unit = 4;  // image pixels, so that the blur of its edge hides under the frame
-  Raster gradient(static_cast<int>(per_unit * width), static_cast<int>(std::lround(per_unit * length)));
-  for (int row = 0; row < gradient.height; ++row) {
-    const Colour colour = scale.colour_of(high - (high - low) * (row + 0.5) / gradient.height);
-    for (int column = 0; column < gradient.width; ++column) gradient.set(column, row, colour);
-  }
-  canvas.image(gradient, {left, top}, width, length);
-  const double centre = left + 0.5 * width;
-  const std::vector<Vec2> upper{{left, top}, {left + width, top}, {centre, top - tip}};
-  const std::vector<Vec2> lower{{left, top + length}, {left + width, top + length}, {centre, top + length + tip}};
-  if (scale.clipped_above) canvas.fill_polygon(upper, scale.colour_of(high));
-  if (scale.clipped_below) canvas.fill_polygon(lower, scale.colour_of(low));
-  canvas.stroke_polygon({{left, top}, {left + width, top}, {left + width, top + length}, {left, top + length}}, 0.7,
-                        grey);
-
-  for (const double tick : nice_ticks(low, high)) {
-    const double y = height_of(tick);
-    canvas.line({left + width, y}, {left + width + 5, y}, 0.8, grey);
-    canvas.text(tick_text(tick), {left + width + 9, y + 0.36 * small_text}, small_text, TextAnchor::left, ink);
-  }
+  draw_colour_bar(canvas, scene.colours, {left, top}, width, length);
   canvas.text(scene.colour_label, {left, top - tip - 27}, small_text, TextAnchor::left, ink);
   canvas.text(scene.colour_unit, {left, top - tip - 11}, small_text, TextAnchor::left, ink);
 }
@@ -98,6 +76,28 @@ void draw_support(Canvas& canvas, Vec2 centre, double radius, const DrawnSupport
 }
 
 }  // namespace
+
+void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Vec2 corner, double width, double length) {
+  const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
+  const double left = corner.x, right = left + width, top = corner.y, bottom = top + length, tip = 0.8 * width;
+  constexpr int per_unit = 4;  // image pixels, so that the blur of its edge hides under the frame
+  Raster gradient(static_cast<int>(per_unit * width), static_cast<int>(std::lround(per_unit * length)));
+  for (int row = 0; row < gradient.height; ++row) {
+    const Colour colour = scale.colour_of(high - (high - low) * (row + 0.5) / gradient.height);
+    for (int column = 0; column < gradient.width; ++column) gradient.set(column, row, colour);
+  }
+  canvas.image(gradient, corner, width, length);
+  const double centre = left + 0.5 * width;
+  if (scale.clipped_above) canvas.fill_polygon({{left, top}, {right, top}, {centre, top - tip}}, scale.colour_of(high));
+  if (scale.clipped_below)
+    canvas.fill_polygon({{left, bottom}, {right, bottom}, {centre, bottom + tip}}, scale.colour_of(low));
+  canvas.stroke_polygon({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, 0.7, grey);
+  for (const double tick : nice_ticks(low, high)) {
+    const double y = top + length * (high - tick) / (high - low);
+    canvas.line({right, y}, {right + 5, y}, 0.8, grey);
+    canvas.text(tick_text(tick), {right + 9, y + 0.36 * small_text}, small_text, TextAnchor::left, ink);
+  }
+}
 
 void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
@@ -155,7 +155,7 @@ void draw_texts(Canvas& canvas, const PageFrame& frame, const std::string& title
 
 void draw_legends(Canvas& canvas, const PictureScene& scene) {
   const PageFrame& frame = scene.frame;
-  if (!scene.values.empty()) draw_colour_bar(canvas, scene);
+  if (!scene.values.empty()) draw_colours(canvas, scene);
   if (scene.force_chains)
     canvas.text("red: tension, blue: compression; widest line " + with_unit(scene.widest_force, "N/m"),
                 {page_margin + frame.room.x, frame.height - 46.0}, small_text, TextAnchor::right, ink);

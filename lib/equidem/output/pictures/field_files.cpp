@@ -86,9 +86,13 @@ std::string image_text(const CoarseFields& fields) {
 
 constexpr double map_gap = 50, map_bar = 14, map_bar_room = 78, map_title_room = 34;  // units
 
-/// A map in the width given, its colour bar to the right.
-void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, const std::string& title, Vec2 corner,
-              double width, double height) {
+/// A map in the width given, its colour bar to the right. \param unit of the values, or nothing
+void draw_map(Canvas& canvas, const CoarseGrid& grid, Values values, const std::string& title, const std::string& unit,
+              Vec2 corner, double width, double height) {
+  const ColourScale pure = colour_scale(values);
+  const UnitPrefix prefix =
+      unit.empty() ? UnitPrefix{} : unit_prefix(std::max(std::abs(pure.low), std::abs(pure.high)));
+  for (double& value : values) value *= prefix.factor;
   const ColourScale scale = colour_scale(values);
   const Vec2 size = grid.region.high - grid.region.low;
   const double shown = std::min(width / size.x, height / size.y);
@@ -97,7 +101,8 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, cons
   for (std::size_t k = 0; k < grid.size(); ++k)
     raster.set(static_cast<int>(k % grid.columns), static_cast<int>(grid.rows - 1 - k / grid.columns),
                scale.colour_of(values[k]));
-  canvas.text(title, {corner.x, corner.y - 12}, 14, TextAnchor::left, ink, true);
+  canvas.text(unit.empty() ? title : fmt::format("{}, {}{}", title, prefix.prefix, unit), {corner.x, corner.y - 12}, 14,
+              TextAnchor::left, ink, true);
   // Few cells are drawn as polygons: viewers smooth an image, which blurs its cells.
   const double cw = w / static_cast<double>(grid.columns), ch = h / static_cast<double>(grid.rows);
   if (grid.size() > 20'000) {
@@ -112,38 +117,26 @@ void draw_map(Canvas& canvas, const CoarseGrid& grid, const Values& values, cons
   }
   canvas.stroke_polygon({corner, {corner.x + w, corner.y}, {corner.x + w, corner.y + h}, {corner.x, corner.y + h}}, 0.8,
                         ink);
-  constexpr int steps = 64;
-  const double left = corner.x + w + 12;
-  for (int k = 0; k < steps; ++k) {
-    const double y = corner.y + h * (1 - (k + 1.0) / steps);
-    canvas.fill_polygon(
-        {{left, y}, {left + map_bar, y}, {left + map_bar, y + h / steps + 0.3}, {left, y + h / steps + 0.3}},
-        colour_at(scale.map, (k + 0.5) / steps));
-  }
-  const double low = std::min(scale.low, scale.high), high = std::max(scale.low, scale.high);
-  const UnitPrefix prefix =
-      title.ends_with(", Pa") ? unit_prefix(std::max(std::abs(low), std::abs(high))) : UnitPrefix{};
-  for (const double tick : nice_ticks(low * prefix.factor, high * prefix.factor, 4)) {
-    const double y = corner.y + h * (1 - (tick / prefix.factor - scale.low) / (scale.high - scale.low));
-    canvas.line({left + map_bar, y}, {left + map_bar + 4, y}, 0.8, ink);
-    canvas.text(fmt::format("{:.4g}{}", tick, prefix.prefix.empty() ? "" : " " + prefix.prefix),
-                {left + map_bar + 7, y + 4}, 11, TextAnchor::left, ink);
-  }
+  draw_colour_bar(canvas, scale, {corner.x + w + 12, corner.y}, map_bar, h);
 }
 
 std::string draw(const CoarseFields& fields) {
   const Values speed = values_of(fields, [&](std::size_t k) { return norm(fields.velocity[k]); });
-  const std::pair<std::string, Values> maps[] = {{"pressure, Pa", pressure_of(fields)},
-                                                 {"solid fraction", fields.solid_fraction},
-                                                 {"coordination", fields.coordination},
-                                                 {"speed, m/s", speed}};
+  struct Map {
+    const char *title, *unit;
+    Values values;
+  };
+  const Map maps[] = {{"pressure", "Pa", pressure_of(fields)},
+                      {"solid fraction", "", fields.solid_fraction},
+                      {"coordination", "", fields.coordination},
+                      {"speed", "m/s", speed}};
   const Vec2 size = fields.grid.region.high - fields.grid.region.low;
   const double width = 0.5 * (PageFrame::width - 2 * page_margin - map_gap) - map_bar_room;
   const double height = std::clamp(width * size.y / size.x, 60.0, 1.5 * width);
   const double pitch = height + map_title_room + 26;
   Canvas canvas(PageFormat::png, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(2 * pitch + 16)), 1);
   for (std::size_t k = 0; k < 4; ++k)
-    draw_map(canvas, fields.grid, maps[k].second, maps[k].first,
+    draw_map(canvas, fields.grid, maps[k].values, maps[k].title, maps[k].unit,
              {page_margin + static_cast<double>(k % 2) * (width + map_bar_room + map_gap),
               map_title_room + static_cast<double>(k / 2) * pitch},
              width, height);

@@ -83,6 +83,8 @@ void draw_cracks(Canvas& canvas, const PictureScene& scene);
 void draw_supports_and_loads(Canvas& canvas, const PictureScene& scene);
 void draw_gauges(Canvas& canvas, const PictureScene& scene);
 
+/// The colours of a scale from its low end, below, to its high end, with ticks to the right.
+void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Vec2 corner, double width, double length);
 /// Title, colour bar, scale bar, legend of the force chains, caption.
 void draw_legends(Canvas& canvas, const PictureScene& scene);
 /// Title and caption of any picture, and its scale bar.
