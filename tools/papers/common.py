@@ -26,8 +26,9 @@ except ImportError:  # not installed: the one that was built here
         sys.path.append(str(ROOT / "build" / preset / "python"))
     try:
         import equidem as eq
-    except ImportError:
-        sys.exit("The Python module 'equidem' is missing: tools/prepare release \"build python\" equidem_python")
+    except ImportError as error:
+        sys.exit(f"The Python module 'equidem' cannot be imported by {sys.executable} ({error}). Run tools/prepare release "
+                 "\"build python\" equidem_python, and take the interpreter that it was built for, such as /usr/bin/python3")
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted."""
