@@ -19,7 +19,7 @@ SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
 
 def run(name, *arguments):
     return subprocess.run([sys.executable, "-B", PAPERS / f"{name}.py", *map(str, arguments)], capture_output=True, text=True,
-                          timeout=280, check=False)
+                          timeout=800, check=False)
 
 
 def result_of(name, out, *arguments):
