@@ -275,8 +275,7 @@ void bind_tasks(File<CaseTables>& file) {
       .keys({key("method", &SolverOptions::method, help_of(EnumNames<SolverMethod>::list)),
              key("ordering", &SolverOptions::ordering, when("method", {to_string(SolverMethod::cholmod)}),
                  "order of elimination: " + help_of(EnumNames<CholmodOrdering>::list)),
-             key("max_refinements", &SolverOptions::max_refinements, from(0, 100),
-                 "steps of iterative refinement"),
+             key("max_refinements", &SolverOptions::max_refinements, from(0, 100), "steps of iterative refinement"),
              key("memory_limit", &SolverOptions::memory_limit, bytes, not_negative,
                  "largest memory of the factor, also as \"4 GB\"; 0: what the machine has free")});
   file.table("output", &CaseTables::output, completed, "what is written with --out").keys(output_keys());
