@@ -119,7 +119,7 @@ TEST_CASE("residuals_are_as_told_to_the_last_contact") {
       carried = is_carried(state.remove(static_cast<std::size_t>(next.contact)));
     }
     CAPTURE(scene.name, events);
-    CHECK(events > 40);
+    CHECK(events > 30);
   }
   CHECK(measured > 500);
 }
