@@ -87,6 +87,14 @@ class BreakableSystem {
   [[nodiscard]] virtual std::string solver_name() const = 0;
 };
 
+/// With a method and a precision where they are left to the library: a factor in double precision, which alone tells
+/// the stability of each network and can be updated.
+inline SolverOptions factor_to_update(SolverOptions options) {
+  if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
+  if (options.precision == FactorPrecision::automatic) options.precision = FactorPrecision::double_precision;
+  return options;
+}
+
 /// Discs that never leave the network, per disc: those held, and those on which a force acts.
 std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network);
 

@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "equidem/breakage/disjoint_ways.hpp"
-#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
-#include "equidem/breakage/rest_of_network.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
