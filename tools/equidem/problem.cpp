@@ -399,7 +399,7 @@ Results dry_run_results(const Problem& problem, const Results& further, Assembly
     estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + vectors);
   }
   // Forces, motions and histories of contacts that break: measured, with friction and without.
-  constexpr double bytes_of_breaking_contact = 450;
+  constexpr double bytes_of_breaking_contact = 380;
   if (problem.breaks)
     estimate.peak_bytes += bytes_of_breaking_contact * static_cast<double>(problem.assembly.contacts.size());
   if (of_complex) {

@@ -87,6 +87,13 @@ class BreakableSystem {
   [[nodiscard]] virtual std::string solver_name() const = 0;
 };
 
+/// With elimination where the method is left to the library: its factor can be updated and tells the stability of each
+/// network.
+inline SolverOptions factor_to_update(SolverOptions options) {
+  if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
+  return options;
+}
+
 /// Discs that never leave the network, per disc: those held, and those on which a force acts.
 std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network);
 

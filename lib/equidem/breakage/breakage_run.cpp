@@ -174,6 +174,9 @@ bool BreakageRun::advance() {
                                               .no_live = no_pattern_,
                                               .no_dead = no_dead_});
     if (!system_.carries(0) || (dead && !system_.carries(1))) continue;
+    // The search may have refined the motions.
+    if (const EquilibriumSums* const sums = system_.sums())
+      response_ = response_of(*sums, scene_.path, area_of_stress(scene_.assembly));
     if (next && !carries_pattern()) {
       end_without_load();
       break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The states of a network that breaks, as every implementation of BreakableSystem keeps them.
+/// What implementations of BreakableSystem share: the states of a network, and its rest once contacts have broken.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,37 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/breakage/breakable_system.hpp"
+#include "equidem/contact/contact_springs.hpp"
+#include "equidem/contact/frame.hpp"
 
 namespace equidem {
 
+/// The rest of a network, with its numbers in the whole.
+struct RestOfNetwork {
+  Assembly assembly;
+  ContactSprings springs{SpringConstants{}};
+  std::vector<std::int32_t> discs, contacts;  ///< of the whole, ascending
+};
+
+/// All discs and the contacts that are not broken. \param broken per contact, 1
+RestOfNetwork unbroken_rest(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken);
+
+/// The discs of the rest that can carry a force (load_bearing.hpp), and their contacts. \param held per disc, 1
+RestOfNetwork load_bearing_rest(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken,
+                                const std::vector<std::uint8_t>& held);
+
+/// Discs of a network of `discs` that a rest lacks, per disc: 1.
+std::vector<std::uint8_t> discs_outside(const RestOfNetwork& rest, std::size_t discs);
+
+/// "a load drives " and the motion of a mechanism, with the numbers of discs in the whole.
+/// \param rest whose discs and contacts count: what has left it may follow in more than one way
+/// \param motions of all discs
+std::string describe_driven(const BreakableNetwork& network, const RestOfNetwork& rest,
+                            std::vector<DiscMotion> motions);
+
+/// The states of a network that breaks, as every implementation keeps them.
 class SolvedStates : public BreakableSystem {
  public:
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override { return states_[k].forces; }

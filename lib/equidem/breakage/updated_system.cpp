@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "equidem/breakage/disjoint_ways.hpp"
-#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/network_response.hpp"
-#include "equidem/breakage/rest_of_network.hpp"
 #include "equidem/breakage/solved_states.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
@@ -56,21 +54,14 @@ class UpdatedSystem final : public SolvedStates {
 
   /// One after another, as where a computation is resumed.
   std::vector<std::int32_t> remove(std::span<const std::size_t> contacts) override {
-    if (!alone_ && !states_[0].carried) solve_alone();
-    if (alone_) {
-      const std::vector<std::int32_t> loosened = alone_->remove(contacts);
-      copy_alone();
-      return loosened;
-    }
     std::vector<std::int32_t> gone;
-    for (const std::size_t contact : contacts) {
-      if (alone_) {
-        const std::vector<std::int32_t> loosened = remove({&contact, 1});
-        gone.insert(gone.end(), loosened.begin(), loosened.end());
-        continue;
-      }
-      const std::vector<std::int32_t> loosened = remove(contact);
+    for (; !contacts.empty(); contacts = contacts.subspan(1)) {
+      if (!alone_ && !states_[0].carried) solve_alone();
+      const std::vector<std::int32_t> loosened = alone_ ? alone_->remove(contacts) : remove(contacts.front());
       gone.insert(gone.end(), loosened.begin(), loosened.end());
+      if (!alone_) continue;
+      copy_alone();
+      break;
     }
     std::ranges::sort(gone);
     return gone;
@@ -79,33 +70,28 @@ class UpdatedSystem final : public SolvedStates {
   [[nodiscard]] std::optional<NextBreak> next_break(const ContactStrengths& strengths,
                                                     const LoadFactorSearch& search) override {
     if (!alone_ && !states_[0].carried) solve_alone();
-    if (alone_) return alone_->next_break(strengths, search);
     std::optional<NextBreak> found = SolvedStates::next_break(strengths, search);
-    if (found && lambda_error(*found, strengths.friction) > allowed_error) {
-      refine();
-      found = SolvedStates::next_break(strengths, search);
-    }
+    if (alone_) return found;
+    const bool again = found && lambda_error(*found, strengths.friction) > allowed_error;
+    if (again) refine();
     static_cast<void>(judge_residual());
     if (!states_[0].carried) return {};
-    return alone_ ? alone_->next_break(strengths, search) : found;
+    return again || alone_ ? SolvedStates::next_break(strengths, search) : found;
   }
   [[nodiscard]] const EquilibriumSums* sums() const override {
     return alone_ || !states_[0].carried ? nullptr : &sums_;
   }
 
   [[nodiscard]] std::span<const ContactForce> forces(std::size_t k) const override {
-    if (alone_) return alone_->forces(k);
-    if (states_[k].carried) return equilibrium_.forces(k);
+    if (!alone_ && states_[k].carried) return equilibrium_.forces(k);
     take();
     return SolvedStates::forces(k);
   }
   [[nodiscard]] std::span<const double> motion(std::size_t k) const override {
-    if (alone_) return alone_->motion(k);
     take();
     return SolvedStates::motion(k);
   }
   [[nodiscard]] std::span<const double> reactions(std::size_t k) const override {
-    if (alone_) return alone_->reactions(k);
     take();
     return SolvedStates::reactions(k);
   }
@@ -150,13 +136,13 @@ class UpdatedSystem final : public SolvedStates {
     sum_up();
   }
 
-  /// Where motions drive, forces and energies fall as the network gets softer, while residuals are relative to those of
-  /// the unbroken one: sums of changes lose as many digits, and products of two forces twice as many.
+  /// A residual moves a soft network further than a stiff one. Where motions drive, forces and energies fall as well,
+  /// while residuals are relative to those of the unbroken network: products of two forces lose twice as many digits.
   [[nodiscard]] bool digits_lost() const {
     constexpr double allowed = 1e-12, very_soft = 100;
-    if (!moved_) return false;
-    const double softer = energies_[0].first / energies_[0].now;
-    return !(softer < very_soft && softer * softer * equilibrium_.residual() < allowed);
+    const double share = energies_[0].now / energies_[0].first, softer = moved_ ? 1 / share : share;
+    if (moved_) return !(softer < very_soft && softer * softer * equilibrium_.residual() < allowed);
+    return softer * equilibrium_.residual() > allowed;
   }
 
   /// The share of lambda by which that of the critical contact may be wrong. A residual r leaves the motion K^-1 r of
@@ -231,9 +217,16 @@ class UpdatedSystem final : public SolvedStates {
     return gone;
   }
   void copy_alone() {
-    for (std::size_t p = 0; p < states_.size(); ++p) states_[p].carried = alone_->carries(p);
+    const auto copied = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
+    for (std::size_t p = 0; p < states_.size(); ++p) {
+      copied(states_[p].forces, alone_->forces(p));
+      copied(states_[p].motion, alone_->motion(p));
+      copied(states_[p].reactions, alone_->reactions(p));
+      states_[p].carried = alone_->carries(p);
+    }
+    taken_ = true;
     why_not_ = alone_->why_not();
-    left_.assign(alone_->left().begin(), alone_->left().end());
+    copied(left_, alone_->left());
     measured(alone_->relative_residual());
   }
 
@@ -329,7 +322,7 @@ class UpdatedSystem final : public SolvedStates {
   std::vector<Energies> energies_;  // N, per right-hand side
 };
 
-/// Whether bounds, which are made of squares of forces and products of these, stay in the range of numbers.
+/// Whether energies and lengths of residuals, which are made of squares of forces, stay in the range of numbers.
 bool squares_fit(const BreakableNetwork& network, double stiffest) {
   constexpr double smallest = 1e-30, largest = 1e30;
   return std::ranges::all_of(network.cases, [&](const RightHandSide& given) {

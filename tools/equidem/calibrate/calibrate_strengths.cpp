@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/breakage/breakable_system.hpp"
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
-#include "equidem/breakage/factor_to_update.hpp"
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/engine/read_value.hpp"

@@ -10,7 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/breakage/factor_to_update.hpp"
+#include "equidem/breakage/breakable_system.hpp"
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"

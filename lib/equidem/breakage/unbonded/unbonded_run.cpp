@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/breakage/unbonded/loose_discs.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A path with contacts that rub begins with their laws and statuses; scenes that cannot have one are refused.
+/// A path with contacts that rub begins with their laws and statuses; scenes that cannot have one are
+/// refused. Discs that have come loose on it.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "equidem/breakage/breakage_run.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
+#include "equidem/statics/number_unknowns.hpp"
 
 namespace equidem {
 
@@ -23,5 +26,16 @@ void check_control_of_rubbing(const LoadPath& path);
 /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or
 ///         check_control_of_rubbing() says so
 void check_rubbing(const BreakageScene& scene, double friction, std::span<const ContactForce> rest);
+
+/// Discs that can carry no force (load_bearing.hpp) in the network of bonds and of contacts that carry one, ascending:
+/// those that have left a network whose contacts do not rub.
+/// \param network with all contacts
+/// \param carried per contact: 1, whether it carries a force
+std::vector<std::int32_t> loose_discs(const BreakableNetwork& network, std::span<const UnbondedLaw> laws,
+                                      std::span<const ContactStatus> status, std::span<const std::uint8_t> carried);
+
+/// Discs without a support of which every contact is open, ascending.
+std::vector<std::int32_t> untouched_discs(const Assembly& assembly, const DegreesOfFreedom& unknowns,
+                                          std::span<const ContactStatus> status);
 
 }  // namespace equidem

@@ -84,6 +84,7 @@ UpdatedNetwork::UpdatedNetwork(const Assembly& assembly, const ContactSprings& s
       unknowns_(std::move(unknowns)),
       cases_(std::move(cases)),
       options_(options),
+      stiffest_(springs.largest()),
       symbolic_(order_of({assembly, graph_, springs_, unknowns_}, cases_.size(), options.memory_limit)),
       factor_(symbolic_),
       spared_(assembly.contacts.size(), 0),
@@ -264,6 +265,15 @@ void UpdatedNetwork::evaluate_forces(std::size_t of_case) {
   const std::vector<ContactDeformation>& affine = affine_[of_case];
   const bool low = !u.low.empty();
   const Extended scale = unknowns_.rotation_scale;
+  // Forces of motions so far beyond stretches that the rounding of extended precision counts need more digits.
+  constexpr double negligible = 1e-14;  // over the loads
+  double farthest = 0;
+  for (const double x : u.high) farthest = std::max(farthest, std::abs(x));
+  const double rounding = static_cast<double>(std::numeric_limits<Extended>::epsilon()) * stiffest_ * farthest;
+  const bool far = of_case < scales_.size() && rounding > negligible * scales_[of_case];
+  PreciseMotion whole(0);
+  if (far) whole = motion(of_case), whole.quadruple = true;
+  const SpringNetwork network{assembly_, graph_, springs_, unknowns_};
   twice_energy_[of_case] = sums_over<1>(links_.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t c = begin; c < end; ++c) {
@@ -286,7 +296,8 @@ void UpdatedNetwork::evaluate_forces(std::size_t of_case) {
         turn = link.frame.lever_i * turn_i + link.frame.lever_j * turn_j;
         opening = link.frame.offset_i * turn_i + link.frame.offset_j * turn_j;
       }
-      DeformationOf<Extended> d = deformation(link.frame, apart(0), apart(1), turn, opening);
+      DeformationOf<Extended> d = far ? precise_deformation_of(network, whole, {}, c)
+                                      : deformation(link.frame, apart(0), apart(1), turn, opening);
       if (!affine.empty()) d.normal += affine[c].normal, d.tangential += affine[c].tangential;
       exact = {link.springs.kN * d.normal, link.springs.kT * d.tangential};
       const ContactForce f{static_cast<double>(exact.normal), static_cast<double>(exact.tangential)};

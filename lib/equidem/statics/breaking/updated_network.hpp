@@ -137,6 +137,7 @@ class UpdatedNetwork {
   DegreesOfFreedom unknowns_;
   std::vector<RightHandSide> cases_;
   UpdatedNetworkOptions options_;
+  double stiffest_;  // spring, Pa
   std::shared_ptr<const SymbolicFactor> symbolic_;
   UpdatedCholesky factor_;
   UpdateCounters counters_;
