@@ -132,8 +132,7 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
   results.set("density_assumed", assumed);
   deliver(options, "dry_run",
           dry_run_results(problem, solutions * factorizations, results, AssemblyKeys::size, 0,
-                          "mostly within a factor of two",
-                          vectors_of_frequencies(options.frequencies)),
+                          "mostly within a factor of two", vectors_of_frequencies(options.frequencies)),
           problem.times);
   return 0;
 }
