@@ -66,8 +66,6 @@ TEST_CASE("a_wrong_case_of_grains_is_refused_with_line_key_and_remedy") {
        {"no group of grains"}},
       {"normal = [0.0, 2.0]", "normal = [0.0, 0.0]", "normal", "wall.normal", {"zero"}},
       {"end = [-1.0, 1.0]", "end = [-1.0, 0.0]", "end = ", "wall.end", {"length"}},
-      {"radius = 4.0", "radius = -4.0", "radius = -4.0", "wall.radius", {"> 0"}},
-      {"to = 5.5", "to = 2.5", "to = 2.5", "wall.to", {"angle"}},
       {"normal = [0.0, 2.0]", "normal = [0.0, 2.0]\nend = [1.0, 0.0]", "end = [1.0", "wall.end", {"segment"}},
       {"direction = [3.0, 4.0]\n", "", "displacement", "wall.displacement", {"direction"}},
       {"schedule = \"shake\"", "schedule = \"shaek\"", "schedule = \"shaek\"", "wall.schedule", {"\"shake\""}},

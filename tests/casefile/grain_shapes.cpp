@@ -135,8 +135,7 @@ TEST_CASE("springs_of_wave_speeds_need_one_density_and_no_other_ratio") {
 TEST_CASE("ellipses_meet_by_the_test_asked_for") {
   using enum GrainOptions::EllipseLaw;
   CHECK(grains(soil).options.ellipse_law == exact);
-  for (const auto& [word, law] :
-       {std::pair{"exact", exact}, {"enlarged", enlarged}}) {
+  for (const auto& [word, law] : {std::pair{"exact", exact}, {"enlarged", enlarged}}) {
     const GrainCase c = grains(soil, {fmt::format("collisions.ellipse_contact={}", word)});
     CAPTURE(word);
     CHECK(grain_options(c, 1e-6).ellipse_law == law);

@@ -114,7 +114,7 @@ TEST_CASE("the_ledger_of_bonds_closes_with_the_step") {
   // of the Verlet schemes the next order is still a third of the error at 0.001 s, and of the other sign
   for (const double step : {0.001, 0.0005, 0.00025, 0.000125}) {
     GrainOptions options = options_of(stepping, step);
-      GrainSimulation simulation(scene, options);
+    GrainSimulation simulation(scene, options);
     simulation.advance(std::llround(1 / step));
     const EnergyLedger ledger = simulation.energy();
     errors.push_back(std::abs(ledger.error()) / ledger.initial);

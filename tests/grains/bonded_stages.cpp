@@ -220,6 +220,7 @@ TEST_CASE("a_disc_that_only_spins_between_plates_that_rub_is_not_at_rest") {
   PairProperties pair = one_second(stepping.law, 1);
   pair.stiffness *= 1000;
   pair.friction = friction;
+  pair.tangential_ratio = 2;
   GrainScene scene = scene_of({ball({0, 0.5 - pressed}, 0.5)},
                               {line("floor", {0, 0}, {0, 1}), line("lid", {0, 1 - 2 * pressed}, {0, -1})}, pair);
   scene.grains[0].spin = 2;

@@ -268,28 +268,28 @@ TEST_CASE("a_pair_pressed_by_a_steady_force_creeps_at_force_over_dashpot") {
   const Stepping stepping = GENERATE(from_range(bonding_steppings));
   if (is_map(stepping.law)) return;  // a map that rests on a floor hops
   const double gravity = 1, step = 1e-3;
-    for (const double share : {0.05, 1.5, 100.0}) {
-      GrainScene scene = pair_scene(stepping.law, {.j = 1});
-      const double mass = 1 / (1 / scene.grains[0].inertia.mass + 1 / scene.grains[1].inertia.mass);
-      const double dashpot = share * mass / step;
-      scene.bonds[0].normal_dashpot = scene.bonds[0].tangential_dashpot = dashpot / 3;
-      const double distance = scene.grains[1].position.x;
-      scene.grains[1].position = {0, distance};
-      scene.walls = {line("floor", {0, -scene.grains[0].radius}, {0, 1})};
-      scene.gravity = {0, -gravity};
-      scene.pairs[0].stiffness *= 400;
-      scene.pairs[0].restitution = 0.2;
-      GrainOptions options = options_of(stepping, step);
-      GrainSimulation simulation(scene, options);
-      simulation.advance(4000);  // the floor takes the weight
-      const double before = drifts_of(scene, simulation).distance.largest;
-      simulation.advance(200);
-      const double radii = scene.grains[0].radius + scene.grains[1].radius;
-      const double rate = (drifts_of(scene, simulation).distance.largest - before) * radii / (200 * step);
-      const double expected = scene.grains[1].inertia.mass * gravity / (dashpot / 3);
-      CAPTURE(stepping.name(), share, rate, expected, before);
-      CHECK(rate == Approx(expected).epsilon(1e-6));
-    }
+  for (const double share : {0.05, 1.5, 100.0}) {
+    GrainScene scene = pair_scene(stepping.law, {.j = 1});
+    const double mass = 1 / (1 / scene.grains[0].inertia.mass + 1 / scene.grains[1].inertia.mass);
+    const double dashpot = share * mass / step;
+    scene.bonds[0].normal_dashpot = scene.bonds[0].tangential_dashpot = dashpot / 3;
+    const double distance = scene.grains[1].position.x;
+    scene.grains[1].position = {0, distance};
+    scene.walls = {line("floor", {0, -scene.grains[0].radius}, {0, 1})};
+    scene.gravity = {0, -gravity};
+    scene.pairs[0].stiffness *= 400;
+    scene.pairs[0].restitution = 0.2;
+    GrainOptions options = options_of(stepping, step);
+    GrainSimulation simulation(scene, options);
+    simulation.advance(4000);  // the floor takes the weight
+    const double before = drifts_of(scene, simulation).distance.largest;
+    simulation.advance(200);
+    const double radii = scene.grains[0].radius + scene.grains[1].radius;
+    const double rate = (drifts_of(scene, simulation).distance.largest - before) * radii / (200 * step);
+    const double expected = scene.grains[1].inertia.mass * gravity / (dashpot / 3);
+    CAPTURE(stepping.name(), share, rate, expected, before);
+    CHECK(rate == Approx(expected).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("bonds_keep_momentum_and_angular_momentum") {

@@ -136,7 +136,7 @@ TEST_CASE("who_asks_for_it_may_let_bodies_pass") {
   const NormalLaw law = GENERATE(NormalLaw::linear_dashpot, NormalLaw::hertz_dashpot);
   GrainOptions options = options_of(law, 1);
   options.refuse_crossing = false;
-  GrainSimulation simulation(passings(law)[5].scene, options);
+  GrainSimulation simulation(passings(law)[3].scene, options);
   CHECK_NOTHROW(simulation.advance(3));
   CHECK(simulation.grains()[1].position.x < simulation.grains()[0].position.x);
 }

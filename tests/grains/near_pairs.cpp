@@ -88,6 +88,7 @@ TEST_CASE("discs_above_one_another_stay_so_to_the_last_bit") {
   pair.stiffness = 1e4;
   pair.restitution = 0.5;
   pair.friction = friction;
+  pair.tangential_ratio = 0.5;
   GrainSimulation simulation(scene_of(column, {line("floor", {0, 0}, {0, 1})}, pair, {0, -1}),
                              options_of(stepping, 0.001));
   simulation.advance(500);

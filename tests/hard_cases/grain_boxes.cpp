@@ -208,9 +208,8 @@ TEST_CASE("bonds_past_their_step_limit_are_refused_with_the_limit") {
     GrainBond bond;
     double limit;  // of a pair of discs of the masses 1, I = m r²/2: m_n = 1/2, m_s = 1/6
   };
-  for (const Tie& tie :
-       {Tie{"normal spring", {.j = 1, .normal_spring = 1e6}, 2 * std::sqrt(0.5 / 1e6)},
-        Tie{"tangential spring", {.j = 1, .tangential_spring = 1e6}, 2 * std::sqrt(1 / 6e6)}}) {
+  for (const Tie& tie : {Tie{"normal spring", {.j = 1, .normal_spring = 1e6}, 2 * std::sqrt(0.5 / 1e6)},
+                         Tie{"tangential spring", {.j = 1, .tangential_spring = 1e6}, 2 * std::sqrt(1 / 6e6)}}) {
     GrainScene scene = scene_of({ball({0, 0}, 1, {1e-6, 2e-6}), ball({2, 0}, 1)}, {}, {.stiffness = 100});
     scene.bonds = {tie.bond};
     const double limit = bond_step_limit(scene);
