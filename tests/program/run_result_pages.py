@@ -106,7 +106,7 @@ class ResultPages(ProgramTest):
                 for tag, attributes in page.elements:
                     for key in ("src", "href"):
                         target = attributes.get(key, "#")
-                        self.assertTrue(target.startswith(("data:image/png;base64,", "#")), f"<{tag} {key}={target[:60]}>")
+                        self.assertTrue(target.startswith(("data:image/png;base64,", "data:image/svg+xml;base64,", "#")), f"<{tag} {key}={target[:60]}>")
                     if tag in ("img", "svg", "canvas"):
                         self.assertTrue(attributes.get("alt") or attributes.get("aria-label"), f"<{tag}> has no words")
                 names = [attributes["id"] for _, attributes in page.elements if "id" in attributes]

@@ -40,7 +40,8 @@ Any key can be set on the command line: --set springs.kT=0.3e9 --set assembly.ro
 constexpr const char* grain_example =
     R"(
 Bodies that meet, rebound and part, for 'equidem run': a case with [grains] or [[grain]] in place of
-[assembly]. The top of the file, [[schedule]] and [output] are as above; the rest is below. An example:
+[assembly]. The top of the file, [[schedule]] and [output] are as above; the rest is below. An
+example:
 
   schema = "equidem/1"
   [grains]

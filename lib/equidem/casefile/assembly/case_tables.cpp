@@ -293,7 +293,7 @@ std::vector<Key<OutputCase>> output_keys() {
             output.vtk = has(OutputFile::vtk);
             output.picture = has(OutputFile::picture);
           },
-          choices(names_of<OutputFile>()),
+          choices(names_of<OutputFile>()), or_empty,
           by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
           "csv: tables of bodies and contacts; vtk: an assembly for ParaView; picture: picture.svg, picture.png, of "
           "bodies that collide at segments, and whose paths are not drawn, without those that lie farther from "

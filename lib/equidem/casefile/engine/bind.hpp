@@ -95,6 +95,8 @@ inline auto between(double low, double high) {
 inline auto unit(std::string text) {
   return [text](KeySpec& key) { key.unit = text; };
 }
+/// [] is a list of words too.
+inline constexpr auto or_empty = [](KeySpec& key) { key.may_be_empty = true; };
 inline auto refused(std::vector<RefusedWord> words) {
   return [words](KeySpec& key) { key.refused = words; };
 }

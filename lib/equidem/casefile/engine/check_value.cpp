@@ -143,9 +143,8 @@ void check_choice(const TomlValue& value, const KeySpec& key) {
   fail(value, key, problem, meant ? fmt::format("Did you mean \"{}\"?", *meant) : "Choose one of these");
 }
 
-/// Of a list with a default none may be wanted.
 void check_words(const TomlValue& value, const KeySpec& key) {
-  if (!(value.is_array() && value.items.empty() && key.has_default())) check_list(value, key);
+  if (!(value.is_array() && key.may_be_empty)) check_list(value, key);
   for (std::size_t k = 0; k < value.items.size(); ++k) {
     check_choice(value.items[k], key);
     for (std::size_t earlier = 0; earlier < k; ++earlier)

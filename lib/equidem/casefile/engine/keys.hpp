@@ -84,6 +84,7 @@ struct KeySpec {
   std::vector<KeyRelation> relations = {};
   std::string help = {};
   std::vector<RefusedWord> refused = {};
+  bool may_be_empty = false;  ///< of a list of words
 
   static constexpr const char* required = "required";
   static constexpr const char* none = "none";

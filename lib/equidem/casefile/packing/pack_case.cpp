@@ -55,7 +55,7 @@ void bind_springs_and_output(File<PackTables>& file) {
                    tables.csv = std::ranges::find(wanted, OutputFile::csv) != wanted.end();
                    tables.picture = std::ranges::find(wanted, OutputFile::picture) != wanted.end();
                  },
-                 choices(names_of<OutputFile>()),
+                 choices(names_of<OutputFile>()), or_empty,
                  by_default(std::vector{OutputFile::csv, OutputFile::vtk, OutputFile::picture}),
                  "csv: grains.csv, for [grains] path; picture: picture.png; [] for none of them"),
              key_in<PackTables>("assembly", &PackCase::assembly,
