@@ -23,7 +23,6 @@
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
-#include "equidem/output/files/growing_csv.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
 namespace equidem::fuzz {

@@ -7,9 +7,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 #include "equidem/output/files/body_tables.hpp"
-#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
-#include "equidem/output/files/growing_csv.hpp"
+#include "equidem/output/files/histories.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
 #include "output/png.hpp"

@@ -13,8 +13,7 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/output/files/body_tables.hpp"
-#include "equidem/output/files/grain_frames.hpp"
-#include "equidem/output/files/placed_discs.hpp"
+#include "equidem/output/files/frames.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
 #include "output/poly_data_reader.hpp"

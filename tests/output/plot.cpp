@@ -8,7 +8,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/plots/gnuplot.hpp"
 
 #include "output/png.hpp"
 #include "output/states.hpp"

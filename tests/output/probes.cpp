@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/files/probes.hpp"
-
 #include <charconv>
 #include <sstream>
 #include <string>
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/histories.hpp"
 
 #include "output/runs.hpp"
 #include "output/states.hpp"

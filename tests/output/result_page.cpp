@@ -8,7 +8,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/page/answers.hpp"
 #include "equidem/output/page/page.hpp"
-#include "equidem/output/page/trust.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

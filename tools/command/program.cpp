@@ -27,8 +27,7 @@
 #include "equidem/output/files/json.hpp"
 
 #include "command.hpp"
-#include "completion.hpp"
-#include "man_page.hpp"
+#include "manual.hpp"
 #include "option_checks.hpp"
 
 namespace equidem {

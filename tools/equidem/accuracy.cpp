@@ -12,7 +12,7 @@
 #include "equidem/study/evaluate.hpp"
 
 #include "option_checks.hpp"
-#include "prestressed.hpp"
+#include "problem.hpp"
 
 namespace equidem {
 namespace {

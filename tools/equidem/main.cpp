@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/memory.hpp"
-#include "equidem/output/export/engine_features.hpp"
+#include "equidem/output/export/engine_model.hpp"
 #include "equidem/output/quantities.hpp"
 
 #include "verbs.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// A case made ready to be solved, and what is evaluated once it is.
+/// Bodies that no contact holds in place, left out before an assembly is solved.
+/// The forces at rest of the contacts of a problem.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "equidem/casefile/assembly/build.hpp"
@@ -175,5 +178,30 @@ inline constexpr const char* no_solid = "no isotropic solid has these moduli: K 
 /// \param name of the line of the report
 /// \param of_solid null in plane strain where no solid has these moduli
 Results moduli_results(const EffectiveModuli& moduli, const std::string& name = "moduli", bool of_solid = false);
+
+/// Leave out of a packing, or of an assembly from a file, the bodies that no contact holds in place (LeaveOut::loose)
+/// and that have no support or load of their own; on a side of the assembly they are left out even so. The cells and
+/// sides of the rest are measured again. Bodies and contacts are then numbered anew.
+/// \param problem its assembly, springs and left_out are changed
+void leave_out_loose(Problem& problem);
+
+/// The problem with the decision whether the forces at rest count, as the case asks; where they do, its springs have
+/// their geometric stiffness.
+/// \throws Error (bad_input) as choose_prestress
+Problem prestressed(Problem problem);
+
+/// Whether the forces at rest of the assembly, if it carries some, count.
+/// \throws Error (bad_input) as choose_prestress
+bool prestress_counts(const Problem& problem);
+
+/// Forces of the contacts with those at rest, where these count. \param changes by the loads
+std::vector<ContactForce> forces_in_total(const Problem& problem, std::vector<ContactForce> changes);
+
+/// \param taker of the springs alone
+/// \throws Error (bad_input) where the forces at rest count
+void refuse_prestress(const Problem& problem, std::string_view taker);
+
+/// Tells what was decided, or that the verb takes no such forces.
+void add_forces_at_rest(Results& results, const Problem& problem);
 
 }  // namespace equidem

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "state_files.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <system_error>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "equidem/assembly/files.hpp"
@@ -10,6 +14,57 @@
 #include "equidem/output/files/vtk.hpp"
 
 namespace equidem {
+
+std::vector<ResultArray> motion_arrays(const std::string& prefix,
+                                       const std::shared_ptr<const std::vector<DiscMotion>>& owner) {
+  constexpr std::size_t stride = sizeof(DiscMotion) / sizeof(double);
+  static_assert(sizeof(DiscMotion) == 3 * sizeof(double));
+  const auto* first = reinterpret_cast<const double*>(owner->data());
+  return {{prefix + "displacements", "m", owner, first, owner->size(), 2, stride},
+          {prefix + "rotations", "rad", owner, first + 2, owner->size(), 1, stride}};
+}
+
+std::vector<ResultArray> state_arrays(const std::string& prefix,
+                                      const std::shared_ptr<const Equilibrium>& equilibrium) {
+  const auto& [motions, contact_forces] = std::tie(equilibrium->motions, equilibrium->contact_forces);
+  std::vector<ResultArray> arrays = motion_arrays(prefix, {equilibrium, &motions});
+  arrays.push_back(array_of(prefix + "contact_forces", "N/m",
+                            std::shared_ptr<const std::vector<ContactForce>>(equilibrium, &contact_forces), 2));
+  if (const auto& bending = equilibrium->bending_moments; !bending.empty()) {
+    arrays.push_back(array_of(prefix + "bending_moments", "N",
+                              std::shared_ptr<const std::vector<double>>(equilibrium, &bending), 1));
+  }
+  std::vector<std::int32_t> discs;
+  std::vector<Vec2> forces;
+  std::vector<double> moments;
+  for (const Reaction& reaction : equilibrium->reactions) {
+    discs.push_back(reaction.disc);
+    forces.push_back(reaction.force);
+    moments.push_back(reaction.moment);
+  }
+  const auto owner = std::make_shared<const std::vector<std::int32_t>>(std::move(discs));
+  arrays.push_back({prefix + "supported_discs", "", owner, owner->data(), owner->size()});
+  arrays.push_back(array_of(prefix + "reactions", "N/m", std::move(forces), 2));
+  arrays.push_back(array_of(prefix + "reaction_moments", "N", std::move(moments), 1));
+  return arrays;
+}
+
+std::vector<ResultArray> dispersion_arrays(const WaveSurvey& survey) {
+  std::vector<double> along, squared_frequencies;
+  std::vector<Vec2> wave_vectors;
+  for (const PathPoint& point : survey.path) {
+    along.push_back(point.along);
+    wave_vectors.push_back(point.at.q);
+    squared_frequencies.insert(squared_frequencies.end(), point.squared_frequencies.begin(),
+                               point.squared_frequencies.end());
+  }
+  const std::size_t branches = along.empty() ? 0 : squared_frequencies.size() / along.size();
+  ResultArray table = array_of("dispersion/squared_frequencies", "1/s²", std::move(squared_frequencies), branches);
+  table.rows = along.size();
+  table.stride = branches;
+  return {array_of("dispersion/along", "rad/m", std::move(along), 1),
+          array_of("dispersion/wave_vectors", "1/m", std::move(wave_vectors), 2), std::move(table)};
+}
 
 namespace {
 

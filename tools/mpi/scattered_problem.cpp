@@ -11,7 +11,7 @@
 #include "equidem/statics/rigidity.hpp"
 
 #include "part_problem.hpp"
-#include "prestressed.hpp"
+#include "problem.hpp"
 
 namespace equidem {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/motion_case.hpp"
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/engine/table_file.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {

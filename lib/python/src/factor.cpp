@@ -11,10 +11,9 @@
 #include "equidem/statics/equilibrium.hpp"
 
 #include "case_inputs.hpp"
-#include "prestressed.hpp"
 #include "problem.hpp"
 #include "result.hpp"
-#include "result_arrays.hpp"
+#include "state_files.hpp"
 
 namespace equidem::python {
 namespace {

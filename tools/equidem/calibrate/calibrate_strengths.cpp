@@ -10,13 +10,12 @@
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
 #include "calibrate/calibrate_results.hpp"
-#include "calibrate/calibrate_strengths_results.hpp"
 #include "problem.hpp"
 
 namespace equidem {

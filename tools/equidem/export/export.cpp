@@ -9,7 +9,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/export/engine_features.hpp"
+#include "equidem/output/export/engine_model.hpp"
 
 #include "command.hpp"
 #include "export/formats.hpp"

@@ -14,7 +14,6 @@
 
 #include "command.hpp"
 #include "export/formats.hpp"
-#include "prestressed.hpp"
 #include "problem.hpp"
 
 namespace equidem {

@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
 #include "homogenize/ensemble_report.hpp"
-#include "homogenize/ensemble_table.hpp"
 #include "problem.hpp"
 
 namespace equidem {

@@ -11,7 +11,7 @@
 
 #include "accuracy.hpp"
 #include "homogenize/ensemble.hpp"
-#include "homogenize/ensemble_table.hpp"
+#include "homogenize/ensemble_report.hpp"
 
 namespace equidem {
 namespace {

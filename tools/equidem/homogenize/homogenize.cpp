@@ -18,9 +18,7 @@
 #include "command.hpp"
 #include "homogenize/ensemble.hpp"
 #include "homogenize/homogenize_results.hpp"
-#include "homogenize/viscoelastic_results.hpp"
-#include "prestressed.hpp"
-#include "result_arrays.hpp"
+#include "problem.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 

@@ -14,7 +14,7 @@
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/breakage/unbonded/unbonded_scene.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -24,10 +24,8 @@
 
 #include "command.hpp"
 #include "problem.hpp"
-#include "quasistatic/event_table.hpp"
 #include "quasistatic/quasistatic_files.hpp"
 #include "quasistatic/quasistatic_results.hpp"
-#include "quasistatic/resumed_path.hpp"
 #include "verbs.hpp"
 
 namespace equidem {

@@ -1,21 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// The events of `equidem quasistatic` as events.csv, from which --resume goes on.
+/// The part of a case that decides a path, by which a resumed one is told to be the same.
 /// Files of `equidem quasistatic`: the curve, the crack picture, the state at the end, frames.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "equidem/breakage/breakage_run.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/casefile/assembly/case.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
 
 #include "command.hpp"
 
 namespace equidem {
+
+/// "N/m" or "Pa" of a load, "m" or "" of a motion.
+std::string unit_of_load(DrivenBy driven_by);
+std::string unit_of_motion(DrivenBy driven_by);
+
+/// One row for each event, numbers that read back to the same bits.
+Table event_table(const EventPath& run, const BreakageScene& scene);
+struct StoredEvents {
+  std::vector<BreakEvent> events;
+  bool cut = false;  ///< whether a last row, cut short, is not among them
+};
+/// \throws Error (bad_input) where the table is another one, a row was altered, or rows are not numbered on from 0
+StoredEvents read_events(const std::filesystem::path& path, const EventPath& run, const BreakageScene& scene);
+
+/// The case without title, [output], quasistatic.max_events and quasistatic.frame_every, as text.
+/// \param folder to which paths in it are relative
+std::string deciding_keys_of_path(const Case& resolved, const std::filesystem::path& folder);
+
+/// Keys that a resumed path may have otherwise than before.
+struct FreeKeysOfPath {
+  std::int64_t max_events = 0;
+  std::int64_t frame_every = 0;
+};
+
+/// \param there case.toml of the path so far
+/// \return the keys that it had
+/// \throws Error (bad_input) where a key that decides the path differs, which the message names
+FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& resolved);
+
+/// \param events of the path so far
+/// \throws Error (bad_input) where max_events was lowered below them
+void check_most_events(const FreeKeysOfPath& before, const Case& resolved, std::int64_t events);
 
 inline constexpr const char* event_table_name = "events.csv";
 /// The state from which a path goes on that the table of events does not hold: where contacts rub, and frames.

@@ -9,7 +9,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
 
-#include "quasistatic/event_table.hpp"
+#include "quasistatic/quasistatic_files.hpp"
 
 namespace equidem {
 namespace {

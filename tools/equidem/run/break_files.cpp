@@ -6,7 +6,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/histories.hpp"
 #include "equidem/output/plots/plot.hpp"
 
 namespace equidem {

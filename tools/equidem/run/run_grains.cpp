@@ -6,14 +6,14 @@
 #include <span>
 #include <utility>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/checkpoint.hpp"
-#include "equidem/output/files/energies.hpp"
-#include "equidem/output/files/grain_frames.hpp"
+#include "equidem/output/files/frames.hpp"
+#include "equidem/output/files/histories.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
 #include "run/break_files.hpp"

@@ -13,7 +13,7 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
-#include "equidem/output/files/growing_csv.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 

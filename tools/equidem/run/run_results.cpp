@@ -15,10 +15,9 @@
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/energies.hpp"
-#include "equidem/output/files/wall_loads.hpp"
+#include "equidem/output/files/histories.hpp"
 
-#include "result_arrays.hpp"
+#include "state_files.hpp"
 
 namespace equidem {
 namespace {

@@ -12,9 +12,7 @@
 
 #include "accuracy.hpp"
 #include "command.hpp"
-#include "prestressed.hpp"
 #include "problem.hpp"
-#include "result_arrays.hpp"
 #include "solve/solve_results.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"

@@ -18,8 +18,7 @@
 
 #include "command.hpp"
 #include "option_checks.hpp"
-#include "prestressed.hpp"
-#include "result_arrays.hpp"
+#include "problem.hpp"
 #include "stability/stability_results.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
@@ -126,8 +125,7 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
   deliver(options, "dry_run",
-          dry_run_results(problem, results, AssemblyKeys::size, false,
-                          vectors_of_frequencies(options.frequencies)),
+          dry_run_results(problem, results, AssemblyKeys::size, false, vectors_of_frequencies(options.frequencies)),
           problem.times);
   return 0;
 }

@@ -24,9 +24,8 @@
 
 #include "command.hpp"
 #include "option_checks.hpp"
-#include "sweep/sweep_curves.hpp"
-#include "sweep/sweep_dry_run.hpp"
 #include "sweep/sweep_run.hpp"
+#include "sweep/sweep_table.hpp"
 #include "verbs.hpp"
 
 namespace equidem {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The points of a sweep as they are computed.
+/// Size of a sweep before it is made.
 #pragma once
 
 #include <atomic>
@@ -14,6 +15,7 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/output/results.hpp"
 
 #include "command.hpp"
 #include "sweep/sweep_plan.hpp"
@@ -82,5 +84,10 @@ class SweepRun {
   std::size_t computed_ = 0;
   bool stopped_ = false;
 };
+
+/// Delivers the number of points and the dry run of the first that can be computed.
+/// \param results of the keys, which the others follow
+/// \return the exit code
+int dry_run_sweep(const Sweep& sweep, Results results);
 
 }  // namespace equidem

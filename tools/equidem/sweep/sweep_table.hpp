@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The points of a sweep as a table that can be written, read back and continued.
+/// Main quantities of a sweep over its first key.
 #pragma once
 
 #include <cstdint>
@@ -58,5 +59,16 @@ std::vector<SweepPoint> read_sweep_points(const std::filesystem::path& path, con
 /// One row for each point: number, keys, status, the numbers as in the result of the verb, message. "value" is that of
 /// the first key.
 std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoint> points);
+
+/// Names of the plots that a sweep may have; none where its keys have no curves: the first is a word or the seed, or
+/// more than two vary independently.
+std::vector<std::string> curve_names(const SweepPlan& plan);
+
+/// Draws each main quantity that some point has against the first key: one line for each value of the second; of
+/// several seeds the points and their mean. Points that are not stable are open and left out of the mean.
+/// \param title of the plots; empty: what is varied
+/// \throws Error (bad_input) as write_plot
+void write_curves(const std::filesystem::path& folder, const SweepPlan& plan, std::span<const SweepPoint> points,
+                  const std::string& title);
 
 }  // namespace equidem

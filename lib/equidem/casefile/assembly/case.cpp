@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "equidem/casefile/assembly/case_tables.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

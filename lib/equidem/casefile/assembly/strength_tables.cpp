@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/casefile/assembly/strength_tables.hpp"
 
-#include "equidem/casefile/engine/read_value.hpp"
 #include "equidem/casefile/engine/table_file.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {

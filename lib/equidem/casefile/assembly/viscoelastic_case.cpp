@@ -7,7 +7,7 @@
 #include <string>
 
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"

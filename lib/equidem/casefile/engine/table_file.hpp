@@ -7,7 +7,7 @@
 #include <string>
 
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "equidem/casefile/assembly/strength_tables.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/scene/grain_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 
 namespace equidem::casefile {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 

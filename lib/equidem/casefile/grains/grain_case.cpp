@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"

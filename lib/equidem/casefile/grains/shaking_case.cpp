@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 
 namespace equidem::casefile {

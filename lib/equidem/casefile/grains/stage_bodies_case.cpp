@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/names.hpp"
 
 namespace equidem::casefile {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/stage_bodies_case.hpp"
 #include "equidem/casefile/grains/stage_walls_case.hpp"
 #include "equidem/core/text.hpp"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/stage_bodies_case.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"

@@ -3,7 +3,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/casefile/engine/read_value.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/packing/packing_tables.hpp"
 #include "equidem/casefile/springs_table.hpp"
 #include "equidem/contact/material_springs.hpp"

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// Numbers and schedules as text that other engines read.
 /// Files that other engines run.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "equidem/motion/schedule.hpp"
 #include "equidem/output/export/engine_model.hpp"
 
 namespace equidem {
+
+/// A number in the shortest form that reads back to the same bits.
+std::string exact(double value);
+
+/// A schedule as a formula that LAMMPS and Python read, with abs, sin and cos.
+/// \param time the name of the time in it, s
+std::string formula_of(const Schedule& schedule, const std::string& time);
 
 struct EngineFile {
   std::string name;

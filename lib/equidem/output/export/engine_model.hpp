@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// The parts of a model that each discrete-element code carries, as one table.
 /// A model as discrete-element codes take it: bodies, bonds or contact properties, walls, and what acts.
 ///
 /// Forces, masses and moments of inertia of discs are per metre of depth, those of spheres are whole.
@@ -7,19 +8,123 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/wall.hpp"
-#include "equidem/output/export/engine_features.hpp"
 
 namespace equidem {
+
+enum class Engine { lammps, yade };
+
+template <>
+struct EnumNames<Engine> {
+  using enum Engine;
+  static constexpr const char* what = "engine";
+  static constexpr NamedValue<Engine> list[] = {{lammps, "LAMMPS"}, {yade, "YADE"}};
+};
+
+/// Parts of a model that some engine does not carry.
+enum class EngineFeature {
+  contact_points,
+  contact_points_of_no_radii,
+  shapes,
+  bonds,
+  cells,
+  given_at_start,
+  turning,
+  schedules,
+  mass_damping,
+  bond_dashpots,
+  some_walls,
+  shaped_walls,
+  other_laws,
+  dashpots,
+  friction_levers,
+};
+
+/// A row of the table.
+struct EngineFeatureRow {
+  EngineFeature value;
+  const char* name;  ///< a plural noun
+  bool lammps = false, yade = false;
+  const char* why;     ///< of what is not carried
+  const char* remedy;  ///< a sentence without its full stop
+  /// The word of --accept that exports a model all the same, approximated as `why` says; null: nothing does.
+  const char* accept = nullptr;
+
+  [[nodiscard]] bool carried_by(Engine engine) const { return engine == Engine::lammps ? lammps : yade; }
+};
+
+template <>
+struct EnumNames<EngineFeature> {
+  using enum EngineFeature;
+  static constexpr const char* what = "part of a model";
+  static constexpr EngineFeatureRow list[] = {
+      {contact_points, "contact points off the middle between two centres", false, true,
+       "a bond of bpm/rotational acts half-way between the centres",
+       "Export to yade, unequal discs with assembly.levers = \"middle\"; or set assembly.levers = \"halfway\""},
+      {contact_points_of_no_radii, "contact points that no radii of round bodies place", false, false,
+       "its contact points follow from one radius a body, on the line of centres",
+       "Set assembly.levers = \"middle\", that is (d + r_i - r_j)/2, or \"halfway\", d/2, which LAMMPS needs"},
+      {shapes, "bodies that are neither discs nor spheres", false, false,
+       "their contacts and moments of inertia are others", "Take discs, or 'equidem run'"},
+      {bonds, "bonds other than one spring kN >= 0 and one kT >= 0 between two bonded discs", false, false,
+       "its bonds store energy, are one a pair, do not resist bending and are written without strength",
+       "Take out what is named here (negative kT, kM or bond_width, [strength], [[notch]], [[dead_load]], [bonds]), or "
+       "use 'equidem solve', 'quasistatic' or 'run'"},
+      {cells, "periodic cells of bodies that collide, or shorter than twice the longest bond", false, false,
+       "a bond joins the nearest images there, and the motion of the sides is not written",
+       "Take a larger cell of bonded discs, or let walls bound the bodies"},
+      {given_at_start, "prescribed displacements that a run begins with", true, false,
+       "its tangential forces follow velocities, not positions", "Export to lammps, or run until_rest"},
+      {turning, "moments as loads, and rotations that follow a schedule", false, true,
+       "it has no command for the torque on single atoms", "Export to yade, or take them out"},
+      {schedules, "schedules of more than 50 points, or in a run until rest", false, false,
+       "a schedule is one formula of the time there, in a run of known duration",
+       "Give a ramp, a sine or a shorter table, and run.duration in place of run.until_rest"},
+      {mass_damping, "damping proportional to mass", false, false, "it has no such damping of rotations",
+       "Take local damping"},
+      {bond_dashpots, "dashpots in bonds (damping by stiffness or contact)", true, false,
+       "it has none in the law of its bonds", "Export to lammps, or take local damping"},
+      {some_walls, "walls that push bonded discs, or are not parallel to an axis", true, false,
+       "its walls are parallel to one and touch free bodies", "Export to lammps, or hold discs by supports"},
+      {shaped_walls, "walls that are segments, or follow a force or a stress", false, false,
+       "its walls are planes of known motion", "Take lines without [wall.servo], or 'equidem run'"},
+      {other_laws, "laws of contact other than one linear spring and dashpot", false, false, "it computes no others",
+       "Take the law linear_dashpot with collisions.stiffness, and of what is named here none"},
+      {dashpots, "restitution below 1 of unequal bodies or pairs, and dashpots that pull or act along the contact",
+       true, false, "its dashpots follow from one number for each body, and end where they would pull",
+       "Export to lammps, or set restitution = 1 and tangential_damping = 0"},
+      {friction_levers, "friction of bodies that overlap", false, false,
+       "its levers differ by parts of the overlap (LAMMPS: the radii, YADE: to the middle, walls otherwise; here: "
+       "parts of the distance), and which contacts slide follows: overlaps of a settled box differ by 0.7 per cent "
+       "(data/interop.md)",
+       "Give --accept friction to export it with these levers, or set friction = 0", "friction"},
+  };
+};
+
+/// The features of a model with an instance of each, such as "negative kT of contact 3".
+using FoundFeatures = std::map<EngineFeature, std::string>;
+
+/// \param accepted words of EngineFeatureRow::accept
+/// \throws Error (bad_input) on a word that no feature has; on the first feature that the engine does not carry and
+///         that is not accepted: name, instance, why, what to do
+void require_carried(const FoundFeatures& found, Engine engine, const std::vector<std::string>& accepted);
+
+/// The words of --accept, with the features that they are about.
+std::vector<std::string> acceptable_features();
+
+/// The table in Markdown: a row for each feature, a column for each engine, and the reason of its refusals.
+std::string engine_features_table();
 
 struct EngineBody {
   Vec2 position;      ///< m

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "equidem/core/text.hpp"
-#include "equidem/output/export/engine_formulas.hpp"
+#include "equidem/output/export/engine_files.hpp"
 
 namespace equidem {
 namespace {

@@ -13,7 +13,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/output/export/engine_files.hpp"
-#include "equidem/output/export/engine_formulas.hpp"
 #include "equidem/output/export/lammps_actions.hpp"
 
 namespace equidem {

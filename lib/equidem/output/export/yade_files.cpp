@@ -12,7 +12,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/output/export/engine_files.hpp"
-#include "equidem/output/export/engine_formulas.hpp"
 
 namespace equidem {
 namespace {

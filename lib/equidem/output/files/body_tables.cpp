@@ -12,7 +12,7 @@
 
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/files/energies.hpp"
+#include "equidem/output/files/histories.hpp"
 
 namespace equidem {
 namespace {

@@ -1,20 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// The discs of a clump at the present position of its body.
 /// Bodies, their contacts and bonds as CSV.
 #pragma once
 
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/core/turns.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/output/files/state.hpp"
 
 namespace equidem {
+
+/// Rotation of a vector from the frame of a body.
+/// \param angle of the body, rad
+inline Vec2 turned(Vec2 vector, double angle) {
+  const double turns = angle / (2 * std::numbers::pi);
+  return sine_of_turns(turns + 0.25) * vector + sine_of_turns(turns) * perpendicular(vector);
+}
 
 /// One row per disc: disc, x_m, y_m, radius_m, [ux_m, uy_m, rotation_rad,] [stress_xx_Pa, stress_yy_Pa, stress_xy_Pa,
 /// stress_yx_Pa,] [cell_area_m2]; columns in brackets where known.

@@ -12,10 +12,8 @@
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/motion/any_simulation.hpp"
-#include "equidem/output/files/placed_discs.hpp"
-#include "equidem/output/files/poly_data.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/files/vtk.hpp"
-#include "equidem/output/files/xml.hpp"
 
 namespace equidem {
 namespace {
@@ -234,6 +232,42 @@ void FrameWriter::list_frame(std::int64_t step, const std::string& time) {
 
 void FrameWriter::write_index() const {
   replace_file(folder_ / (name_ + ".pvd"), list_head + index_ + list_tail);
+}
+
+Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,
+                         FrameOptions& options) {
+  const auto any = [&](GrainShape shape) {
+    return std::ranges::any_of(grains, [&](const Grain& grain) { return grain.shape() == shape; });
+  };
+  Assembly start;
+  options.parts.clear();
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Grain& grain = grains[g];
+    const auto add = [&](Vec2 offset, double radius) {
+      options.parts.push_back({g, offset});
+      start.centres.push_back(grain.position + turned(offset, grain.angle));
+      start.radii.push_back(radius);
+    };
+    if (grain.shape() != GrainShape::clump) {
+      add({}, grain.radius);
+    } else {
+      for (const Clump::Disc& disc : clumps[static_cast<std::size_t>(grain.clump)].discs) add(disc.offset, disc.radius);
+    }
+  }
+  if (any(GrainShape::ellipse)) {
+    options.of_discs.push_back({"short_half_axis", start.radii});
+    DiscNumbers& axes = options.of_discs.back();
+    for (std::size_t k = 0; k < options.parts.size(); ++k)
+      if (const Grain& grain = grains[options.parts[k].body]; grain.shape() == GrainShape::ellipse)
+        axes.values[k] = grain.short_half_axis;
+  }
+  if (any(GrainShape::clump) || come_and_go) {
+    options.of_discs.push_back({"body", {}});
+    DiscNumbers& bodies = options.of_discs.back();
+    for (const FramePart& part : options.parts) bodies.values.push_back(static_cast<double>(part.body));
+  }
+  options.travelling = true;
+  return start;
 }
 
 }  // namespace equidem

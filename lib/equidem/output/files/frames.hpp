@@ -2,6 +2,7 @@
 /// \file
 /// The bodies of a run and the forces of their contacts over time: NAME.pvd, which ParaView opens as a series, and a
 /// folder NAME of VTK XML files, which any VTK opens one by one.
+/// Colliding bodies as the discs of frames (frames.hpp).
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/checksum.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 
 namespace equidem {
@@ -102,5 +104,14 @@ class FrameWriter {
   std::string index_;                            ///< of the finished frames, without head and tail
   std::vector<std::filesystem::path> unsynced_;  ///< written since the last sync()
 };
+
+/// The discs of all bodies at the start: a clump is shown as its discs, each with place, velocity, angle and spin of
+/// its own. Where there are clumps, or bodies come and go, the array `body` holds the number of the body; where there
+/// are ellipses `radius` is their long half-axis, which lies along the angle, and `short_half_axis` the other, of discs
+/// the radius.
+/// \param come_and_go whether bodies do
+/// \param options gets travelling, of_discs and parts
+Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,
+                         FrameOptions& options);
 
 }  // namespace equidem

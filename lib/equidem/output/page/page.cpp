@@ -11,10 +11,8 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/xml.hpp"
+#include "equidem/output/files/vtk.hpp"
 #include "equidem/output/page/answers.hpp"
-#include "equidem/output/page/page_style.hpp"
-#include "equidem/output/page/trust.hpp"
 
 namespace equidem {
 namespace {

@@ -9,8 +9,8 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/xml.hpp"
-#include "equidem/output/pictures/grain_view.hpp"
+#include "equidem/output/files/vtk.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/results.hpp"
 
 namespace equidem {

@@ -10,7 +10,6 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/run/recurrence.hpp"
 
 namespace equidem {
 namespace {

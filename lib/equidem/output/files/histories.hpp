@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Histories: how chosen discs and the energies change with time, as CSV.
+/// The energy ledger as columns of tables and as a JSON object.
+/// What bodies do to walls, as columns of tables and as results.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +19,8 @@
 #include "equidem/motion/ledger.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/motion/wall.hpp"
-#include "equidem/output/files/growing_csv.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 
@@ -71,5 +74,32 @@ class ProbeWriter {
   bool cell_;
   GrowingCsv table_;
 };
+
+/// "" for spheres, "_per_m" for discs: the end of the names of columns with masses, forces and energies.
+constexpr const char* per_depth(Body body) {
+  return body == Body::disc ? "_per_m" : "";
+}
+
+/// "kinetic_J", ..., "error_J"; of discs "kinetic_J_per_m".
+std::vector<std::string> energy_columns(BodyFamily family, Body body);
+std::vector<double> energy_cells(BodyFamily family, const EnergyLedger& ledger);
+
+/// One row per moment: step, time_s, energy_columns.
+/// \throws Error (bad_input) as write_file does
+void write_energy_csv(const std::filesystem::path& path, std::span<const EnergySample> energies, BodyFamily family,
+                      Body body, bool overwrite);
+
+/// Every term of the ledger, then elastic, dissipated, input, error, and relative_error, the error over `scale`.
+Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale);
+
+/// For each wall wall_NAME_x_m, wall_NAME_y_m, wall_NAME_vx_m_per_s, wall_NAME_vy_m_per_s, wall_NAME_force_x_N,
+/// wall_NAME_force_y_N, wall_NAME_moment_N_m; of colliding bodies also wall_NAME_impulse_x_N_s,
+/// wall_NAME_impulse_y_N_s, wall_NAME_work_J. Of discs the names of the latter six end with _per_m.
+std::vector<std::string> wall_columns(std::span<const std::string> names, BodyFamily family, Body body);
+/// In the order of wall_columns; NaN for a wall that is not there.
+std::vector<double> wall_cells(std::span<const std::string> names, BodyFamily family, std::span<const WallState> walls);
+
+/// forces_on_walls: a list with name, place, force, moment, of colliding bodies also impulse and work.
+Results wall_results(std::span<const WallState> walls, BodyFamily family, Body body);
 
 }  // namespace equidem

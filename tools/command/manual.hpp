@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The manual of a program for man(1), made from its command line.
+/// Completion of a program's command line by bash, made from the command line itself.
 #pragma once
 
 #include <optional>
@@ -15,5 +16,9 @@ namespace equidem {
 /// \param name of the command or topic; empty: the page of the program
 /// \return nothing where there is no such command or topic
 std::optional<std::string> man_page(const Program& program, const CLI::App& app, const std::string& name);
+
+/// A script for bash that completes commands, their options, and after options what the type of their value names:
+/// files, commands, keys of the case file and their words.
+std::string bash_completion(const Program& program, const CLI::App& app);
 
 }  // namespace equidem

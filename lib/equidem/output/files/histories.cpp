@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/files/probes.hpp"
+#include "equidem/output/files/histories.hpp"
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/fields/coarse_fields.hpp"
 #include "equidem/motion/any_simulation.hpp"
-#include "equidem/output/files/energies.hpp"
-#include "equidem/output/files/wall_loads.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/run/cell_history.hpp"
 
 namespace equidem {
@@ -134,6 +135,124 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
     for (const double value : cell_cells(*cell)) cells.push_back(value);
   for (const double value : energy_cells(family_, ledger)) cells.push_back(value);
   table_.add(step, cells, regular);
+}
+
+std::vector<std::string> energy_columns(BodyFamily family, Body body) {
+  std::vector<std::string> columns;
+  for (const EnergyTerm& term : energy_terms(family))
+    columns.push_back(fmt::format("{}_J{}", term.key, per_depth(body)));
+  columns.push_back(fmt::format("error_J{}", per_depth(body)));
+  return columns;
+}
+
+std::vector<double> energy_cells(BodyFamily family, const EnergyLedger& ledger) {
+  std::vector<double> cells;
+  for (const EnergyTerm& term : energy_terms(family)) cells.push_back(ledger.*term.value);
+  cells.push_back(ledger.error());
+  return cells;
+}
+
+void write_energy_csv(const std::filesystem::path& path, std::span<const EnergySample> energies, BodyFamily family,
+                      Body body, bool overwrite) {
+  std::vector<std::string> columns{"step", "time_s"};
+  for (const std::string& name : energy_columns(family, body)) columns.push_back(name);
+  CsvText text(columns, energies.size());
+  for (const EnergySample& sample : energies) {
+    text.cell(sample.step);
+    text.cell(sample.time);
+    for (const double value : energy_cells(family, sample.ledger)) text.cell(value);
+    text.end_row();
+  }
+  write_file(path, text.text(), overwrite);
+}
+
+Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale) {
+  const char* unit = body == Body::disc ? "J/m" : "J";
+  Results energy;
+  for (const EnergyTerm& term : energy_terms(family)) {
+    const char* what = term.role == EnergyRole::lost ? "lost by " : term.role == EnergyRole::work ? "work of " : "";
+    energy.set(term.key, ledger.*term.value, unit, fmt::format("energy: {}{}", what, term.label));
+  }
+  return energy.set("elastic", ledger.elastic(), unit, "energy: elastic")
+      .set("dissipated", ledger.lost(), unit, "energy: lost in all")
+      .set("input", ledger.work(), unit, "energy: work done on the bodies")
+      .set("error", ledger.error(), unit, "energy: error of the balance")
+      .set("relative_error", scale > 0 ? ledger.error() / scale : 0.0, "",
+           "energy: error of the balance, relative to the largest term");
+}
+
+namespace {
+
+struct WallColumn {
+  const char* name;
+  bool per_depth;  ///< of discs
+  bool summed;     ///< since the start, of colliding bodies alone
+  double (*value)(const WallState&);
+};
+
+constexpr WallColumn wall_quantities[] = {
+    {"x_m", false, false, [](const WallState& w) { return w.place.x; }},
+    {"y_m", false, false, [](const WallState& w) { return w.place.y; }},
+    {"vx_m_per_s", false, false, [](const WallState& w) { return w.velocity.x; }},
+    {"vy_m_per_s", false, false, [](const WallState& w) { return w.velocity.y; }},
+    {"force_x_N", true, false, [](const WallState& w) { return w.force.x; }},
+    {"force_y_N", true, false, [](const WallState& w) { return w.force.y; }},
+    {"moment_N_m", true, false, [](const WallState& w) { return w.moment; }},
+    {"impulse_x_N_s", true, true, [](const WallState& w) { return w.impulse.x; }},
+    {"impulse_y_N_s", true, true, [](const WallState& w) { return w.impulse.y; }},
+    {"work_J", true, true, [](const WallState& w) { return w.work; }},
+};
+
+bool is_written(const WallColumn& column, BodyFamily family) {
+  return family == BodyFamily::colliding || !column.summed;
+}
+
+}  // namespace
+
+std::vector<std::string> wall_columns(std::span<const std::string> names, BodyFamily family, Body body) {
+  std::vector<std::string> columns;
+  for (const std::string& name : names)
+    for (const WallColumn& column : wall_quantities)
+      if (is_written(column, family))
+        columns.push_back(fmt::format("wall_{}_{}{}", name, column.name, column.per_depth ? per_depth(body) : ""));
+  return columns;
+}
+
+std::vector<double> wall_cells(std::span<const std::string> names, BodyFamily family,
+                               std::span<const WallState> walls) {
+  std::vector<double> cells;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(walls, name, &WallState::name);
+    for (const WallColumn& column : wall_quantities)
+      if (is_written(column, family)) cells.push_back(found == walls.end() ? NAN : column.value(*found));
+  }
+  return cells;
+}
+
+Results wall_results(std::span<const WallState> walls, BodyFamily family, Body body) {
+  const bool disc = body == Body::disc, summed = family == BodyFamily::colliding;
+  const char *force = disc ? "N/m" : "N", *moment = disc ? "N" : "N m", *impulse = disc ? "N s/m" : "N s",
+             *work = disc ? "J/m" : "J";
+  std::vector<Results> rows;
+  for (const WallState& wall : walls) {
+    Results& row = rows.emplace_back();
+    row.add("name", "wall", wall.name)
+        .set("place", wall.place, "m", "place of a wall")
+        .set("force", wall.force, force, "force of the bodies on a wall, mean over the last step")
+        .set("moment", wall.moment, moment, "moment of this force about the place of the wall");
+    row.add("", fmt::format("force x, {}", force), wall.force.x).add("", "force y", wall.force.y);
+    row.add("", fmt::format("moment, {}", moment), wall.moment);
+    row.add("", "at x, m", wall.place.x).add("", "at y", wall.place.y);
+    if (!summed) continue;
+    row.set("impulse", wall.impulse, impulse, "impulse of the bodies on a wall since the start")
+        .set("work", wall.work, work, "work of a wall since the start")
+        .add("", fmt::format("work, {}", work), wall.work);
+  }
+  Results out;
+  if (rows.empty()) return out.set("forces_on_walls", std::move(rows));
+  out.line("walls", fmt::format("forces on them in the last step, moments about their places{}:",
+                                summed ? ", works since the start" : ""));
+  return out.table("forces_on_walls", std::move(rows));
 }
 
 }  // namespace equidem
