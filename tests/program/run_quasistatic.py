@@ -180,7 +180,7 @@ class Quasistatic(ProgramTest):
         bodies = "".join(f"[[grain]]\nposition = [{x}, {y}]\nradius = {r}\n" for x, y, r in grains)
         case.write_text(f'schema = "equidem/1"\n[grains]\ndensity = 2500.0\n{bodies}[collisions]\n'
                         f'damping = 0.5\nstiffness = 1e9\nfriction = {friction}\n'
-                        f'tangential_ratio = 0.5\n{walls}[run]\n{rest}[output]\npicture = false\n')
+                        f'tangential_ratio = 0.5\n{walls}[run]\n{rest}[output]\nfiles = ["csv", "vtk"]\n')
         done = equidem("run", case, "--json", "-")
         self.assertEqual(done.returncode, 0, done.stderr)
         return parse_json(done.stdout)["energy"]

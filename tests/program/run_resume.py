@@ -40,7 +40,7 @@ box = [-0.02, 0.0, 0.05, 0.05]
 [output]
 probe_interval = 1e-4
 frame_interval = 3e-4
-picture = false
+files = ["csv", "vtk"]
 [measures]
 cell = 0.02
 '''

@@ -213,7 +213,7 @@ gravity = [0.0, -9.81]
 integrator = "velocity_verlet"
 [output]
 probe_interval = 2.0e-5
-picture = false
+files = ["csv", "vtk"]
 [[stage]]
 name = "roll"
 duration = 0.02

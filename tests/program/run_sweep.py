@@ -107,7 +107,7 @@ class Sweep(ProgramTest):
                            "--values", "13,9")
         self.assertEqual([(point["assembly.rows"], point["assembly.columns"], point["discs"]) for point in pairs["points"]],
                          [(9, 13, 113), (13, 9, 111)])
-        words = self.sweep(TENSION, "--key", "solver.method", "--values", "multifrontal,cholmod", "--key", "output.csv",
+        words = self.sweep(TENSION, "--key", "solver.method", "--values", "multifrontal,cholmod", "--key", "output.frame_contacts",
                            "--values", "true,false")["points"]
         self.assertEqual([point["solver.method"] for point in words], ["multifrontal"] * 2 + ["cholmod"] * 2)
         self.assertEqual([point["status"] for point in words], ["solved"] * 4)

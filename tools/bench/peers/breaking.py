@@ -36,7 +36,7 @@ def sample(equidem, columns, folder):
     lattice = folder / "lattice.toml"
     rows = round(columns * 1.6)
     lattice.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = {columns}\nrows = {rows}\nradius = {RADIUS}\n{SCENE}'
-                       '[output]\nassembly = "json"\npicture = false\nvtk = false\n')
+                       '[output]\nassembly = "json"\nfiles = ["csv"]\n')
     call([equidem, "solve", lattice, "--out", folder / "lattice", "--quiet"])
     assembly = json.loads((folder / "lattice" / "assembly.json").read_text())
     generator = random.Random(5)
