@@ -272,7 +272,7 @@ def run_box(arguments):
     step, duration, a = bodies.step(), cycles / frequency, 0.01 * gal / (2 * math.pi * frequency)**2
     shaken = {"name": "shake", "duration": duration}
     if gal:
-        shaken["shaking"] = {"acceleration": gal, "unit": "gal", "frequency": frequency, "cycles": cycles}
+        shaken["shaking"] = {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": cycles}
     stages = [{"name": "fall", "duration": fill.fall}, shaken, {"name": "rest", "duration": REST}]
     run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],
                                                               "integrator": "velocity_verlet"})

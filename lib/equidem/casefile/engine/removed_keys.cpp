@@ -17,12 +17,56 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"output", "csv", "", "Name what is written in files, such as files = ['vtk', 'picture']"},
     RemovedKey{"output", "vtk", "", "Name what is written in files, such as files = ['csv', 'picture']"},
     RemovedKey{"output", "picture", "", "Name what is written in files, such as files = ['csv', 'vtk']"},
+    RemovedKey{"wall", "shape", "arc", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"wall", "centre", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"wall", "radius", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"wall", "from", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"wall", "to", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"shaking", "unit", "", "Leave it out: accelerations are in m/s² (1 gal = 0.01, 1 g = 9.80665)"},
+    RemovedKey{"shaking", "record", "",
+               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
+               "displacement and schedule of [[wall]]"},
+    RemovedKey{"shaking", "quantity", "",
+               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
+               "displacement and schedule of [[wall]]"},
+    RemovedKey{"shaking", "baseline", "",
+               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
+               "displacement and schedule of [[wall]]"},
+    RemovedKey{"shaking", "scale", "",
+               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
+               "displacement and schedule of [[wall]]"},
+    RemovedKey{"schedule", "kind", "smooth_table", "Write kind = \"table\" with points close enough"},
+    RemovedKey{"measures", "thrown_gap", "", "Find bodies that lie apart in grains.csv or in the frames"},
+    RemovedKey{"measures", "columns", "", "Leave it out: columns are two largest diameters wide"},
+    RemovedKey{"collisions", "contact_end", "",
+               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
+               "overlap)"},
+    RemovedKey{"collisions", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
+    RemovedKey{"collisions.walls", "contact_end", "",
+               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
+               "overlap)"},
+    RemovedKey{"collisions.walls", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
+    RemovedKey{"collisions.pair", "contact_end", "",
+               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
+               "overlap)"},
+    RemovedKey{"collisions.pair", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
+    RemovedKey{"stage.pair", "contact_end", "",
+               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
+               "overlap)"},
+    RemovedKey{"stage.pair", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
+    RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
+    RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
+    RemovedKey{"bonds", "step", "", "Leave it out: dashpots decay exactly"},
+    RemovedKey{"settling", "start", "", "Leave it out: bodies fall in time; method = \"growth\" begins dense"},
 };
 
 /// Options and verbs of the command line.
 constexpr std::array words_of_earlier_versions{
     RemovedWord{"--without-critical-ratio", "Leave it out: the critical ratio is always sought"},
-    RemovedWord{"reproduce", "Use 'equidem-papers PAPER [OPTIONS]'; 'equidem-papers --help' lists the papers"},
+    RemovedWord{"reproduce", "Run tools/papers/PAPER.py of the source"},
+    RemovedWord{"--list", "Give a study of data/studies"},
+    RemovedWord{"--quick", "Vary fewer values in the file of the study"},
+    RemovedWord{"--discs", "Give the number of discs in the case"},
 };
 
 /// The table whose keys a stage takes: "collisions" of "stage.collisions".
