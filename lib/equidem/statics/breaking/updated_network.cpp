@@ -162,8 +162,12 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   }
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
   const bool lost_digits = path.share < delicate || !path.held.empty();
-  if (carried_ && (lost_digits || !(residual() <= options_.claimed_residual))) {
-    for (HeldMechanism& found : refine(1)) mechanisms.push_back(std::move(found));
+  constexpr double most_wrong = 1e-11;  // share of the energy, its root
+  constexpr int most_unmeasured = 16;
+  const bool too_much = lost_digits || !(residual() <= options_.claimed_residual);
+  const bool measure = residual_ * softness_ > most_wrong || ++unmeasured_ >= most_unmeasured;
+  if (carried_ && (too_much || measure)) {
+    for (HeldMechanism& found : refine(too_much ? 1 : 0)) mechanisms.push_back(std::move(found));
   }
   if (carried_) counters_.largest_residual = std::max(counters_.largest_residual, residual());
   return mechanisms;
@@ -183,8 +187,11 @@ bool UpdatedNetwork::improve(int least_steps) {
       const double energy = product(column(change_, p), column(change_, p));
       if (energy > 0) error = std::max(error, std::sqrt(energy / twice_energy_[p]));
     }
+    if (step == 0 && residual_ > 0) softness_ = error / residual_;
+    unmeasured_ = 0;
     if (step >= least_steps && error < wrong) return true;
     if (step == most_steps) return false;
+    if (step == 0) ++counters_.refinements;
     const double before = residual_;
     add_change();
     if (step > 0 && !(residual_ < contracts * before)) return true;  // round-off of the residual itself
@@ -193,7 +200,6 @@ bool UpdatedNetwork::improve(int least_steps) {
 
 std::vector<HeldMechanism> UpdatedNetwork::refine(int least_steps) {
   constexpr int many_changes = 16;
-  ++counters_.refinements;
   const bool right = improve(least_steps);
   std::vector<HeldMechanism> found;
   if (!carried_) return found;

@@ -156,6 +156,8 @@ class UpdatedNetwork {
   double residual_ = 0;
   bool carried_ = true;  // no load drives a mechanism
   int altered_ = 0;      // contacts since the factor was made
+  double softness_ = 0;  // error in energy over the residual, as it was measured last
+  int unmeasured_ = 0;   // removals since then
 };
 
 }  // namespace equidem
