@@ -160,8 +160,9 @@ TEST_CASE("a_block_that_parts_slowly_breaks_the_bonds_of_quasistatic_avalanche_b
   // a whole number of units in the last place of the positions of the end, so that each step is as long
   const double unit = std::ldexp(std::numeric_limits<double>::epsilon(), 4);
   const double speed = std::round(1e-8 * step / unit) * unit / step;
-  GrainSimulation run(parting_block(block, strengths, lag, speed),
-                      {.law = NormalLaw::linear_dashpot, .time_step = step});
+  GrainSimulation run(
+      parting_block(block, strengths, lag, speed),
+      {.law = NormalLaw::linear_dashpot, .time_step = step, .bond_step = GrainOptions::BondStep::explicit_euler});
   while (run.breaks().size() < whole && run.time() * speed < 2 * statics.event(whole).lambda) run.advance(1000);
   const std::vector<BondBreak> breaks = run.breaks();
   CAPTURE(seed, whole, lag, step, run.step(), avalanches.largest);

@@ -81,7 +81,7 @@ TEST_CASE("a_contact_has_two_ways_around_it_unless_one_disc_parts_its_ends") {
 
 TEST_CASE("a_part_that_loads_move_is_told_alike_by_an_updated_factor_and_by_factorizing_anew") {
   int shifted = 0;  // sentences that name a disc behind one that has left the network
-  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}) {
     const Assembly assembly = hexagonal_lattice({.columns = 14, .rows = 14, .radius = 0.01});
     ContactStrengths strengths{.tension = {}, .shear = {}, .friction = 0.3};
     Random random(seed);
@@ -109,12 +109,17 @@ TEST_CASE("a_part_that_loads_move_is_told_alike_by_an_updated_factor_and_by_fact
     CHECK(fast.run().end() == PathEnd::load_moves_part);
     CHECK(slow.run().end() == PathEnd::load_moves_part);
     CHECK(fast.run().why().find("a load drives ") == 0);
-    CHECK(slow.run().why() == fast.run().why());
-    const std::size_t disc = first_disc_in(slow.run().why());
-    CHECK(slow.run().why().find(describe_disc(assembly, disc)) != std::string::npos);
+    // A part that can move in several ways has no one disc that moves most.
+    const auto part_of = [](const std::string& why) { return why.substr(0, why.find(", most of all")); };
+    CHECK(part_of(slow.run().why()) == part_of(fast.run().why()));
     const auto left = slow.system().left();
-    shifted += std::any_of(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(disc),
-                           [](std::uint8_t gone) { return gone != 0; });
+    for (const std::string& why : {fast.run().why(), slow.run().why()}) {
+      const std::size_t disc = first_disc_in(why);
+      CHECK(why.find(describe_disc(assembly, disc)) != std::string::npos);
+      CHECK(left[disc] == 0);
+      shifted += std::any_of(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(disc),
+                             [](std::uint8_t gone) { return gone != 0; });
+    }
     CHECK(counters.factorizations == 1 + counters.mended);
     CHECK(fast.system().solver_name().find("did not serve") == std::string::npos);
     for (const ContactForce& f : fast.system().forces(0)) CHECK((f.normal == 0 && f.tangential == 0));

@@ -301,7 +301,7 @@ TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
     CHECK(error.where() == "stage 'bond'");
     CHECK_THAT(error.what(), Catch::Contains("limit"));
   }
-  const double likely = likely_step_limit(press.scene.grains, *bond.bonds);
+  const double likely = likely_step_limit(press.scene.grains, *bond.bonds, GrainOptions::BondStep::exact);
   CAPTURE(likely);
   CHECK(likely < options.time_step);
 }

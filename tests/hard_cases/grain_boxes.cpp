@@ -212,7 +212,7 @@ TEST_CASE("bonds_past_their_step_limit_are_refused_with_the_limit") {
                          Tie{"tangential spring", {.j = 1, .tangential_spring = 1e6}, 2 * std::sqrt(1 / 6e6)}}) {
     GrainScene scene = scene_of({ball({0, 0}, 1, {1e-6, 2e-6}), ball({2, 0}, 1)}, {}, {.stiffness = 100});
     scene.bonds = {tie.bond};
-    const double limit = bond_step_limit(scene);
+    const double limit = bond_step_limit(scene, GrainOptions::BondStep::exact);
     CAPTURE(tie.name, limit, tie.limit);
     CHECK(limit == Approx(tie.limit).epsilon(1e-14));
     GrainOptions options = verlet(0.999 * limit);

@@ -39,7 +39,7 @@ class Beam(Laboratory):
     def test_the_beam_breaks_in_its_middle_where_the_moment_reaches_its_strength(self):
         """6 M/w = tension, M = P (L/2 - l/2)/2: P = 2/0.095 (4e3 0.01/6) = 140.4 N/m; the way is P over the stiffness of the row."""
         result, out = self.run_test("bonded_beam", "--set", "wall.2.displacement=5e-4", "--set", "run.duration=0.1", "--set",
-                                    "output.probe_interval=5e-5", "--set", "run.steps_per_contact=25")
+                                    "output.probe_interval=5e-5", "--set", "run.steps_per_contact=10")
         breaks = readings.rows_of_breaks(out)
         self.assertTrue({(one["bond"], one["mode"]) for one in breaks} <= {("9", "bending"), ("10", "bending")}, breaks)
         self.assertGreater(len(breaks), 0)

@@ -145,7 +145,7 @@ class Servos(StageTest):
         self.refused(sphere + 'servo = { stress = 1.0, length = 1.0, max_speed = 0.1 }\n' + RUN, "grains.body", "spheres")
 
     def test_export_refuses_what_no_engine_carries(self):
-        for text, words in ((PRESS + SERVO + RUN, ("walls that follow a force", "'lid'")),
+        for text, words in ((PRESS + SERVO + RUN, ("follow a force", "'lid'")),
                             (PRESS + SERVO.replace("servo", "# servo") + STAGES.replace("removed = true", ""), ("in stages",))):
             self.check_error(equidem("export", self.write(text), "--to", "lammps", "--out", self.folder / "model"), 2, *words)
 

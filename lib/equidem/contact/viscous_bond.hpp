@@ -90,6 +90,11 @@ inline double exact_dashpot_change(double x, double rate, double before, double 
   return -x * left.mean * (rate + before) - (1 - left.mean) * gained;
 }
 
+/// The change by the rate at the start of the step (Sukegawa (5.2), (5.8)): stable for x < 2.
+inline double explicit_dashpot_change(double x, double rate) {
+  return -x * rate;
+}
+
 /// Longest step of semi-implicit Euler with dashpots taken at its start: modes of M^-1 K <= square (1/s²), M^-1 C <=
 /// rate (1/s) are stable while square dt² + 2 rate dt < 4. rate = 0 (no dashpots): 2/omega. Infinite where both are 0.
 inline double bond_step_limit(double rate, double square) {

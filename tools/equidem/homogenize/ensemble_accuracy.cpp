@@ -109,8 +109,8 @@ int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, d
                         .statistics = std::move(sampled.statistics)};
   if (folder) {
     CommonOptions chosen = options;
-    chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}, confidence = {}}}",
-                                     sampled.chosen.discs, sampled.chosen.samples, accuracy, wanted.confidence));
+    chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
+                                     sampled.chosen.samples, accuracy));
     write_case(options, read_case(chosen));
   }
   results.append(ensemble_results(result));

@@ -56,7 +56,6 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"stage.pair", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
     RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
     RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
-    RemovedKey{"bonds", "step", "", "Leave it out: dashpots decay exactly"},
     RemovedKey{"settling", "start", "", "Leave it out: bodies fall in time; method = \"growth\" begins dense"},
 };
 

@@ -47,6 +47,12 @@ void bind_bonds(File<GrainTables>& file) {
       .keys({key("path", &BondsTable::path,
                  "a CSV file whose first two columns i, j number the grains that are tied; columns named like the keys "
                  "below say how, instead of these; bonds.csv of run and pack can be read back")});
+  file.table("bonds").keys({key_in<GrainTables>(
+      "step", &GrainCase::options, &GrainOptions::bond_step, optional,
+      "exact (default): each bond decays as it should in whatever step, bonds that share discs in short steps alone, "
+      "where they decay one after the other, by the places of the discs: a mirror image differs by the square of the "
+      "step; explicit: dashpots by the velocities at the start of the step, as in Sukegawa (2010), with the limit "
+      "dt < 2 m/C_n, 2 m/(3 C_s) of equal discs: right for chains of discs with strong dashpots")});
   file.table("bonds", &GrainTables::bonds, &BondsTable::common).keys(keys_of_bonds(true));
   std::vector<Key<GrainBond>> keys{
       unbound_key<GrainBond>("grains", KeyType::discs, required,

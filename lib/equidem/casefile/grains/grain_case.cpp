@@ -164,7 +164,7 @@ GrainTimeStep choose_grain_step(const GrainCase& resolved) {
       const GrainTimeStep other = choose_time_step(stage.scene, stage.contacts, options, resolved.step);
       if (other.step < chosen.step) chosen = other;
       if (!stage.bonds) continue;
-      const double limit = likely_step_limit(stage.scene.grains, *stage.bonds);
+      const double limit = likely_step_limit(stage.scene.grains, *stage.bonds, options.bond_step);
       if (chosen.bond_limit == 0 || limit < chosen.bond_limit) chosen.bond_limit = std::isfinite(limit) ? limit : 0;
       if (chosen.automatic) chosen.step = std::min(chosen.step, 0.5 * limit);
     }

@@ -186,8 +186,9 @@ class GroupWriter {
   void write_dashpots(const TiedPair& bond, const GrainBody& i, const GrainBody& j, bool used, std::size_t g,
                       std::size_t lane) {
     const double dt = system_.dt();
+    const bool exact = system_.options.bond_step == GrainOptions::BondStep::exact;
     const auto set = [&](double dashpot, double inverse_mass, double& per_rate, double& per_gain) {
-      const double mean = decay(dashpot * inverse_mass * dt).mean;
+      const double mean = exact ? decay(dashpot * inverse_mass * dt).mean : 1;
       per_rate = used ? dashpot * dt * mean : 0;
       per_gain = used && dashpot > 0 ? (1 - mean) / inverse_mass : 0;
     };
@@ -560,7 +561,8 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
   return result;
 }
 
-double bond_step_limit(const GrainScene& scene) {
+double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step) {
+  if (bond_step == GrainOptions::BondStep::explicit_euler) return explicit_step_limit(scene);
   return bond_step_limit(0, largest_rates(scene).square);
 }
 
@@ -585,11 +587,14 @@ void check_bonds(const GrainScene& scene, const GrainOptions& options) {
   if (scene.bonds.empty()) return;
   check_law_of_bonds(scene, options.law);
   check_bonds(scene);
-  const double limit = bond_step_limit(scene);
+  const double limit = bond_step_limit(scene, options.bond_step);
   if (options.time_step < limit) return;
   bad_input(fmt::format("the step of {:.6g} s is {:.4g} times the limit of {:.6g} s that the bonds impose",
                         options.time_step, options.time_step / limit, limit),
-            "bonded discs would swing ever faster", "Stay below it, or use smaller springs");
+            "bonded discs would swing ever faster",
+            bond_step_limit(scene, GrainOptions::BondStep::exact) > options.time_step
+                ? "Stay below it, use smaller dashpots, or make the step of bonds exact, which dashpots do not limit"
+                : "Stay below it, or use smaller springs");
 }
 
 }  // namespace equidem

@@ -107,8 +107,8 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system);
 
 /// Longest stable step, s; infinite if there is no limit. M^-1 C and M^-1 K are bounded by the sum over the bonds of
 /// each disc of the largest rate of each bond: exact for pairs of discs and for long chains of equal discs, otherwise
-/// conservative. Dashpots do not limit the step. Contacts with other bodies are not included.
-double bond_step_limit(const GrainScene& scene);
+/// conservative. Dashpots limit the step only if they are explicit. Contacts with other bodies are not included.
+double bond_step_limit(const GrainScene& scene, GrainOptions::BondStep bond_step);
 
 /// The limit, s, of a step with dashpots taken at its start: dt < 2 m_n/C_n, 2 m_s/C_s for a pair. Dashpots of bonds
 /// that share discs act one after the other: their loss is off by about dt over it.

@@ -63,7 +63,7 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_of_decay(const Lanes& x) {
 }
 
 struct DashpotKind {
-  bool rolling = false, cell = false;
+  bool exact = true, rolling = false, cell = false;
   bool alone = false;  ///< no body has two bonds
 };
 
@@ -194,11 +194,17 @@ void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
     const auto mass = load<Lanes>(dashpot.mass);
     const Lanes tangential_mass = mass + frame.share * frame.share * load<Lanes>(dashpot.turning);
     const auto across = load<Lanes>(dashpot.tangential);
-    const Lanes mean = mean_of_decay(across * tangential_mass);
-    const Lanes normal = -load<Lanes>(dashpot.normal) * (frame.normal + earlier.normal) -
-                         load<Lanes>(dashpot.normal_gain) * steady.normal;
-    const Lanes tangential =
-        -(across * mean) * (frame.tangential + earlier.tangential) - (1 - mean) / tangential_mass * steady.tangential;
+    Lanes normal, tangential;
+    if constexpr (kind.exact) {
+      const Lanes mean = mean_of_decay(across * tangential_mass);
+      normal = -load<Lanes>(dashpot.normal) * (frame.normal + earlier.normal) -
+               load<Lanes>(dashpot.normal_gain) * steady.normal;
+      tangential =
+          -(across * mean) * (frame.tangential + earlier.tangential) - (1 - mean) / tangential_mass * steady.tangential;
+    } else {
+      normal = -load<Lanes>(dashpot.normal) * frame.normal;
+      tangential = -across * frame.tangential;
+    }
     store(normal, dashpot.normal_impulse);
     store(tangential, dashpot.tangential_impulse);
     const auto work = [&](const Lanes& impulse, const Lanes& rate, const Lanes& by_others, const Lanes& by_earlier,
@@ -214,8 +220,10 @@ void Resist<kind>::run(GrainSystem& system, BondBatch& batch) {
     if constexpr (kind.rolling) {
       RollingGroup& rolls = packed.rolling[g];
       earlier.rolling += frame.share * tangential * load<Lanes>(rolls.coupling);
-      const Lanes rolling = -load<Lanes>(rolls.rolling) * (frame.rolling + earlier.rolling) -
-                            load<Lanes>(rolls.rolling_gain) * steady.rolling;
+      Lanes rolling = -load<Lanes>(rolls.rolling) * frame.rolling;
+      if constexpr (kind.exact) {
+        rolling -= load<Lanes>(rolls.rolling) * earlier.rolling + load<Lanes>(rolls.rolling_gain) * steady.rolling;
+      }
       store(rolling, rolls.impulse);
       lost -= work(rolling, frame.rolling, steady.rolling, earlier.rolling, load<Lanes>(rolls.mass));
       torque_i += rolling;
@@ -273,27 +281,28 @@ void CountOpening<kind>::run(GrainSystem& system, BondBatch& batch) {
 }
 
 /// Kernel<kind> for the dashpots of the system.
-template <template <DashpotKind> class Kernel>
+template <template <DashpotKind> class Kernel, bool exact>
 PackedBonds::Loop loop_of(const GrainSystem& system) {
   const auto compiled = []<DashpotKind kind>() { return by_vector_width<Kernel<kind>, GrainSystem&, BondBatch&>(); };
   if (!system.bonds.packed.rolling.empty())
-    return system.cell.active ? compiled.template operator()<DashpotKind{true, true}>()
-                              : compiled.template operator()<DashpotKind{true, false}>();
+    return system.cell.active ? compiled.template operator()<DashpotKind{exact, true, true}>()
+                              : compiled.template operator()<DashpotKind{exact, true, false}>();
   if (!system.cell.active && system.bonds.packed.alone)
-    return compiled.template operator()<DashpotKind{false, false, true}>();
-  return system.cell.active ? compiled.template operator()<DashpotKind{false, true}>()
-                            : compiled.template operator()<DashpotKind{false, false}>();
+    return compiled.template operator()<DashpotKind{exact, false, false, true}>();
+  return system.cell.active ? compiled.template operator()<DashpotKind{exact, false, true}>()
+                            : compiled.template operator()<DashpotKind{exact, false, false}>();
 }
 
 }  // namespace
 
 PackedBonds::Loop dashpot_loop(const GrainSystem& system) {
   if (system.bonds.packed.dashpots.empty()) return nullptr;
-  return loop_of<Resist>(system);
+  return system.options.bond_step == GrainOptions::BondStep::exact ? loop_of<Resist, true>(system)
+                                                                   : loop_of<Resist, false>(system);
 }
 
 PackedBonds::Loop opening_loop(const GrainSystem& system) {
-  return system.bonds.packed.dashpots.empty() ? nullptr : loop_of<CountOpening>(system);
+  return system.bonds.packed.dashpots.empty() ? nullptr : loop_of<CountOpening, true>(system);
 }
 
 }  // namespace equidem

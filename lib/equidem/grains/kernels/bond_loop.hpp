@@ -55,7 +55,7 @@ struct alignas(64) BondImages {
 struct alignas(64) DashpotGroup {
   PairLanes mass;         ///< 1/m_n, 1/kg
   PairLanes turning;      ///< r_i²/I_i + r_j²/I_j, 1/kg
-  PairLanes normal;       ///< impulse per rate: C_n dt times Decay::mean, kg
+  PairLanes normal;       ///< impulse per rate: C_n dt times Decay::mean, or C_n dt by the explicit step, kg
   PairLanes normal_gain;  ///< impulse per velocity gain by steady forces: (1 - Decay::mean) m_n, kg
   PairLanes tangential;   ///< C_s dt, kg
   // of the last step, N s

@@ -125,11 +125,23 @@ struct GrainOptions {
     exact,     ///< closest points and common normal (ellipse_contact.hpp)
     enlarged,  ///< Sukegawa's test (4.1)-(4.49) (ellipse_contact.hpp): misses shallow contacts
   } ellipse_law = EllipseLaw::exact;
+  /// How dashpots of bonds act over a step.
+  enum class BondStep {
+    exact,           ///< each bond decays exactly, bonds that share discs one after the other
+    explicit_euler,  ///< velocities at the start of the step (Sukegawa 2010, (5.2), (5.8)): step limit (bond_step.hpp)
+  } bond_step = BondStep::exact;
   /// Bodies of a block, the work that a thread does at a time (body_blocks.hpp); 0: chosen from the number of bodies,
   /// one block of few. The order of sums, and so the last bits, depend on it.
   std::size_t bodies_per_block = 0;
   bool one_by_one = false;      ///< contacts one by one instead of eight at a time: an oracle for tests
   bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
+};
+
+template <>
+struct EnumNames<GrainOptions::BondStep> {
+  using enum GrainOptions::BondStep;
+  static constexpr const char* what = "step of bonds";
+  static constexpr NamedValue<GrainOptions::BondStep> list[] = {{exact, "exact"}, {explicit_euler, "explicit"}};
 };
 
 template <>

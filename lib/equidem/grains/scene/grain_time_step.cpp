@@ -102,12 +102,13 @@ Shortest shortest_contact(const GrainScene& scene, const ContactTable& contacts,
 }
 
 void limit_by_bonds(const GrainScene& scene, GrainOptions options, GrainTimeStep& result) {
-  const double limit = bond_step_limit(scene);
+  const double limit = bond_step_limit(scene, options.bond_step);
   if (std::isfinite(limit)) result.bond_limit = limit;
   if (result.automatic) result.step = std::min(result.step, 0.5 * limit);
   constexpr double one_percent = 0.1;  // of the limit of explicit dashpots
   const double explicit_limit = explicit_step_limit(scene);
-  if (result.step > one_percent * explicit_limit) result.chain_limit = explicit_limit;
+  if (options.bond_step == GrainOptions::BondStep::exact && result.step > one_percent * explicit_limit)
+    result.chain_limit = explicit_limit;
   options.time_step = result.step;
   try {
     check_bonds(scene, options);

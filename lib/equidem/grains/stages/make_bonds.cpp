@@ -101,7 +101,7 @@ void check(const StageBonds& bonds, std::span<const Grain> grains, const GrainOp
   check_law_of_bonds(pair, options.law);
 }
 
-double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds) {
+double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds, GrainOptions::BondStep bond_step) {
   const Grain& lightest = *std::ranges::min_element(grains, {}, [](const Grain& grain) { return grain.inertia.mass; });
   GrainScene hexagon;
   hexagon.grains.assign(7, lightest);
@@ -111,7 +111,7 @@ double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds)
     hexagon.bonds.push_back(bonds.like);
     hexagon.bonds.back().i = 0, hexagon.bonds.back().j = k;
   }
-  return bond_step_limit(hexagon);
+  return bond_step_limit(hexagon, bond_step);
 }
 
 std::vector<GrainBond> make_bonds(const GrainScene& scene, std::span<const GrainContact> contacts,

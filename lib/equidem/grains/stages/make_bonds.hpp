@@ -36,6 +36,6 @@ void check(const StageBonds& bonds, std::span<const Grain> grains, const GrainOp
 
 /// The step that such bonds are likely to bear, s: that of the lightest disc among six like it. Who is bonded to whom
 /// shows only where the stage begins, and a longer step than those bear is refused there.
-double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds);
+double likely_step_limit(std::span<const Grain> grains, const StageBonds& bonds, GrainOptions::BondStep bond_step);
 
 }  // namespace equidem
