@@ -180,8 +180,8 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
     CHECK(read_file(folder.path() / (std::string(name) + ".png")).starts_with("\x89PNG"));
     return read_file(folder.path() / (std::string(name) + ".svg")).size();
   };
-  const std::size_t bare = size_of("bare");
   picture.groups = groups;
+  const std::size_t bare = size_of("bare");
   picture.walls = walls;
   const std::size_t with_walls = size_of("walls");
   picture.paths = paths;

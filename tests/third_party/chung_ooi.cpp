@@ -197,18 +197,16 @@ TEST_CASE("chung_ooi_4_friction_takes_mu_of_the_normal_impulse_where_the_sphere_
   PairProperties pair;
   pair.restitution = e;
   pair.friction = mu;
-  const std::vector<Stepping> steppings{{NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
-                                        {NormalLaw::hertz_dashpot, GrainIntegrator::velocity_verlet},
-                                        {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
+  // laws that give a force need a tangential spring for friction (the next test)
+  const std::vector<Stepping> steppings{{NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
   for (const Material& material : {aluminium_oxide, aluminium_alloy}) {
     for (const Stepping& stepping : steppings) {
-      const bool exact_law = stepping.law == NormalLaw::exact_flow;
-      const double tolerance = exact_law ? 1e-12 : 1e-3;
+      constexpr double tolerance = 1e-12;
       for (int degrees = 5; degrees <= 85; degrees += 5) {
         const double angle = degrees * std::numbers::pi / 180;
         const double normal = 3.9 * std::cos(angle), tangential = 3.9 * std::sin(angle);
         const bool slides = tangential / normal >= mu * (1 + e) * (1 + 1 / beta);
-        const Rebound result = rebound(material, pair, stepping, angle, exact_law ? 7 : 2000);
+        const Rebound result = rebound(material, pair, stepping, angle, 7);
         // slip throughout, or rolling before the contact ends: v_t/(1 + beta)
         const double left = slides ? tangential - mu * (1 + e) * normal : tangential / (1 + beta);
         const double spin = -(tangential - left) / (beta * radius);

@@ -235,7 +235,8 @@ def read(path: str | os.PathLike[str], *, gap_tolerance: float = 0.0, unit_of_le
     """
     tolerance = share("gap_tolerance", gap_tolerance)
     return Assembly._of(_core.read_assembly(os.fspath(path), tolerance, unit_of_length, frame,
-                                            None if contacts is None else os.fspath(contacts), periodic_box, period, plane))
+                                            None if contacts is None else os.fspath(contacts), periodic_box, period,
+                                            plane))
 
 
 def assembly(**keys: Any) -> Assembly:
