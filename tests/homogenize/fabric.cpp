@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/homogenize/bounds.hpp"
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/stress.hpp"
 
 #include "homogenize/samples.hpp"

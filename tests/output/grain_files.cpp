@@ -175,18 +175,21 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   for (int k = 0; k < 20; ++k) paths.emplace_back(3, Vec2{0.1 * k, 0.01 * k * k});
   const std::vector<int> groups{0, 1, 17};
   GrainPicture picture{.title = "Walls & paths", .time = 0.5, .grains = grains};
-  const auto size_of = [&](const char* name) {
+  const auto strokes_of = [&](const char* name) {
     CHECK(write_grain_picture(folder.path(), name, picture, false).size() == 2);
     CHECK(read_file(folder.path() / (std::string(name) + ".png")).starts_with("\x89PNG"));
-    return read_file(folder.path() / (std::string(name) + ".svg")).size();
+    const std::string svg = read_file(folder.path() / (std::string(name) + ".svg"));
+    std::size_t strokes = 0;
+    for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at + 1)) ++strokes;
+    return strokes;
   };
   picture.groups = groups;
-  const std::size_t bare = size_of("bare");
+  const std::size_t bare = strokes_of("bare");
   picture.walls = walls;
-  const std::size_t with_walls = size_of("walls");
+  const std::size_t with_walls = strokes_of("walls");
   picture.paths = paths;
   CHECK(with_walls > bare);
-  CHECK(size_of("paths") > with_walls);
+  CHECK(strokes_of("paths") > with_walls);
   CHECK(refusal_of([&] { write_grain_picture(folder.path(), "none", {}, false); }).says("no grains"));
   auto lost = grains;
   lost[1].position.x = NAN;

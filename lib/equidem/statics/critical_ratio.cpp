@@ -6,10 +6,10 @@
 #include <limits>
 #include <memory>
 
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"

@@ -12,9 +12,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/ordering/nested_dissection.hpp"
-#include "equidem/statics/solver_choice.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/motion_description.hpp"
+#include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
 namespace {
