@@ -143,8 +143,9 @@ class Result(Mapping[str, Any]):
                            "Choose another name, or give overwrite=True")
         with tempfile.TemporaryDirectory(prefix="equidem_") as folder:
             text = self._delivered.page(folder)
-        # The name of an assembly in memory is that of no file.
-        text = re.sub(r"(&quot;)?[^ &\n]*assembly#\d+(&quot;)?", "&quot;assembly.json&quot;", text)
+        # The name of an assembly in memory is that of no file; lines of embedded figures, up to megabytes, have none.
+        text = "\n".join(re.sub(r"(&quot;)?[^ &\n]*assembly#\d+(&quot;)?", "&quot;assembly.json&quot;", line)
+                         if "assembly#" in line else line for line in text.split("\n"))
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
 
