@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// What implementations of BreakableSystem share: the states of a network, and its rest once contacts have broken.
+/// Implementations of BreakableSystem share this: the states of a network, and its rest once contacts have broken.
 #pragma once
 
 #include <algorithm>

@@ -229,7 +229,7 @@ class HarmonicSystem {
   ComplexLu lu_;
 };
 
-/// Of a complex LU in UMFPACK's own order.
+/// Memory of a complex LU in UMFPACK's own order.
 SolveEstimate estimate_complex(const SymbolicFactor& symbolic, const DegreesOfFreedom& unknowns) {
   SolveEstimate size = estimate(symbolic, unknowns, false);
   const double times = 2 * memory_factor(SolverMethod::umfpack, CholmodOrdering::equidem);  // numbers of two doubles

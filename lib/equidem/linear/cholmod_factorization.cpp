@@ -15,7 +15,7 @@
 #include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
-// Of OpenMP, whose header not every compiler brings.
+// OpenMP declares this in a header that not every compiler brings.
 extern "C" {
 int omp_get_max_active_levels();
 void omp_set_max_active_levels(int levels);

@@ -68,8 +68,8 @@ class ZeroEnergyModes {
   explicit ZeroEnergyModes(const System& system);
 
   [[nodiscard]] const std::vector<std::size_t>& components() const { return components_; }
-  /// Of `components()[k]`, per component, to the rounding of a double: corrected by what contacts still resist. Not
-  /// normalized.
+  /// The mode of `components()[k]`, per component and not normalized, to the rounding of a double: it is corrected by
+  /// the forces that contacts still have.
   [[nodiscard]] std::vector<double> motion(std::size_t k) const;
   /// A copy of the unknowns of the system with `components()` held.
   [[nodiscard]] const DegreesOfFreedom& held_unknowns() const { return unknowns_; }

@@ -57,7 +57,7 @@ class UnbondedRun : public EventPath {
   [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
   /// Discs without a support of which every contact is open as it is now, ascending.
   [[nodiscard]] std::vector<std::int32_t> untouched() const;
-  /// Discs that have come loose, as in a network whose contacts do not rub (unbonded_scene.hpp), those untouched among
+  /// Rattlers, as in a network whose contacts are not frictional (unbonded_scene.hpp), those untouched among
   /// them: contacts that have carried nothing since lambda last moved hold no disc.
   [[nodiscard]] std::vector<std::int32_t> loose() const;
   [[nodiscard]] double lambda() const override { return state_->lambda(); }

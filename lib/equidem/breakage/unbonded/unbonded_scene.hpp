@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A path with contacts that rub begins with their laws and statuses; scenes that cannot have one are
-/// refused. Discs that have come loose on it.
+/// A path with frictional contacts begins with their laws and statuses; scenes that cannot have one are refused.
+/// Rattlers of such a network.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ void check_control_of_rubbing(const LoadPath& path);
 void check_rubbing(const BreakageScene& scene, double friction, std::span<const ContactForce> rest);
 
 /// Discs that can carry no force (load_bearing.hpp) in the network of bonds and of contacts that carry one, ascending:
-/// those that have left a network whose contacts do not rub.
+/// those that have left a network whose contacts are not frictional.
 /// \param network with all contacts
 /// \param carried per contact: 1, whether it carries a force
 std::vector<std::int32_t> loose_discs(const BreakableNetwork& network, std::span<const UnbondedLaw> laws,

@@ -186,7 +186,7 @@ struct TurnAxes {
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t begin, std::size_t end);
 };
 
-/// Of the shaped bodies begin .. end.
+/// Turns the axes of the shaped bodies begin .. end.
 template <class Lanes>
 void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
   constexpr std::size_t most = 16;

@@ -2,7 +2,7 @@
 /// \file
 /// Histories: how chosen discs and the energies change with time, as CSV.
 /// The energy ledger as columns of tables and as a JSON object.
-/// What bodies do to walls, as columns of tables and as results.
+/// Loads of bodies on walls, as columns of tables and as results.
 #pragma once
 
 #include <cstdint>

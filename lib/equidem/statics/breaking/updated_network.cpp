@@ -314,7 +314,7 @@ void UpdatedNetwork::evaluate_forces(std::size_t of_case) {
   })[0];
 }
 
-/// What the contacts of a disc exert on it, moments over the scale of rotations, N/m.
+/// The force that the contacts of a disc exert on it, moments over the scale of rotations, N/m.
 std::array<UpdatedNetwork::Extended, 3> UpdatedNetwork::pull_on(std::size_t disc, std::size_t of_case) const {
   std::array<Extended, 3> pull{};
   for (const auto& edge : graph_.of(disc)) {

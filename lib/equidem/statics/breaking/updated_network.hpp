@@ -22,7 +22,7 @@ namespace equidem {
 struct UpdatedNetworkOptions {
   double claimed_residual = 1e-12;  ///< relative: motions are refined where that of a state is above it
   double memory_limit = 0;          ///< bytes; 0: what the machine has
-  bool force_moments = false;       ///< EquilibriumSums::moment is told
+  bool force_moments = false;       ///< EquilibriumSums::moment is computed
 };
 
 /// Works and sums over all contacts of the states of rest, N. Energies are works halved (Clapeyron).
@@ -147,7 +147,7 @@ class UpdatedNetwork {
   std::vector<std::vector<ContactDeformation>> affine_;  // per right-hand side and contact, by its mean strain, m
   // Per right-hand side:
   std::vector<std::vector<ForceOf<Extended>>> exact_;  // forces of contacts, N/m
-  std::vector<std::vector<ContactForce>> forces_;      // the same, as they are told
+  std::vector<std::vector<ContactForce>> forces_;      // the same, as reported
   std::vector<PreciseMotion> motions_;                 // in the order of elimination
   std::vector<double> scales_;                         // N/m: reference of relative residuals
   std::vector<double> twice_energy_;                   // N
