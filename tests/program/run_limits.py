@@ -258,7 +258,7 @@ class Memory(ProgramTest):
         case = self.folder / "many.toml"
         case.write_text('schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "many.json"\n'
                         '[springs]\nkN = 1.0\nkT = 0.5\n')
-        self.check_error(self.within(450 << 20, "homogenize", case), 1, "many.json", "of JSON need about")
+        self.check_error(self.within(450 << 20, "homogenize", case), 1, "many.json", "of memory are available")
 
 
 class Outputs(ProgramTest):

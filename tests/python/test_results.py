@@ -247,5 +247,5 @@ def test_a_case_is_exported_as_the_program_does(tmp_path):
     assert "CohFrictMat" in (tmp_path / "yade" / "run_equidem.py").read_text()
     with pytest.raises(eq.BadInput, match="--overwrite"):
         case.export("yade", out=tmp_path / "yade")
-    with pytest.raises(eq.BadInput, match="does not carry negative kT"):
+    with pytest.raises(eq.BadInput, match="does not carry .*negative kT"):
         case.set("springs.kT", -1e8).export("lammps", out=tmp_path / "lammps")

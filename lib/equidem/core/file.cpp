@@ -18,6 +18,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -117,7 +118,18 @@ std::string read_file(const fs::path& path) {
   errno = 0;
   std::string content;
   try {
-    content.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    std::error_code ignored;
+    const auto size = fs::file_size(path, ignored);
+    if (!ignored) {
+      require_memory(static_cast<double>(size), fmt::format("reading '{}' takes at least", path.string()),
+                     "Use a machine with more memory, or a smaller file");
+      content.resize(size);
+      file.read(content.data(), static_cast<std::streamsize>(size));
+      content.resize(static_cast<std::size_t>(file.gcount()));
+      if (file.eof()) file.clear();
+    }
+    // What a file of /proc holds, whose size reads 0, or one that grows.
+    content.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   } catch (const std::ios_base::failure&) {
     file.setstate(std::ios_base::badbit);  // /proc/self/mem, a broken disk: the buffer throws by itself
   }
