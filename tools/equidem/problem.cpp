@@ -282,6 +282,10 @@ void add_largest_void(Results& results, const Assembly& assembly) {
   if (relative > 1) results.line("", "a hole that would hold another disc: moduli and speeds of such packings scatter");
 }
 
+const char* status_of(std::int64_t unstable_modes) {
+  return unstable_modes > 0 ? "unstable" : unstable_modes < 0 ? "unjudged" : "solved";
+}
+
 ResultValue known(std::int64_t count) {
   return count < 0 ? ResultValue(nullptr) : ResultValue(count);
 }
@@ -570,7 +574,7 @@ void add_forces_at_rest(Results& results, const Problem& problem) {
   if (!problem.prestress) {
     if (carries_forces(problem.assembly))
       results.line("not used",
-                   "forces at rest: solve, homogenize, stability, and quasistatic where contacts rub, take them");
+                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
     return;
   }
   results.line("forces at rest", problem.prestress->sentence);

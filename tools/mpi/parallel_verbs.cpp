@@ -11,11 +11,11 @@
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/bounds.hpp"
 
-#include "homogenize/homogenize_results.hpp"
+#include "homogenize/homogenize.hpp"
 #include "part_problem.hpp"
 #include "petsc/stiffness.hpp"
 #include "rank_program.hpp"
-#include "solve/solve_results.hpp"
+#include "solve/solve.hpp"
 
 namespace equidem {
 namespace {
@@ -72,8 +72,8 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
   Results all = solve_results(problem, part_problem_results(ranks, p), results);
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
-  deliver(options, results.front().status(), std::move(all), std::move(times),
-          {{"case.toml", [&] { write_case(options, problem.resolved); }}});
+  deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times),
+          {{"case.toml", [&](const CommonOptions& into) { write_case(into, problem.resolved); }}});
 }
 
 }  // namespace
@@ -149,8 +149,8 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
   all.set("strain_of_states", strain_of_states);
   all.append(rank_results(ranks, solver.network(), before, petsc::counted_messages()));
   if (!ranks.first()) return;
-  deliver(options, status_of(result), std::move(all), std::move(times),
-          {{"case.toml", [&] { write_case(options, p.problem.resolved); }}});
+  deliver(options, status_of(result.unstable_modes), std::move(all), std::move(times),
+          {{"case.toml", [&](const CommonOptions& into) { write_case(into, p.problem.resolved); }}});
 }
 
 }  // namespace

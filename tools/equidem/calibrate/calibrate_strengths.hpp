@@ -15,4 +15,7 @@ namespace equidem {
 /// \throws Error (bad_input) where [material] stands beside [strength_target]; as calibrate_strength
 int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read);
 
+/// What was asked for, moduli or strengths, is out of reach: `refusal`, and its line.
+Results refusal_results(const Error& refusal);
+
 }  // namespace equidem
