@@ -173,23 +173,20 @@ Case read_case(const CommonOptions& options) {
   prepare(options);
   Case resolved = read_case(options.case_file, overrides_of(options));
   check_viscoelastic(resolved, options.verb);
-  check_prestress(resolved, options.verb);
-  check_bending(resolved, options.verb);
+  check_taken(resolved, options.verb);
   return resolved;
 }
 
-void check_prestress(const Case& resolved, std::string_view verb) {
-  constexpr std::string_view takers[] = {"solve", "homogenize", "stability", "sweep"};
-  if (resolved.prestress != PrestressChoice::on || std::ranges::find(takers, verb) != std::end(takers)) return;
-  bad_input_at(resolved.where("effects.prestress"),
-               fmt::format("{} takes no prestress, and the case asks for it", verb),
-               "its answer would be that of the springs alone",
-               "Remove effects.prestress; solve, homogenize and stability take it");
-}
-
-void check_bending(const Case& resolved, std::string_view verb) {
-  constexpr std::string_view takers[] = {"solve", "homogenize", "calibrate", "stability", "run", "export", "sweep"};
-  if (!resolved.bending.given() || std::ranges::find(takers, verb) != std::end(takers)) return;
+void check_taken(const Case& resolved, std::string_view verb) {
+  constexpr std::string_view of_prestress[] = {"solve", "homogenize", "stability", "sweep"},
+                             of_bending[] = {"calibrate", "run", "export"};
+  if (std::ranges::find(of_prestress, verb) != std::end(of_prestress)) return;
+  if (resolved.prestress == PrestressChoice::on)
+    bad_input_at(resolved.where("effects.prestress"),
+                 fmt::format("{} takes no prestress, and the case asks for it", verb),
+                 "its answer would be that of the springs alone",
+                 "Remove effects.prestress; solve, homogenize and stability take it");
+  if (!resolved.bending.given() || std::ranges::find(of_bending, verb) != std::end(of_bending)) return;
   const char* table = resolved.material ? "material" : "springs";
   bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
                fmt::format("{} takes no bending springs, and the case gives some", verb),
@@ -198,7 +195,7 @@ void check_bending(const Case& resolved, std::string_view verb) {
 }
 
 void OutputPlan::expect(const std::string& name) const {
-  if (options_.out) check_writable(*options_.out / name, options_.overwrite);
+  if (options_.out) check_writable(*options_.out / name, options_.overwrite || replaces_);
 }
 
 void OutputPlan::expect_file(const std::filesystem::path& path) const {

@@ -99,16 +99,15 @@ void prepare(const CommonOptions& options);
 std::vector<std::string> overrides_of(const CommonOptions& options);
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
-/// \throws Error (bad_input), with the line of the case file, where prestress is asked for and a verb takes none
-void check_prestress(const Case& resolved, std::string_view verb);
-/// The verb takes bonds that resist bending, or the case has none.
-/// \throws Error (bad_input) where it takes none
-void check_bending(const Case& resolved, std::string_view verb);
+/// \throws Error (bad_input), with the line of the case file, where prestress is asked for or bonds resist bending and
+///         the verb takes neither
+void check_taken(const Case& resolved, std::string_view verb);
 
 /// Checks before the computation that the files of a verb can be written.
 class OutputPlan {
  public:
-  explicit OutputPlan(const CommonOptions& options) : options_(options) {}
+  /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
+  explicit OutputPlan(const CommonOptions& options, bool replaces = false) : options_(options), replaces_(replaces) {}
 
   /// A file NAME in --out, if there is one.
   /// \throws Error (bad_input) where it could not be written
@@ -126,6 +125,7 @@ class OutputPlan {
 
  private:
   const CommonOptions& options_;
+  bool replaces_;
 };
 
 /// Keeps other processes from --out until the end of a verb, also from what it reads there; none without --out or on a

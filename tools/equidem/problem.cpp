@@ -19,6 +19,7 @@
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/assembly/voids.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/prestress/prestress_choice.hpp"
@@ -213,11 +214,8 @@ void add_actions(Problem& problem) {
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {
-    try {
-      problem.tension = tension_setup(problem.assembly, *problem.resolved.test);
-    } catch (const Error& error) {
-      throw error.at(problem.resolved.where("test"));
-    }
+    problem.tension = casefile::with_place(problem.resolved.where("test"),
+                                           [&] { return tension_setup(problem.assembly, *problem.resolved.test); });
     problem.supports = problem.tension->supports;
     problem.load_cases = {{"", problem.tension->loads}};
   }
@@ -530,17 +528,11 @@ void leave_out_loose(Problem& problem) {
   assembly = std::move(rest);
 }
 
-namespace {
-
-std::optional<PrestressedSprings> choice_for(const Problem& problem) {
-  try {
+static std::optional<PrestressedSprings> choice_for(const Problem& problem) {
+  return casefile::with_place(problem.resolved.where("effects.prestress"), [&] {
     return choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where("effects.prestress"));
-  }
+  });
 }
-
-}  // namespace
 
 bool prestress_counts(const Problem& problem) {
   if (!carries_forces(problem.assembly)) return false;

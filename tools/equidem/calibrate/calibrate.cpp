@@ -437,14 +437,7 @@ int calibrate(const CalibrateVerb& options) {
   const std::string file = text_of_springs(resolved, problem.assembly, found);
   const auto path = options.springs_path();
   Results results = calibrated_results(problem, found, guess);
-  if (path) {
-    results.line("springs file").add("springs_file", "", path->string());
-  } else {
-    results.block("\nsprings file (--springs FILE writes it):\n" + file + "\n").set("springs_file", nullptr);
-  }
-  if (path)
-    parts.push_back({"the springs file", [&](const CommonOptions& into) { write_file(*path, file, into.overwrite); },
-                     OutputPart::file});
+  add_found_file(results, parts, "springs", path, file);
   deliver(common, "calibrated", std::move(results), std::move(times), parts);
   if (path) say(common, fmt::format("springs written to {}", path->string()));
   return 0;

@@ -208,6 +208,18 @@ void check_alone(const Case& resolved) {
 
 }  // namespace
 
+void add_found_file(Results& results, std::vector<OutputPart>& parts, const std::string& noun,
+                    const std::optional<std::filesystem::path>& path, const std::string& text) {
+  const std::string name = noun + " file", key = noun + "_file";
+  if (!path) {
+    results.block(fmt::format("\n{} (--{} FILE writes it):\n{}\n", name, noun, text)).set(key, nullptr);
+    return;
+  }
+  results.line(name).add(key, "", path->string());
+  const auto write = [place = *path, text](const CommonOptions& into) { write_file(place, text, into.overwrite); };
+  parts.push_back({"the " + name, write, OutputPart::file});
+}
+
 Results refusal_results(const Error& refusal) {
   return Results().line("NOT FEASIBLE", refusal.what()).set("refusal", refusal.what());
 }
@@ -253,20 +265,14 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   strengths.friction = found.friction;
   const std::string text = text_of_strengths(resolved, found, strengths);
   Results results = strength_results(problem, samples.front().sample, found);
+  std::vector<OutputPart> parts{{"case.toml", [&](const CommonOptions& into) { write_case(into, resolved); }}};
   if (refusal) {
     results.append(refusal_results(*refusal));
     results.line("strength file", "none: what is above has the nearest ratio that was found")
         .set("strength_file", nullptr);
-    path.reset();
-  } else if (path) {
-    results.line("strength file").add("strength_file", "", path->string());
   } else {
-    results.block("\nstrength file (--strength FILE writes it):\n" + text + "\n").set("strength_file", nullptr);
+    add_found_file(results, parts, "strength", path, text);
   }
-  std::vector<OutputPart> parts{{"case.toml", [&](const CommonOptions& into) { write_case(into, resolved); }}};
-  if (path)
-    parts.push_back({"the strength file", [&](const CommonOptions& into) { write_file(*path, text, into.overwrite); },
-                     OutputPart::file});
   deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts);
   if (refusal) throw *refusal;
   if (path) say(options, fmt::format("strengths written to {}", path->string()));

@@ -12,6 +12,7 @@
 
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/engine/keys.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -63,11 +64,7 @@ struct CaseModel {
 template <typename Step>
 void finish(EngineModel& model, Engine engine, const ExportOptions& options, const std::string& where,
             const Step& step) {
-  try {
-    require_carried(model.found, engine, options.accept);
-  } catch (const Error& error) {
-    throw error.at(where);
-  }
+  casefile::with_place(where, [&] { require_carried(model.found, engine, options.accept); });
   model.time_step = step();
 }
 

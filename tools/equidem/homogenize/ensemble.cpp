@@ -108,8 +108,7 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
                  .column = "sample"};
   for (const EnsembleSample& sample : result.samples) {
     if (sample.refused()) continue;
-    samples.x.push_back(static_cast<double>(sample.cell.discs));
-    samples.y.push_back(sample.cell.moduli.*q.value);
+    samples.add(static_cast<double>(sample.cell.discs), sample.cell.moduli.*q.value);
   }
   Series mean{.label = "mean", .style = SeriesStyle::line_with_points, .colour = PlotColour::blue, .column = "mean"};
   Series low{.label = fmt::format("{:.4g} % interval of the mean", 100 * result.statistics.confidence),
@@ -120,10 +119,9 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
   for (const EnsembleSize& size : result.statistics.sizes) {
     const MeanEstimate& e = size.estimates[quantity];
     if (e.samples == 0) continue;
-    for (Series* series : {&mean, &low, &high}) series->x.push_back(size.mean_discs);
-    mean.y.push_back(e.mean);
-    low.y.push_back(e.low());
-    high.y.push_back(e.high());
+    mean.add(size.mean_discs, e.mean);
+    low.add(size.mean_discs, e.low());
+    high.add(size.mean_discs, e.high());
   }
   Plot plot{.title = literal(result.title),
             .x = {.label = "discs in the cell, N", .logarithmic = true},
@@ -136,8 +134,8 @@ Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::s
     constexpr int pieces = 100;
     const double from = mean.x.front(), to = mean.x.back();
     for (int k = 0; k <= pieces; ++k) {
-      fit.x.push_back(from * std::pow(to / from, static_cast<double>(k) / pieces));
-      fit.y.push_back(*d.limit + d.drift / fit.x.back());
+      const double discs = from * std::pow(to / from, static_cast<double>(k) / pieces);
+      fit.add(discs, *d.limit + d.drift / discs);
     }
     plot.series.push_back(fit);
   }
@@ -169,10 +167,8 @@ Plot plot_scatter(const EnsembleResult& result) {
       const MeanEstimate& e = size.estimates[q];
       if (!(e.standard_deviation > 0)) continue;
       const double unit = ensemble_quantities[q].modulus ? std::abs(e.mean) : 1;
-      measured.x.push_back(size.mean_discs);
-      measured.y.push_back(e.standard_deviation / unit);
-      law.x.push_back(size.mean_discs);
-      law.y.push_back(d.amplitude * std::pow(size.mean_discs, -d.exponent) / unit);
+      measured.add(size.mean_discs, e.standard_deviation / unit);
+      law.add(size.mean_discs, d.amplitude * std::pow(size.mean_discs, -d.exponent) / unit);
     }
     if (measured.x.empty()) continue;
     plot.series.push_back(law);
@@ -495,8 +491,8 @@ HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::u
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
 }
 
-void check_ensemble_outputs(const CommonOptions& options) {
-  const OutputPlan plan(options);
+void check_ensemble_outputs(const CommonOptions& options, bool resume = false) {
+  const OutputPlan plan(options, resume);
   plan.expect_results();
   for (const char* name : {"samples.csv", statistics_name}) plan.expect(name);
   for (const char* name : ensemble_plot_names) plan.expect_plot(name);
@@ -596,9 +592,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   OutputPlan(options).expect_json();
   if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
-  CommonOptions written = options;
-  written.overwrite = options.overwrite || resume;
-  check_ensemble_outputs(written);
+  check_ensemble_outputs(options, resume);
   const auto lock = lock_out(options);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 

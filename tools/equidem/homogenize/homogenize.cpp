@@ -14,6 +14,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
@@ -135,33 +136,23 @@ Plot viscoelastic_plot(const std::string& title, const ViscoelasticStiffness& re
             .x = {.label = "frequency f = {/:Italic ω}/2π, Hz", .logarithmic = true},
             .y = {.label = "modulus, Pa", .logarithmic = true},
             .enhanced = true};
-  struct Curve {
-    const char* label;
-    const char* column;
-    Modulus value;
-    bool loss;
-    PlotColour colour;
-  };
-  constexpr Curve curves[] = {
-      {"storage of K", "K_storage", &HarmonicModuli::bulk_modulus_2d, false, PlotColour::blue},
-      {"loss of K", "K_loss", &HarmonicModuli::bulk_modulus_2d, true, PlotColour::blue},
-      {"storage of G", "G_storage", &HarmonicModuli::shear_modulus, false, PlotColour::vermilion},
-      {"loss of G", "G_loss", &HarmonicModuli::shear_modulus, true, PlotColour::vermilion}};
-  for (const Curve& curve : curves) {
-    Series series{.label = curve.label,
-                  .style = curve.loss ? SeriesStyle::dashed_line : SeriesStyle::line,
-                  .colour = curve.colour,
-                  .column = curve.column};
+  const auto add = [&](const std::string& symbol, Modulus modulus, bool loss, PlotColour colour) {
+    const std::string what = loss ? "loss" : "storage";
+    Series series{.label = fmt::format("{} of {}", what, symbol),
+                  .style = loss ? SeriesStyle::dashed_line : SeriesStyle::line,
+                  .colour = colour,
+                  .column = fmt::format("{}_{}", symbol, what)};
     bool any = false;
     for (const HarmonicStiffness& one : result.harmonic) {
-      const std::complex<double> value = harmonic_moduli(one).*curve.value;
-      const double part = curve.loss ? value.imag() : value.real();
-      series.x.push_back(one.frequency);
-      series.y.push_back(part > one.error_bound ? part : std::numeric_limits<double>::quiet_NaN());
+      const std::complex<double> value = harmonic_moduli(one).*modulus;
+      const double part = loss ? value.imag() : value.real();
+      series.add(one.frequency, part > one.error_bound ? part : std::numeric_limits<double>::quiet_NaN());
       any = any || part > one.error_bound;
     }
     if (any) plot.series.push_back(std::move(series));
-  }
+  };
+  for (const bool loss : {false, true}) add("K", &HarmonicModuli::bulk_modulus_2d, loss, PlotColour::blue);
+  for (const bool loss : {false, true}) add("G", &HarmonicModuli::shear_modulus, loss, PlotColour::vermilion);
   return plot;
 }
 
@@ -518,11 +509,9 @@ std::optional<RelationBeside> relation_of(const Problem& problem) {
 
 BoundedStiffness homogenize(const Problem& problem) {
   const Case& resolved = problem.resolved;
-  try {
+  return casefile::with_place(resolved.homogenize.boundary ? resolved.where("homogenize.boundary") : "", [&] {
     return bounded_stiffness(problem.assembly, problem.springs.springs, bounds_options(resolved));
-  } catch (const Error& error) {
-    throw resolved.homogenize.boundary ? error.at(resolved.where("homogenize.boundary")) : error;
-  }
+  });
 }
 
 void write_states(const CommonOptions& options, const Problem& problem, const EffectiveStiffness& result) {
@@ -564,13 +553,10 @@ std::optional<Harmonic> harmonic_of(const Problem& problem, Boundary boundary) {
   if (!resolved.viscoelastic) return {};
   Harmonic result{build_viscoelasticity(resolved, problem.springs.constants), {}};
   const std::vector<double> frequencies = frequencies_of(resolved, result.springs);
-  try {
-    result.stiffness =
-        viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
-                               {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
-  } catch (const Error& error) {
-    throw error.at(resolved.where("viscoelastic"));
-  }
+  result.stiffness = casefile::with_place(resolved.where("viscoelastic"), [&] {
+    return viscoelastic_stiffness(problem.assembly, problem.springs.springs, result.springs, frequencies,
+                                  {.boundary = boundary, .rotation = resolved.rotation, .solver = resolved.solver});
+  });
   return result;
 }
 

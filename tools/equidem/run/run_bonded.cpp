@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -55,11 +56,8 @@ TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptS
     wanted.step_of_rule = true;
     if (kept->rule == to_string(TimeStepRule::bound)) wanted.rule = TimeStepRule::bound;
   }
-  try {
-    step = choose_time_step(scene, simulation_options(problem.resolved, 1), wanted);
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"));
-  }
+  step = casefile::with_place(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"),
+                              [&] { return choose_time_step(scene, simulation_options(problem.resolved, 1), wanted); });
   problem.times.add("time step", watch.lap());
   if (!wanted.step) step.step = std::min(step.step, wanted.duration);
   if (kept && step.step == kept->step) {
@@ -144,11 +142,7 @@ void check_wavelengths(const Problem& problem, const std::vector<Probe>& probes)
 }
 
 Simulation simulation_of(const Problem& problem, const Scene& scene, const SimulationOptions& options) {
-  try {
-    return {scene, options};
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where("run"));
-  }
+  return casefile::with_place(problem.resolved.where("run"), [&] { return Simulation(scene, options); });
 }
 
 /// Forces of the contacts between discs.
@@ -185,11 +179,8 @@ BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
 
 std::int64_t BondedRun::steps() const {
   if (!run().duration) return 0;
-  try {
-    return count_steps(*run().duration, step_.step);
-  } catch (const Error& error) {
-    throw error.at(problem_.resolved.where("run.duration"));
-  }
+  return casefile::with_place(problem_.resolved.where("run.duration"),
+                              [&] { return count_steps(*run().duration, step_.step); });
 }
 
 RunPlan BondedRun::plan() {

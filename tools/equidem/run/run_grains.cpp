@@ -56,11 +56,8 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   const GrainScene scene = build_grain_scene(resolved, step);
   const GrainOptions options = grain_options(resolved, step);
   if (scene.cell) casefile::with_place(resolved.where("cell"), [&] { check_cell(scene, options); });
-  try {
-    check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); });
-  } catch (const Error& error) {
-    throw error.at(resolved.where("collisions"));
-  }
+  casefile::with_place(resolved.where("collisions"),
+                       [&] { check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); }); });
   for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
     const StageCase& stage = resolved.stages[k];
     const std::string place = fmt::format("stage.{}", k);

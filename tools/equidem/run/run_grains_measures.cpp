@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -60,11 +61,9 @@ std::vector<BoxShaking> shakings_of(const GrainCase& resolved, const StagedSimul
 }
 
 BoxMeasures measures_of(const GrainCase& resolved) {
-  try {
-    return {resolved.scene, *resolved.measures, shakings_of(resolved, nullptr)};
-  } catch (const Error& error) {
-    throw error.at(resolved.where(resolved.measures->cell ? "measures.cell" : "measures"));
-  }
+  return casefile::with_place(resolved.where(resolved.measures->cell ? "measures.cell" : "measures"), [&] {
+    return BoxMeasures(resolved.scene, *resolved.measures, shakings_of(resolved, nullptr));
+  });
 }
 
 }  // namespace
@@ -193,30 +192,20 @@ std::pair<CoarseGrid, std::string> GrainMeasures::grid_of_fields() const {
 void GrainMeasures::write_files(const CommonOptions& into) const {
   const std::filesystem::path& folder = *into.out;
   if (resolved_.output.picture) {
-    Plot plot{.title = resolved_.title};
-    plot.x.label = "x, m";
-    plot.y.label = "surface, m";
+    Plot plot{.title = resolved_.title, .x = {.label = "x, m"}, .y = {.label = "surface, m"}};
     const auto add = [&](const SurfaceProfile& profile, double time, PlotColour colour) {
       Series series{
           .label = fmt::format("t = {:.4g} s", time), .style = SeriesStyle::line_with_points, .colour = colour};
-      for (std::size_t k = 0; k < profile.heights.size(); ++k) {
-        series.x.push_back(profile.place(k));
-        series.y.push_back(profile.heights[k]);
-      }
+      for (std::size_t k = 0; k < profile.heights.size(); ++k) series.add(profile.place(k), profile.heights[k]);
       plot.series.push_back(std::move(series));
     };
     add(measures_.surface_before(), measures_.before().time, PlotColour::sky_blue);
     add(measures_.surface(), measures_.moments().back().time, PlotColour::vermilion);
     write_plot(folder, "surface_plot", plot, into.overwrite);
     Series ratio{.label = "", .colour = PlotColour::blue, .column = "void_ratio"};
-    for (const MeasuredMoment& moment : measures_.moments()) {
-      ratio.x.push_back(moment.time);
-      ratio.y.push_back(moment.void_ratio);
-    }
+    for (const MeasuredMoment& moment : measures_.moments()) ratio.add(moment.time, moment.void_ratio);
     if (std::any_of(ratio.y.begin(), ratio.y.end(), [](double e) { return std::isfinite(e); })) {
-      Plot history{.title = resolved_.title};
-      history.x.label = "time, s";
-      history.y.label = "void ratio e";
+      Plot history{.title = resolved_.title, .x = {.label = "time, s"}, .y = {.label = "void ratio e"}};
       history.series.push_back(std::move(ratio));
       write_plot(folder, "void_ratio_plot", history, into.overwrite);
     }
@@ -230,19 +219,16 @@ void write_probe_paths(const CommonOptions& into, const GrainCase& resolved) {
                                     PlotColour::sky_blue, PlotColour::purple,    PlotColour::yellow, PlotColour::black};
   if (!resolved.output.probe_interval) return;
   const auto cells = csv_cells(read_file(*into.out / "history.csv"));
-  Plot plot{.title = resolved.title};
-  plot.x.label = "x, m";
-  plot.y.label = "y, m";
+  Plot plot{.title = resolved.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
   const auto& names = cells.front();
   for (const Probe& probe : resolved.probes) {
     const auto at = std::find(names.begin(), names.end(), probe.name + "_x_m");
     if (at == names.end() || plot.series.size() == std::size(colours)) continue;
     const auto column = static_cast<std::size_t>(at - names.begin());
     Series series{.label = probe.name, .colour = colours[plot.series.size()]};
-    for (std::size_t k = 1; k < cells.size(); ++k) {
-      series.x.push_back(csv_number(cells[k].at(column)).value_or(not_measured));
-      series.y.push_back(csv_number(cells[k].at(column + 1)).value_or(not_measured));
-    }
+    for (std::size_t k = 1; k < cells.size(); ++k)
+      series.add(csv_number(cells[k].at(column)).value_or(not_measured),
+                 csv_number(cells[k].at(column + 1)).value_or(not_measured));
     plot.series.push_back(std::move(series));
   }
   if (!plot.series.empty()) write_plot(*into.out, "paths_plot", plot, into.overwrite);

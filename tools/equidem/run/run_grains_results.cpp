@@ -461,15 +461,12 @@ void GrainRun::write_breaks(const CommonOptions& into) const {
     write_csv(folder / "breaks.csv", table, into.overwrite);
   }
   if (!case_.output.picture || breaks.empty()) return;
-  Plot plot{.title = case_.title};
-  plot.x.label = "x, m";
-  plot.y.label = "y, m";
+  Plot plot{.title = case_.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
   for (const auto& [mode, colour] : modes_of_bonds) {
     Series series{.label = to_string(mode), .style = SeriesStyle::points, .colour = colour};
     for (const BondBreak& event : breaks) {
       if (event.mode != mode) continue;
-      series.x.push_back(event.place.x);
-      series.y.push_back(event.place.y);
+      series.add(event.place.x, event.place.y);
     }
     if (!series.x.empty()) plot.series.push_back(std::move(series));
   }

@@ -161,10 +161,7 @@ void write_energy_plot(const CommonOptions& into, const std::string& name, const
   Plot plot{.title = title, .x = {.label = "time, s"}, .y = {.label = fmt::format("energy, {}", energy_unit(body))}};
   const auto add = [&](const EnergyCurve& curve) {
     Series series{.label = curve.label, .colour = curve.colour};
-    for (const EnergySample& sample : energies) {
-      series.x.push_back(sample.time);
-      series.y.push_back(curve.value(sample.ledger));
-    }
+    for (const EnergySample& sample : energies) series.add(sample.time, curve.value(sample.ledger));
     if (std::ranges::any_of(series.y, [](double y) { return y != 0; })) plot.series.push_back(std::move(series));
   };
   for (const EnergyCurve& curve : curves) add(curve);

@@ -222,13 +222,11 @@ Plot study_plot(const StudyReport& report) {
   for (const std::size_t k : report.result.front) {
     const StudyRow& row = report.result.rows[k];
     if (!line.x.empty()) {  // until here nothing is better than the one before
-      line.x.push_back(row.time.median);
-      line.y.push_back(line.y.back());
+      line.add(row.time.median, line.y.back());
     }
-    line.x.push_back(row.time.median);
-    line.y.push_back(row.assured);
+    line.add(row.time.median, row.assured);
   }
-  plot.series.push_back(std::move(line));
+  if (!line.x.empty()) plot.series.push_back(std::move(line));
   std::size_t count = 0;
   for (const auto& [method, rows] : by_method(report)) {
     Series series = series_of(count++, rows.size());
@@ -237,8 +235,7 @@ Plot study_plot(const StudyReport& report) {
     for (const std::size_t k : rows) {
       const StudyRow& row = report.result.rows[k];
       if (!std::isfinite(row.error)) continue;
-      series.x.push_back(row.time.median);
-      series.y.push_back(row.error);
+      series.add(row.time.median, row.error);
     }
     if (!series.x.empty()) plot.series.push_back(std::move(series));
   }
@@ -373,10 +370,8 @@ StudySamples samples_to_keep(const StudyVerb& verb, const Study& study, const st
 
 /// Files of an earlier run of the same study are replaced; those of anything else are not.
 void check_outputs(const StudyVerb& verb, const Study& study, bool continues) {
-  OutputPlan(verb.common).expect_json();
-  CommonOptions common = verb.common;
-  common.overwrite = common.overwrite || continues;
-  const OutputPlan plan(common);
+  const OutputPlan plan(verb.common, continues);
+  plan.expect_json();
   for (const char* name : {"samples.csv", "study.csv", "result.json", page_name}) plan.expect(name);
   plan.expect_plot(study_plot_name(study));
 }

@@ -347,12 +347,10 @@ std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
 }
 
 void check_outputs(const Sweep& sweep) {
-  CommonOptions common = sweep.options.common;
-  common.overwrite = common.overwrite || sweep.options.resume;
-  const OutputPlan plan(common);
+  const OutputPlan plan(sweep.options.common, sweep.options.resume);
   for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json", page_name}) plan.expect(name);
   for (const std::string& name : curve_names(sweep.plan)) plan.expect_plot(name);
-  OutputPlan(sweep.options.common).expect_json();
+  plan.expect_json();
 }
 
 /// None where one of them is no such number.

@@ -224,10 +224,7 @@ std::vector<std::pair<std::string, Curve>> curves_of(const SweepPlan& plan, std:
 Series series_at(const std::map<double, std::vector<double>>& values, Series series, bool mean = false) {
   for (const auto& [x, all] : values) {
     const double sum = std::accumulate(all.begin(), all.end(), 0.0);
-    for (const double y : mean ? std::vector{sum / static_cast<double>(all.size())} : all) {
-      series.x.push_back(x);
-      series.y.push_back(y);
-    }
+    for (const double y : mean ? std::vector{sum / static_cast<double>(all.size())} : all) series.add(x, y);
   }
   return series;
 }
