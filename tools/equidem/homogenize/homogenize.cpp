@@ -190,15 +190,9 @@ std::vector<ResultArray> viscoelastic_arrays(const ViscoelasticStiffness& result
 constexpr double visible_anisotropy = 1e-9;
 
 std::string boundary_condition(Boundary boundary) {
-  switch (boundary) {
-    case Boundary::periodic:
-      return "the cell repeats for ever, its images move with the mean strain";
-    case Boundary::displacement:
-      return "the discs at the boundary follow the mean strain";
-    case Boundary::traction:
-      return "the boundary carries the tractions of a uniform stress";
-  }
-  return {};
+  return boundary == Boundary::periodic       ? "the cell repeats for ever, its images move with the mean strain"
+         : boundary == Boundary::displacement ? "the discs at the boundary follow the mean strain"
+                                              : "the boundary carries the tractions of a uniform stress";
 }
 
 void add_mean_strain(Results& out, const Problem& problem, bool periodic, Boundary used) {

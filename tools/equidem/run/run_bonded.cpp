@@ -222,10 +222,7 @@ std::string BondedRun::fingerprint() const {
 }
 
 std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
-  static constexpr EnergyCurve curves[] = {
-      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
-      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+  static constexpr EnergyCurve further[] = {
       {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.lost(); }},
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
@@ -260,7 +257,7 @@ std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
     });
   if (goes_to_rest()) return parts;
   part("the plot of energies", [this, &result](const CommonOptions& into) {
-    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, curves);
+    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
   });
   if (output.picture)
     part("the film", [this, &result](const CommonOptions& /*into*/) {

@@ -320,10 +320,7 @@ void GrainRun::draw(const CommonOptions& into, const RunResult& result) const {
 }
 
 std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
-  static constexpr EnergyCurve curves[] = {
-      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
-      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+  static constexpr EnergyCurve further[] = {
       {"lost at impacts", PlotColour::orange,
        [](const EnergyLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
       {"lost by friction", PlotColour::purple,
@@ -356,7 +353,7 @@ std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
   if (case_.output.picture) {
     part("the picture", [this, &result](const CommonOptions& into) { draw(into, result); });
     part("the plot of energies", [this, &result](const CommonOptions& into) {
-      write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, curves);
+      write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
     });
     part("the paths of probes", [this](const CommonOptions& into) { write_probe_paths(into, case_); });
     part("the film", [this, &result](const CommonOptions& /*into*/) {

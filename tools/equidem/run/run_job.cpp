@@ -157,14 +157,17 @@ const char* energy_unit(Body body) {
 }
 
 void write_energy_plot(const CommonOptions& into, const std::string& name, const std::string& title, Body body,
-                       std::span<const EnergySample> energies, std::span<const EnergyCurve> curves) {
+                       std::span<const EnergySample> energies, std::span<const EnergyCurve> further) {
   Plot plot{.title = title, .x = {.label = "time, s"}, .y = {.label = fmt::format("energy, {}", energy_unit(body))}};
   const auto add = [&](const EnergyCurve& curve) {
     Series series{.label = curve.label, .colour = curve.colour};
     for (const EnergySample& sample : energies) series.add(sample.time, curve.value(sample.ledger));
     if (std::ranges::any_of(series.y, [](double y) { return y != 0; })) plot.series.push_back(std::move(series));
   };
-  for (const EnergyCurve& curve : curves) add(curve);
+  add({"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }});
+  add({"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }});
+  add({"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }});
+  for (const EnergyCurve& curve : further) add(curve);
   add({"energy balance error", PlotColour::black, [](const EnergyLedger& l) { return l.error(); }});
   if (!plot.series.empty()) write_plot(*into.out, name, plot, into.overwrite);
 }

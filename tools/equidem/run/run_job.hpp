@@ -81,9 +81,10 @@ struct EnergyCurve {
   PlotColour colour;
   double (*value)(const EnergyLedger&);
 };
-/// NAME.{csv,gp,svg,png}: curves that are not 0 throughout, and the error of the balance, against time.
+/// NAME.{csv,gp,svg,png}: kinetic, elastic, potential and further energies that are not 0 throughout, and the error of
+/// the balance, against time.
 void write_energy_plot(const CommonOptions& into, const std::string& name, const std::string& title, Body body,
-                       std::span<const EnergySample> energies, std::span<const EnergyCurve> curves);
+                       std::span<const EnergySample> energies, std::span<const EnergyCurve> further);
 
 /// The folder that the loop of a run writes its tables into: that of --out, or a temporary one.
 class HistoryFolder {

@@ -222,14 +222,6 @@ void write_state_of(const CommonOptions& options, const Problem& problem, const 
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
-/// The worst of all load cases.
-ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy, double seconds) {
-  const auto worst = std::max_element(results.begin(), results.end(), [](const SolvedCase& a, const SolvedCase& b) {
-    return a.equilibrium.error_bound < b.equilibrium.error_bound;
-  });
-  return solver_accuracy(accuracy, worst->equilibrium.error_bound, worst->equilibrium.condition, seconds);
-}
-
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
 bool solve_once(const CommonOptions& options, const std::shared_ptr<const Problem>& shared_problem,
                 const std::optional<double>& accuracy, CaseSearch* search) {
@@ -259,7 +251,9 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
     if (!search->accepts(searched_values(*results.front().tension), times.total())) return false;
     reached = reached_by_block(*search);
   } else if (accuracy) {
-    reached = bound_of(results, *accuracy, times.total());
+    const auto bound = [](const SolvedCase& result) { return result.equilibrium.error_bound; };
+    const Equilibrium& worst = std::ranges::max_element(results, {}, bound)->equilibrium;
+    reached = solver_accuracy(*accuracy, worst.error_bound, worst.condition, times.total());
   }
   Results all = solve_results(problem, problem_results(problem, effects), results);
   if (reached) all.append(accuracy_results(*reached));
