@@ -77,7 +77,7 @@ def test_interrupted_it_ends_with_130():
 # ---- Abe (1996)
 
 def test_abe1996_tension_test_follows_his_theory(computed):
-    _, result = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    _, result = computed("abe1996", "--quick")
     printed = published("abe1996")
     assert result["critical_ratio_lattice"] == pytest.approx(printed["scatter_begins"])
     points = {point["ratio"]: point for point in result["points"]}
@@ -95,7 +95,7 @@ def test_abe1996_tension_test_follows_his_theory(computed):
 
 
 def test_abe1996_lattices_have_the_moduli_of_his_equations(computed):
-    _, result = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    _, result = computed("abe1996", "--quick")
     for key in ("free_rotation_deviation", "restrained_rotation_deviation"):
         assert result["macroscopic_stress"][key] < 1e-12
     stress = result["macroscopic_stress"]
@@ -113,7 +113,7 @@ def test_abe1996_lattices_have_the_moduli_of_his_equations(computed):
 
 
 def test_abe1996_writes_its_figures(computed):
-    out, _ = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    out, _ = computed("abe1996", "--quick")
     for name in ("figure6.png", "figure7.svg", "figure7_plane_stress.csv", "figure8.csv", "error_by_size.png"):
         assert (out / name).stat().st_size > 0, name
     assert {row["series"] for row in rows(out / "figure7.csv")} == {"theory", "nu_large", "nu_stable", "nu_unstable"}

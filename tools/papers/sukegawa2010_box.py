@@ -73,10 +73,7 @@ class Bodies:
         columns = fill.columns // 2 if fill.pairs else fill.columns
         n = columns * fill.rows
         least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
-        radii = [least + (most - least) * (k + random.uniform()) / n for k in range(n)]
-        for k in range(n, 1, -1):
-            other = random.below(k)
-            radii[k - 1], radii[other] = radii[other], radii[k - 1]
+        radii = random.shuffle([least + (most - least) * (k + random.uniform()) / n for k in range(n)])
         turns = [0.0 if fill.shape == "discs" else random.uniform() for _ in range(n)]
         wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
         row, column = np.divmod(np.arange(n), columns)
@@ -108,11 +105,8 @@ class Bodies:
         if self.fill.step:
             return self.fill.step
         kN, kT = self.fill.springs()
-        arm = np.zeros(len(self.mass))  # the longest of a normal force
-        if self.fill.shape == "ellipses":
-            arm = self.half_axes[:, 0] - self.half_axes[:, 1]
-        elif self.fill.shape == "rigid_pairs":
-            arm = self.radii
+        # the longest arm of a normal force
+        arm = self.radii if self.fill.shape == "rigid_pairs" else self.half_axes[:, 0] - self.half_axes[:, 1]
 
         def limit(stiffness, lever):
             moved = (0.5 / (1 / self.mass + lever**2 / self.moment)).min()
@@ -122,23 +116,16 @@ class Bodies:
 
     def tables(self):
         """Of the case file."""
-        grains = []
-        for place, angle, axes, r in zip(self.places, self.angles, self.half_axes, self.radii):
-            grain = {"position": place.tolist(), "angle": float(angle)}
-            if self.fill.shape == "ellipses":
-                grain["half_axes"] = axes.tolist()
-            elif self.fill.shape == "rigid_pairs":
-                grain["discs"] = [[-float(r), 0.0, float(r)], [float(r), 0.0, float(r)]]
-            else:
-                grain["radius"] = float(r)
-            grains.append(grain)
-        kN, kT = self.fill.springs()
-        walls = [("floor", (0, 0), (0, 1)), ("left", (0, 0), (1, 0)), ("right", (self.fill.width, 0), (-1, 0))]
+        (kN, kT), grains = self.fill.springs(), []
+        for place, angle, axes, r in zip(*(array.tolist() for array in (self.places, self.angles, self.half_axes, self.radii))):
+            body = {"ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}}
+            grains.append({"position": place, "angle": angle, **body.get(self.fill.shape, {"radius": r})})
+        walls = [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [0.0, 0.0], [1.0, 0.0]),
+                 ("right", [self.fill.width, 0.0], [-1.0, 0.0])]
         tables = {"grains": {"density": self.fill.density}, "grain": grains, "springs": {"kN": kN, "kT": kT},
                   "collisions": {"law": "linear_dashpot", "damping": self.fill.damping, "friction": self.fill.friction,
                                  "walls": {"friction": NUMBERS["wall friction"]}},
-                  "wall": [{"name": name, "point": [float(x) for x in point], "normal": [float(x) for x in normal]}
-                           for name, point, normal in walls]}
+                  "wall": [dict(zip(("name", "point", "normal"), wall)) for wall in walls]}
         if self.fill.shape == "ellipses":
             tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
         if self.fill.shape == "bonded_pairs":
@@ -234,7 +221,8 @@ class Stage:
     def record(self, t, moment):
         row = {"time_s": t, "whole_void_ratio": moment.whole, "centre_x_m": moment.centre[0], "slope": moment.slope}
         for k, grain in enumerate(moment.bodies.fill.followed()[0]):
-            row.update({f"x{k}_m": moment.places[grain, 0], f"y{k}_m": moment.places[grain, 1], f"angle{k}_rad": moment.angles[grain]})
+            (x, y), angle = moment.places[grain], moment.angles[grain]
+            row.update({f"x{k}_m": x, f"y{k}_m": y, f"angle{k}_rad": angle})
         self.rows.append(row)
 
     def moved(self):
@@ -260,8 +248,8 @@ def swing_of(rows, frequency, cycles):
     if chosen.sum() < 8:
         return math.nan
     angle = 2 * math.pi * frequency * t[chosen]
-    fit = np.linalg.lstsq(np.stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)], axis=1), x[chosen], rcond=None)[0]
-    return math.hypot(fit[1], fit[2])
+    columns = np.stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)], axis=1)
+    return math.hypot(*np.linalg.lstsq(columns, x[chosen], rcond=None)[0][1:])
 
 
 def run_box(arguments):
