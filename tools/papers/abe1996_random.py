@@ -6,13 +6,12 @@ the exact moduli of random assemblies, over disorder, kT/kN and weightings.
 Example:
   tools/papers/abe1996_random.py --out figures      minutes; with --quick seconds
 """
-import concurrent.futures
 import dataclasses
 import math
 
 import numpy as np
 
-from common import Output, Progress, counted, eq, main, moduli_of
+from common import Output, columns_of, counted, eq, main, moduli_of, seeds_of
 from shown import Page, Row, aligned
 
 WEIGHTINGS = ("uniform", "contact_density", "voronoi", "local_contact_density")
@@ -59,6 +58,9 @@ class Plan:
         self.ratios = [0.0, 0.25, 1.0] if quick else [0.0, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0]
         self.discs, self.samples = (120, 4) if quick else (1600, 32)
 
+    def places(self):
+        return [(weighting, ratio) for weighting in WEIGHTINGS for ratio in self.ratios]
+
 
 # ---- cells and their means
 
@@ -71,14 +73,17 @@ def mean_field(ratio, weighting, phi, z):
     return bulk, bulk * (1 - 2 * nu), nu
 
 
-def compute_cell(plan, family, seed):
+def compute_cell(arguments):
     """Geometry: scatter of branch lengths over their mean, of the contacts of a disc, anisotropy sqrt(a_2² + b_2² +
     a_4² + b_4²) of psi(theta), phi, z. Points: K and G in kN and nu of plane strain of each answer, errors of the mean
-    field (G and K over the exact one, less 1; nu less the exact one), anisotropy of the exact tensor."""
-    cell, points = family.cell(plan.discs, seed), []
-    phi, z = cell.solid_fraction, cell.coordination_number
-    for weighting in WEIGHTINGS:
-        for ratio in plan.ratios:
+    field (G and K over the exact one, less 1; nu less the exact one), anisotropy of the exact tensor. Words where the
+    cell has no moduli."""
+    plan, family, seed = arguments
+    points = []
+    try:
+        cell = family.cell(plan.discs, seed)
+        phi, z = cell.solid_fraction, cell.coordination_number
+        for weighting, ratio in plan.places():
             springs = eq.Springs(kN=1.0, kT=ratio, weighting=weighting)
             found = eq.homogenize(cell, springs, homogenize={"bounds": "affine"})
             answers = {"exact": moduli_of(found.stiffness), "mean_field": mean_field(ratio, weighting, phi, z),
@@ -90,11 +95,12 @@ def compute_cell(plan, family, seed):
                 point[modulus + "_error"] = point[modulus + "_mean_field"] / point[modulus + "_exact"] - 1
             points.append({**point, "nu_error": point["nu_mean_field"] - point["nu_exact"],
                            "anisotropy": found.anisotropy})
+    except (eq.BadInput, eq.ComputationFailed) as error:
+        return f"{family.name}, seed {seed}: {error}"
     branches = cell.levers.sum(axis=1)
-    contacts = np.bincount(cell.contacts.ravel(), minlength=len(cell))
-    uneven = math.hypot(found.fabric.anisotropy_2, found.fabric.anisotropy_4)
-    return {"branches": branches.std(ddof=1) / branches.mean(), "contacts": contacts.std(ddof=1), "uneven": uneven,
-            "phi": phi, "z": z}, points
+    return {"branches": branches.std(ddof=1) / branches.mean(), "phi": phi, "z": z,
+            "contacts": np.bincount(cell.contacts.ravel(), minlength=len(cell)).std(ddof=1),
+            "uneven": math.hypot(found.fabric.anisotropy_2, found.fabric.anisotropy_4)}, points
 
 
 def means_of(rows, measure=np.mean, **options):
@@ -105,32 +111,24 @@ class Result:
     """`points`: mean over the cells, error (standard) and deviation of each family, weighting and ratio."""
     def __init__(self, plan):
         self.plan, self.refusals, self.points = plan, [], []
-        progress, done = Progress("homogenizing random cells:"), 0
         for family in plan.families:
-            cells = []
-            with concurrent.futures.ThreadPoolExecutor(eq.threads()) as pool:
-                tasks = {seed: pool.submit(compute_cell, plan, family, seed) for seed in range(1, plan.samples + 1)}
-                for seed, task in tasks.items():
-                    try:
-                        cells.append(task.result())
-                    except (eq.BadInput, eq.ComputationFailed) as error:
-                        self.refusals.append(f"{family.name}, seed {seed}: {error}")
-                    except BaseException:
-                        pool.shutdown(cancel_futures=True)
-                        raise
-                    done += 1
-                    progress.update(done / (len(plan.families) * plan.samples))
+            found = seeds_of(f"homogenizing {family.name}:", compute_cell, plan.samples, plan, family)
+            self.refusals += [one for one in found if isinstance(one, str)]
+            cells = [one for one in found if not isinstance(one, str)]
             if not cells:
                 raise eq.ComputationFailed(f"none of the cells of '{family.name}' has moduli",
                                            "the first: " + self.refusals[-1], "", "")
             family.geometry = means_of([geometry for geometry, _ in cells])
-            places = [(weighting, ratio) for weighting in WEIGHTINGS for ratio in plan.ratios]
-            for (weighting, ratio), samples in zip(places, zip(*(points for _, points in cells))):
+            for (weighting, ratio), samples in zip(plan.places(), zip(*(points for _, points in cells))):
                 deviation = means_of(samples, np.std, ddof=1)
                 error = Row({key: value / math.sqrt(len(samples)) for key, value in deviation.items()})
                 self.points.append(Row(family=family, weighting=weighting, ratio=ratio, mean=means_of(samples),
                                        error=error, deviation=deviation))
-        progress.end()
+        # The two least disordered lattices; the isotropic family with the widest scatter of branch lengths.
+        self.small, self.large = [family for family in plan.families if family.lattice and family.random][:2]
+        self.widest = max((family for family in plan.families if family.isotropic),
+                          key=lambda family: family.geometry.branches)
+        self.middle = plan.ratios[len(plan.ratios) // 2]
 
     def of(self, weighting, family=None, ratio=None, anisotropic=False):
         """The points of a weighting on isotropic random families, or on all random ones, or on one family."""
@@ -163,25 +161,13 @@ class Result:
 
     def growth(self, weighting, number):
         """The exponent p of |error| ~ disorder^p between the two least disordered lattices, at the least kT/kN."""
-        small, large = self.lattices()
-        a, b = (self.of(weighting, family)[0].mean[number] for family in (small, large))
-        return math.log(b / a) / math.log(large.disorder / small.disorder)
-
-    def lattices(self):
-        return [family for family in self.plan.families if family.lattice and family.random][:2]
-
-    def widest(self):
-        """The isotropic family with the widest scatter of branch lengths."""
-        isotropic = [family for family in self.plan.families if family.isotropic]
-        return max(isotropic, key=lambda family: family.geometry.branches)
+        a, b = (self.of(weighting, family)[0].mean[number] for family in (self.small, self.large))
+        return math.log(b / a) / math.log(self.large.disorder / self.small.disorder)
 
     def change_of_G(self, weighting, first, second):
-        """On that family, from one answer to another, at the middle kT/kN."""
-        mean = self.of(weighting, self.widest(), self.middle())[0].mean
+        """From one answer to another, at the middle kT/kN."""
+        mean = self.of(weighting, self.widest, self.middle)[0].mean
         return percent(mean["G_" + second] / mean["G_" + first] - 1)
-
-    def middle(self):
-        return self.plan.ratios[len(self.plan.ratios) // 2]
 
     def summed_anisotropy(self, weighting):
         return sum(p.mean.anisotropy for p in self.of(weighting, self.plan.families[-1]))
@@ -196,11 +182,6 @@ class Result:
     def error_at(self, weighting, modulus, ratio):
         error = rms(self.of(weighting, ratio=ratio), modulus + "_error")
         return f"{error:.4f}" if modulus == "nu" else f"{100 * error:.2f}"
-
-    def isotropic(self, weighting, ratio, lattice):
-        """The points of one kT/kN on isotropic lattices, or on other isotropic families."""
-        return [p for p in self.points if p.weighting == weighting and p.ratio == ratio and p.family.isotropic and
-                p.family.lattice == lattice]
 
     def beyond(self):
         """Points at which the correction (11) changes nu by more than two standard errors."""
@@ -263,15 +244,6 @@ def errors_by(measure, points):
             f"{100 * measure(points, 'K_error'):.2g} % in K")
 
 
-LOOKS = [{"colour": colour, "marker": marker} for colour, marker in zip(
-    ("yellow", "sky_blue", "green", "orange", "purple", "blue", "vermilion", "black"),
-    ("circle", "square", "triangle", "diamond") * 2)]
-
-
-def look_of(k):
-    return {**LOOKS[(k + 1) % 8], "marker": LOOKS[k % 4]["marker"]}
-
-
 def reproduce(options):
     r = Result(Plan(options.quick))
     rows = r.table()
@@ -282,8 +254,7 @@ def reproduce(options):
             values = [0.0, *(y for series in plot.series for y in series.y)]
             plot.y.high = max(values) + 0.35 * (max(values) - min(values))
     numbers = {"discs": r.plan.discs, "samples": r.plan.samples, "refusals": r.refusals, "points": rows}
-    return Output(page.text("report"), numbers, {"mean_field": {key: [row[key] for row in rows] for key in rows[0]}},
-                  plots)
+    return Output(page.text("report"), numbers, {"mean_field": columns_of(rows)}, plots)
 
 
 if __name__ == "__main__":

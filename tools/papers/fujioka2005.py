@@ -13,8 +13,8 @@ import time
 
 import numpy as np
 
-from common import Output, Progress, eq, main, published
-from shown import Page, Row
+from common import Output, Progress, columns_of, eq, main, published
+from shown import Page, Row, told_of
 
 PRINTED = {name: row.value for name, row in published("fujioka2005").items()}
 SOURCE_OF_X = published("fujioka2005")["law_alone_X"].source
@@ -28,6 +28,7 @@ SOFT_HERTZ = 1.5  # stiffness with which T survives the fast impacts, in place o
 LETTERS = {"linear_dashpot": "C", "hertz_dashpot": "T", "five_case_map": "F", "energy_map": "P", "exact_flow": "X"}
 TABLE2_STEPS = (1e-3, 1e-4, 1e-5)  # s
 BALLS, DURATION = 16, 5.0  # of Table 1; s
+LOOKS = told_of("fujioka2005")["looks"]  # of each law in all figures
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,8 +48,11 @@ class Variant:
         """s by which velocities are behind places: half a step in semi-implicit Euler."""
         return 0.5 * STEP if self.of_paper else 0
 
-    def row(self, **found):
-        return Row(law=self.law, letter=LETTERS[self.law], a=self.a, variant=self, **found)
+    def row(self, aside=(), **found):
+        """Results; `aside`: those that do not go into result.json."""
+        made = Row(law=self.law, letter=LETTERS[self.law], a=self.a, label=self.label, **found)
+        vars(made).update(aside, variant=self)
+        return made
 
     def alone(self):
         return eq._core.Law(self.law, self.a, E)
@@ -192,8 +196,8 @@ def watch_impacts(variant, fast):
         if fast:
             y, v = leap(variant, y, v)
             run = start()
-    return variant.row(energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest, ran_away=ran_away,
-                       paths=paths)
+    return variant.row({"paths": paths}, energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest,
+                       ran_away=ran_away)
 
 
 def impacts(fast):
@@ -285,18 +289,14 @@ def order(points, key):
     return float(((u - u.mean()) * v).sum() / ((u - u.mean()) ** 2).sum())
 
 
-def curve_of(variant, points, label=""):
-    """Points of a figure; a label where it is not the law alone that makes them."""
-    return variant.row(label=label or variant.label, special=bool(label), points=points)
-
-
 def slide_stacked(quick, progress):
     """1e-3 to 1e-6 s, four per decade; quick: to 1e-5 s, two per decade."""
     steps, curves = [10 ** (-k / 4) for k in range(12, 21 if quick else 25, 2 if quick else 1)], []
     for variant in variants(STIFF):
-        curves.append(curve_of(variant, [slide(variant, step) for step in steps]))
+        curves.append(variant.row({"points": [slide(variant, step) for step in steps]}))
         progress.update(0.2 + 0.3 * len(curves) / 6)
-    curves.append(curve_of(variants(STIFF)[0], [slide_without_lag(step) for step in steps], "C, no lag"))
+    without_lag = dataclasses.replace(variants(STIFF)[0], label="C, no lag")
+    curves.append(without_lag.row({"points": [slide_without_lag(step) for step in steps]}))
     for one in curves:
         one.update(speed_order=order(one.points, "speed_error"), parting_order=order(one.points, "parting_error"))
     return curves
@@ -330,11 +330,10 @@ def follow_ball(variant, a, step):
 
 def cost_of_ball(quick, progress):
     steps, curves = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, *([] if quick else [5e-5, 2e-5, 1e-5])], []
-    for variant in variants(0.0):
-        one_step = variant.a == 0
-        places = [(10.0 ** k, 0.1) for k in range(4, 13)] if one_step else [(variant.a, step) for step in steps]
-        curves.append(curve_of(variant, [follow_ball(variant, a, step) for a, step in places],
-                               "X, step 0.1 s" if one_step else ""))
+    one_step = Variant("exact_flow", 0.0, "X, step 0.1 s")
+    for variant in (*variants(STIFF)[:-1], one_step):
+        places = [(10.0 ** k, 0.1) for k in range(4, 13)] if variant == one_step else [(variant.a, at) for at in steps]
+        curves.append(variant.row({"points": [follow_ball(variant, a, step) for a, step in places]}))
         progress.update(0.03 * len(curves))
     return curves
 
@@ -380,8 +379,8 @@ def settle(variant, balls, duration, e):
             overlaps += 0.5 * D - run.sphere(0)[1]
             touched += sum(j < 0 for _, j in run.contacts())
     steps = last - late
-    return variant.row(balls=balls, times=times, energies=energies, speed_of_g_dt=math.sqrt(speeds / steps) / (G * STEP),
-                       share_of_steps_in_contact=touched / steps, energy_above_rest=energies[-1],
+    return variant.row({"times": times, "energies": energies}, balls=balls, energy_above_rest=energies[-1],
+                       speed_of_g_dt=math.sqrt(speeds / steps) / (G * STEP), share_of_steps_in_contact=touched / steps,
                        overlap_of_static=overlaps / steps / overlap(0, weight))
 
 
@@ -406,7 +405,7 @@ def compute(quick):
 # ---- what the report says
 
 def of(rows, label):
-    return next(row for row in rows if row.variant.label == label)
+    return next(row for row in rows if row.label == label)
 
 
 def worst(ratios, first=1, last=20):
@@ -453,7 +452,7 @@ def verdicts(r):
     """What the numbers say of each conclusion of the paper."""
     def worst_of(key, first):
         return Row({letter: worst(of(r.slow_impacts, letter)[key], first, 10) for letter in "CTFP"})
-    ten, late, flights = worst_of("energy_ratios", 1), worst_of("energy_ratios", 6), worst_of("energy_ratios_of_flights", 1)
+    ten, late = worst_of("energy_ratios", 1), worst_of("energy_ratios", 6)
     fast = {label: of(r.fast_impacts, label) for label in ("C", "T", "T soft", "F", "P")}
     worst_fast = Row({letter: worst(fast[letter].energy_ratios) for letter in "FP"})
     c, p = of(r.table1, "C"), of(r.table1, "P")
@@ -470,24 +469,18 @@ def verdicts(r):
              "cheap": p.law_alone_nanoseconds < 1.1 * c.law_alone_nanoseconds,
              "shorter": p.run_seconds < c.run_seconds and p.evaluations < c.evaluations,
              "accurate": max(last.P, last.F) < min(last.C, last.T)}
-    return Row(v=Row({name: "holds" if one else "does not hold here" for name, one in holds.items()}), ten=ten, late=late,
-               of_flights=flights, fast=Row({label.replace(" ", "_"): law for label, law in fast.items()}),
-               worst_fast=worst_fast, passages=passages(fast["P"]), agree=agree, last=last, better=better, apart=apart,
+    said = {name: "holds" if one else "does not hold here" for name, one in holds.items()}
+    return Row(v=Row(said), ten=ten, late=late, of_flights=worst_of("energy_ratios_of_flights", 1),
+               fast=Row({label.replace(" ", "_"): law for label, law in fast.items()}), worst_fast=worst_fast,
+               passages=passages(fast["P"]), agree=agree, last=last, better=better, apart=apart,
                f_better=sum(f.speed_error < p.speed_error for f, p in zip(points["F"], points["P"])))
 
 
-# ---- figures: each law has one look in all of them
-
-LOOKS = {label: {"colour": colour, "marker": marker, "filled": filled} for label, colour, marker, filled in (
-    ("C", "orange", "square", True), ("T", "green", "triangle", True), ("T soft", "purple", "triangle", False),
-    ("F", "sky_blue", "diamond", False), ("P", "blue", "circle", True), ("X", "vermilion", "circle", False),
-    ("X stiff", "black", "circle", True), ("C, no lag", "purple", "square", False),
-    ("X, step 0.1 s", "black", "circle", True))}
-
+# ---- figures
 
 def name_of(law):
     special = {"C, no lag": "C, no lag", "X, step 0.1 s": "X, step 0.1 s, a = 1e4 to 1e12"}
-    return special.get(law.get("label"), f"{law.letter} (a = {law.a:g})")
+    return special.get(law.label, f"{law.letter} (a = {law.a:g})")
 
 
 def f_over_p(laws):
@@ -513,19 +506,12 @@ def reproduce(options):
         "c": c, "f": f, "p": p, "step": c.time_step,
         "at_rest_from": math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)})
 
-    def without(rows, *left_out):
-        return [{key: value for key, value in row.items() if key not in ("variant", *left_out)} for row in rows]
-
-    def curves(rows):
-        return [{**bare, **{key: [p[key] for p in row.points] for key in row.points[0] if key != "a"}}
-                for row, bare in zip(rows, without(rows, "points", "special"))]
-    numbers = {"quick": options.quick, "table1": without(r.table1), "table2": without(r.table2),
-               "exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING, "stacked": curves(r.stacked),
-               "bouncing_ball": curves(r.ball),
-               "lossless": [{"law": law.law, "letter": law.letter, "a": law.a, "energy_change": changes(law)[-1]}
-                            for law in r.lossless],
-               **{key: without(r[key], "paths") for key in ("slow_impacts", "fast_impacts")},
-               **{key: without(r[key], "times", "energies") for key in ("rest", "column")}}
+    def with_points(rows):
+        return [{**row, **{key: value for key, value in columns_of(row.points).items() if key != "a"}} for row in rows]
+    numbers = {"quick": options.quick, "exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING,
+               **{key: r[key] for key in ("table1", "table2", "slow_impacts", "fast_impacts", "rest", "column")},
+               "stacked": with_points(r.stacked), "bouncing_ball": with_points(r.ball),
+               "lossless": [{**law, "energy_change": changes(law)[-1]} for law in r.lossless]}
     of_table1 = {"law": "law", "letter": "letter", "a": "a", "time_step": "step_s", "evaluations": "evaluations",
                  "evaluations_gravity_first": "evaluations_gravity_first", "run_seconds": "run_s",
                  "law_alone_nanoseconds": "law_alone_ns"}
