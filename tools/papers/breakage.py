@@ -18,7 +18,7 @@ from shown import Page, Row
 
 # The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
 TEST_OVER, SCATTERED_TEST_OVER = 0.9, 0.7
-# Lengths of notches: up to this share of the width; exponents of a alone are those of notches from so many distances on.
+# Notches: up to this share of the width; exponents of a alone are those of notches from so many distances on.
 LARGEST_SHARE, LEAST_LENGTH = 0.6, 12
 RATIOS, MODULI = (0.0, 0.4), (2, 4, 8)  # kT/kN of notched plates; Weibull moduli
 LOOKS = [{"colour": "blue", "marker": "circle"}, {"colour": "vermilion", "marker": "square"},
@@ -58,8 +58,8 @@ def griffith_toughness(ratio):
 
 
 def toughness_within(radius, ratio):
-    """K sqrt(d)/f_t of the infinite lattice: K of the field of a crack around its tip (Williams 1957) at which the first
-    contact reaches f_t, of the lattice within a circle about the tip whose rim is moved by that field."""
+    """K sqrt(d)/f_t of the infinite lattice: K of the field of a crack around its tip (Williams 1957) at which the
+    first contact reaches f_t, of the lattice within a circle about the tip whose rim is moved by that field."""
     half_row, reach, rim = math.sqrt(3) / 4, int(radius) + 2, 2.5  # the rim has every contact of the discs inside
     rows, columns = np.meshgrid(np.arange(-2 * reach, 2 * reach + 1), np.arange(-reach, reach + 1), indexing="ij")
     places = np.stack([columns + np.where(rows % 2 == 0, 0, 0.5), half_row * (2 * rows + 1)], axis=-1).reshape(-1, 2)
@@ -118,9 +118,9 @@ def fit_of(plates, columns, ratio, lattice):
 
 def notches(quick):
     sizes, cuts = [21, 41] if quick else [41, 81, 121], [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96]
-    plates = samples_of("notched plates:", notched_plate, [
-        (columns, ratio, cut) for ratio in RATIOS for columns in sizes for cut in cuts if cut <= LARGEST_SHARE * columns])
-    fits, near = [], 20 if quick else 40
+    places = [(columns, ratio, cut) for ratio in RATIOS for columns in sizes for cut in cuts
+              if cut <= LARGEST_SHARE * columns]
+    plates, fits, near = samples_of("notched plates:", notched_plate, places), [], 20 if quick else 40
     for ratio in RATIOS:
         # The field is that of a continuum at the rim: what it lacks there falls with the radius.
         lattice = 2 * toughness_within(2 * near, ratio) - toughness_within(near, ratio)
@@ -193,9 +193,10 @@ def reproduce(options):
     page = Page("breakage", globals(), locals(), {"seconds": np.diff(times), "by_modulus": [
         (m, [one for one in samples if one.modulus == m]) for m in MODULI]})
     text = page.text("page")
-    return Output(text, {"quick": quick, "fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}},
-                  {"notches_values": columns_of(plates), "weibull_chains_values": columns_of(chains),
-                   "weibull_plates_values": columns_of(samples)}, page.figures(), {"breakage.md": text})
+    numbers = {"quick": quick, "fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}}
+    tables = {"notches": plates, "weibull_chains": chains, "weibull_plates": samples}
+    return Output(text, numbers, {f"{name}_values": columns_of(rows) for name, rows in tables.items()}, page.figures(),
+                  {"breakage.md": text})
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ holds no ':' and no '!' outside brackets.
 [tables.NAME]   head and row, whose cells are separated by " | ": a row for each item `of` a list. The keys of an item
                 are names in it, `one` is the item itself. markdown = true: as one of Markdown. {table('NAME')} is its
                 place in a text.
-[figures.NAME]  title, axes x and y (label, low, high, logarithmic), lines = [[x, label, colour]], and series. Their x, y
-                and error (of bars to either side) are expressions: numbers for each item `of` a list, or lists where
+[figures.NAME]  title, axes x and y (label, low, high, logarithmic), lines = [[x, label, colour]], and series. Their x,
+                y and error (of bars to either side) are expressions: numbers for each item `of` a list, or lists where
                 there is no `of`; `where` chooses items, look is an expression of further members of Series.
 each = ["names", list] makes a figure (`name` is the text of its name) or a series (or all its `parts`) for each item.
 """

@@ -130,7 +130,8 @@ def read_run(path, fill):
 
 def compute(options):
     """The runs of the plan, those that are in --out already taken from there."""
-    wanted = [(row, fill, options.out and options.out / "runs" / f"{row.run}.json") for row, fill in plan(options.quick)]
+    kept = options.out and options.out / "runs"
+    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in plan(options.quick)]
     runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
     todo = [one for one in wanted if one[0].run not in runs]
     runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
@@ -273,7 +274,7 @@ def statement(page, runs, told, stored):
 
 
 def best_shakings(runs, shape):
-    """Section 9.2: the shaking after which the void ratio is smallest, and those that the scatter does not tell from it."""
+    """Section 9.2: the shaking after which the void ratio is smallest, and those that scatter does not tell from it."""
     found = [(run.title, runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
              for run in runs.mapped(shape)]
     found = sorted((one for one in found if one[1]), key=lambda one: len(one[1]))
@@ -324,12 +325,13 @@ def histories(runs, fill):
     found = []
     for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and len(run.falling)):
         shape, names = run.shape, dataclasses.replace(fill, shape=run.shape).followed()[1]
-        for stage, title, rows, box, unit, scale in (("falling", "falling", run.falling, "", "m", 1),
-                                                     ("shaken", "400 gal, 10 Hz", run.shaking, " in the box", "mm", 1e3)):
+        for stage, title, rows, box, unit, scale in (
+                ("falling", "falling", run.falling, "", "m", 1),
+                ("shaken", "400 gal, 10 Hz", run.shaking, " in the box", "mm", 1e3)):
             for what, label in (("x", f"displacement along x{box}, {unit}"), ("y", f"displacement along y, {unit}"),
                                 ("angle", "rotation, rad")):
-                found.append((f"{shape}_{stage}_{what}", f"{words(shape)}, {title}", "time, s", label, rows, "time", what,
-                              scale, names))
+                found.append((f"{shape}_{stage}_{what}", f"{words(shape)}, {title}", "time, s", label, rows, "time",
+                              what, scale, names))
         found.append((f"{shape}_paths", f"Paths, {words(shape)}, 400 gal, 10 Hz", "displacement along x in the box, mm",
                       "displacement along y, mm", run.shaking, "x", "y", 1e3, names))
     return found
@@ -354,16 +356,17 @@ def draw_sheet(pictures, title):
         from matplotlib.collections import EllipseCollection
         columns = len(pictures) if len(pictures) < 5 else 3
         rows = -(-len(pictures) // columns)
-        figure, axes = pyplot.subplots(rows, columns, squeeze=False, layout="constrained", figsize=(4.2 * columns, 3.6 * rows))
+        figure, axes = pyplot.subplots(rows, columns, squeeze=False, layout="constrained",
+                                       figsize=(4.2 * columns, 3.6 * rows))
         figure.suptitle(title)
         for one in axes.flat:
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
-            one.add_collection(EllipseCollection(2 * half_axes[:, 0], 2 * half_axes[:, 1], np.degrees(angles), units="xy",
-                                                 offsets=centres, transOffset=one.transData, array=layers, cmap="viridis",
-                                                 edgecolors="black", linewidths=0.2))
+            one.add_collection(EllipseCollection(
+                *(2 * half_axes.T), np.degrees(angles), units="xy", offsets=centres, transOffset=one.transData,
+                array=layers, cmap="viridis", edgecolors="black", linewidths=0.2))
             low, high = centres.min(axis=0) - half_axes.max(), centres.max(axis=0) + half_axes.max()
-            one.plot([0, 0], [0, high[1]], "k", [0, high[0]], [0, 0], "k", [high[0]] * 2, [0, high[1]], "k", linewidth=1)
+            one.plot([0, 0, high[0], high[0]], [high[1], 0, 0, high[1]], "k", linewidth=1)
             one.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=label)
         figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
         pyplot.close(figure)
@@ -378,7 +381,8 @@ def sheets(runs):
         own.sort(key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
         for run in own:
             if run.title == "400 gal, 10 Hz":
-                found[f"{shape}_pictures"] = draw_sheet(list(zip(PICTURES, run.pictures)), f"{words(shape)}, {run.title}")
+                found[f"{shape}_pictures"] = draw_sheet(list(zip(PICTURES, run.pictures)),
+                                                        f"{words(shape)}, {run.title}")
         if own:
             found[f"{shape}_shakings"] = draw_sheet([(run.title, run.pictures[2]) for run in own],
                                                     f"Largest displacement of the centre of mass: {words(shape)}")
@@ -392,14 +396,16 @@ def reproduce(options):
     missing = [] if options.quick else [run for run in old if run.run not in by_name]
     runs = Runs(new if options.quick else [by_name.get(run.run, run) for run in old])
     page = Page("sukegawa2010", globals(), vars(options), {
-        "runs": runs, "fill": fill, "width": fill.width, "missing": missing, "capped": runs.values(WHOLE[0], variant="printed_cap"),
-        "radius": 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]), "before": runs.values(WHOLE[0]),
+        "runs": runs, "fill": fill, "width": fill.width, "missing": missing, "before": runs.values(WHOLE[0]),
+        "capped": runs.values(WHOLE[0], variant="printed_cap"),
+        "radius": 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
         "depth": runs.of_seeds("surface_height_before_m", "discs")[1.0]})
-    text = page.text("report", statements="".join(statement(page, runs, told, options.stored) for told in TOLD["statements"]),
-                     resonance=resonance_text(page, runs, fill.width),
-                     best="".join(best_shakings(runs, shape) for shape in ("discs", "bonded_pairs")))
+    text = page.text("report", resonance=resonance_text(page, runs, fill.width), statements="".join(
+        statement(page, runs, told, options.stored) for told in TOLD["statements"]), best="".join(
+            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs")))
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(text, {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)}, {**page.figures(), **sheets(runs)})
+    return Output(text, {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
+                  {**page.figures(), **sheets(runs)})
 
 
 if __name__ == "__main__":

@@ -117,7 +117,8 @@ class Bodies:
     def tables(self):
         """Of the case file."""
         (kN, kT), grains = self.fill.springs(), []
-        for place, angle, axes, r in zip(*(array.tolist() for array in (self.places, self.angles, self.half_axes, self.radii))):
+        arrays = (self.places, self.angles, self.half_axes, self.radii)
+        for place, angle, axes, r in zip(*(array.tolist() for array in arrays)):
             body = {"ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}}
             grains.append({"position": place, "angle": angle, **body.get(self.fill.shape, {"radius": r})})
         walls = [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [0.0, 0.0], [1.0, 0.0]),
@@ -130,8 +131,8 @@ class Bodies:
             tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
         if self.fill.shape == "bonded_pairs":
             dashpots = 0.5 * self.mass[::2] / self.fill.bond_step  # a tangential force also turns the disc: a third
-            tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": float(c), "tangential_dashpot": float(c) / 3}
-                              for k, c in enumerate(dashpots)]
+            tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": c, "tangential_dashpot": c / 3}
+                              for k, c in enumerate(dashpots.tolist())]
         return tables
 
 
@@ -144,7 +145,8 @@ class Moment:
         pairs = cKDTree(places).query_pairs(2 * bodies.reach.max() + bodies.diameter, output_type="ndarray")
         gaps = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) - bodies.reach[pairs].sum(axis=1)
         i, j = pairs[gaps <= bodies.diameter].T
-        _, sets = connected_components(coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places))), directed=False)
+        near = coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places)))
+        _, sets = connected_components(near, directed=False)
         self.heap = sets == np.argmax(np.bincount(sets))
         x, heights = self.surface(max(2, int(width / (4 * NUMBERS["largest radius"]))))
         self.height = heights.mean()
@@ -152,6 +154,7 @@ class Moment:
         self.roughness = math.sqrt(((heights - level - self.slope * x)**2).sum() / len(x))
         self.whole = width * self.height / bodies.area[self.heap].sum() - 1
         self.centre = (bodies.mass[:, None] * self.places).sum(axis=0) / bodies.mass.sum()
+        self.centre_height = self.centre[1]
         self.inner = self.inner_void_ratio() if inner else math.nan
 
     def parts(self, chosen):
@@ -236,7 +239,8 @@ class Stage:
         squares = (way[:, 0]**2).sum()
         names = ("path_m", "path_along_x_m", "first_path_m", "turned_rad")
         return {**dict(zip(names, self.ways.mean(axis=1))), "displaced_x_m": math.sqrt(squares / len(start)),
-                "inward_m": (-np.sign(middle) * way[:, 0])[outer].mean() if outer.any() else 0.0, "sunk_m": -way[:, 1].mean(),
+                "inward_m": (-np.sign(middle) * way[:, 0])[outer].mean() if outer.any() else 0.0,
+                "sunk_m": -way[:, 1].mean(),
                 "layered": (sums**2 / members).sum() / squares if squares > 0 else 0.0}
 
 
@@ -287,20 +291,23 @@ def run_box(arguments):
     contacts, energy = run.contacts, run.energy
     i, j = contacts["bodies"].T
     bonded = (i // 2 == j // 2) & (j >= 0) if fill.shape == "bonded_pairs" else np.zeros(len(i), bool)
-    numbers = {"void_ratio_before": filled.inner, "void_ratio": after.inner, "whole_void_ratio_before": filled.whole,
-               "whole_void_ratio": after.whole, "surface_height_before_m": filled.height, "surface_height_m": after.height,
-               "roughness_before_m": filled.roughness, "roughness_m": after.roughness,
-               "centre_height_before_m": filled.centre[1], "centre_height_m": after.centre[1], "largest_slope": shaking.slope,
-               "swing_m": swing_of(shaking.rows, frequency, cycles), "thrown": int(shaking.thrown.sum()),
-               "coordination": (1 + (j >= 0))[~bonded].sum() / (len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)),
-               **shaking.moved(), "bond_creep": math.nan, "bond_roll_rad": math.nan,
-               "largest_overlap": contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0] / bodies.radii.min(),
-               "time_step_s": step, "steps": run.step - round(fill.fall / step), "time_s": run.time - fill.fall,
-               "energy_error": energy["error"] / abs(energy["potential"]), "seconds": time.monotonic() - begun}
+    numbers = {name.format(when): getattr(moment_, member) for name, member in (
+        ("void_ratio{}", "inner"), ("whole_void_ratio{}", "whole"), ("surface_height{}_m", "height"),
+        ("roughness{}_m", "roughness"), ("centre_height{}_m", "centre_height"))
+               for when, moment_ in (("_before", filled), ("", after))}
+    grains = len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)
+    overlap = contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0]
+    numbers.update(
+        largest_slope=shaking.slope, swing_m=swing_of(shaking.rows, frequency, cycles), thrown=shaking.thrown.sum(),
+        coordination=(1 + (j >= 0))[~bonded].sum() / grains, **shaking.moved(), bond_creep=math.nan,
+        bond_roll_rad=math.nan, largest_overlap=overlap / bodies.radii.min(), time_step_s=step,
+        steps=run.step - round(fill.fall / step), time_s=run.time - fill.fall,
+        energy_error=energy["error"] / abs(energy["potential"]), seconds=time.monotonic() - begun)
     if fill.shape == "bonded_pairs":
         apart = [np.linalg.norm(m.places[1::2] - m.places[::2], axis=1) for m in (falling.first, after)]
         rolled = [m.angles[1::2] - m.angles[::2] for m in (falling.first, after)]
         numbers["bond_creep"] = np.mean(np.abs(apart[1] - apart[0]) / (2 * bodies.radii[::2]))
         numbers["bond_roll_rad"] = np.mean(np.abs(rolled[1] - rolled[0]))
-    drawn = [(*one.parts(np.ones(len(one.heap), bool)), np.tile(bodies.layers, len(bodies.offsets))) for one in pictures]
+    layers = np.tile(bodies.layers, len(bodies.offsets))
+    drawn = [(*one.parts(np.ones(len(one.heap), bool)), layers) for one in pictures]
     return {key: float(value) for key, value in numbers.items()}, falling.moved(), falling.rows, shaking.rows, drawn

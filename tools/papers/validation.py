@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line, machine, main,
-                    mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
+from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line, machine,
+                    main, mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
 from shown import Page, Row
 from validation_findings import NUMBERS, WHY, Findings, columns, step_error, value_and_error
 from validation_spheres import impacts, lammps
@@ -49,9 +49,10 @@ def share_in_removed(cell, kN):
     scale = np.array([1, 1, math.sqrt(2)])
     softest = scale * np.linalg.eigh(np.outer(scale, scale) * np.array(result.stiffness))[1][:, 0]
     (i, j), branch, stretch = cell.contacts.T, branches(cell), 0
-    for amount, name, strain in zip(softest, ("xx", "yy", "xy"), np.array([[1, 0, 0, 0], [0, 0, 0, 1], [0, .5, .5, 0]])):
+    strains = {"xx": [[1, 0], [0, 0]], "yy": [[0, 0], [0, 1]], "xy": [[0, 0.5], [0.5, 0]]}
+    for amount, (name, strain) in zip(softest, strains.items()):
         moved = result.fluctuations[name].displacements
-        stretch += amount * ((branch @ strain.reshape(2, 2) + moved[j] - moved[i]) * cell.normals).sum(axis=1)
+        stretch += amount * ((branch @ np.array(strain) + moved[j] - moved[i]) * cell.normals).sum(axis=1)
     energy = kN * stretch**2
     return energy[kN < 1].sum() / energy.sum()
 
@@ -59,7 +60,8 @@ def share_in_removed(cell, kN):
 def onset(arguments):
     """The share of bonds or sites at which a cell becomes rigid, as they come back in a random order."""
     bonds, size, seed = arguments
-    cell = eq.delaunay(discs=size * size, points="perturbed_hexagonal", disorder=0.1, seed=seed, periodic=True, radius=0.5)
+    cell = eq.delaunay(discs=size * size, points="perturbed_hexagonal", disorder=0.1, seed=seed, periodic=True,
+                       radius=0.5)
     order = random_order(len(cell.contacts) if bonds else len(cell), seed ^ 0x5BD1E995)
     floppy, rigid = int(0.5 * len(order)), int(0.9 * len(order))
     while rigid - floppy > 1:
@@ -86,7 +88,8 @@ def dilution(bonds, quick):
         mean = mean_of(shares)
         rows.append(Row(side_discs=side, samples=count, mean_onset=mean.mean, standard_error=mean.standard_error,
                         standard_deviation=mean.standard_deviation, shares=shares))
-    findings = Findings(name + "_dilution", exponent=exponent, onsets=rows, name=name, what=what, threshold=NUMBERS[key])
+    findings = Findings(name + "_dilution", exponent=exponent, onsets=rows, name=name, what=what,
+                        threshold=NUMBERS[key])
     fit = fit_line([row.side_discs**(-1 / exponent) for row in rows], *zip(
         *((row.mean_onset, row.standard_error) for row in rows)))
     findings.compare("threshold, mean onset extrapolated to infinite size", key, (fit.intercept, fit.intercept_error),
@@ -186,7 +189,8 @@ def jam(arguments):
     """Half of the discs 1.4 times as large as the others, grown in a periodic square until they jam; None: refused."""
     discs, seed = arguments
     radii = np.where(np.arange(discs) < discs // 2, 0.5, 0.7)
-    side = math.sqrt(sum(math.pi * r * r for r in radii) / NUMBERS["jamming fraction"].value)  # a start: radii are scaled
+    # A start: the radii are scaled.
+    side = math.sqrt(sum(math.pi * r * r for r in radii) / NUMBERS["jamming fraction"].value)
     try:
         packing = eq.pack_discs(radii, (side, side), overlap=JAMMING_OVERLAP, seed=seed)
     except eq.ComputationFailed:
@@ -204,15 +208,16 @@ def mean_columns(names, samples):
 
 def extrapolated(rows, name, x):
     """The intercept of a line through the means, with its error."""
-    fit = fit_line([x(row) for row in rows], [row[name] for row in rows], [row[name + "_standard_error"] for row in rows])
+    fit = fit_line(*zip(*((x(row), row[name], row[name + "_standard_error"]) for row in rows)))
     return fit, (fit.intercept, fit.intercept_error)
 
 
 def jamming(quick):
     # Excess of z at that overlap: 3.6 (phi - phi_J)^(1/2) (O'Hern et al. 2003), phi - phi_J about the overlap.
     nu, excess = NUMBERS["jamming exponent"].value, NUMBERS["excess coordination"].value * math.sqrt(JAMMING_OVERLAP)
+    sizes = [(64, 60), (128, 40), (256, 16)] if quick else [(64, 400), (128, 300), (256, 200), (512, 80), (1024, 30)]
     rows, refused = [], 0
-    for n, count in [(64, 60), (128, 40), (256, 16)] if quick else [(64, 400), (128, 300), (256, 200), (512, 80), (1024, 30)]:
+    for n, count in sizes:
         samples = seeds_of(f"jamming {n} discs:", jam, count, n)
         rows.append(Row(discs=n, samples=count, **mean_columns(JAMMED, [one for one in samples if one])))
         refused += samples.count(None)
@@ -226,11 +231,11 @@ def jamming(quick):
                          (row.contacts_beyond_isostatic, row.contacts_beyond_isostatic_standard_error),
                          allowance=0.5 * row.discs * excess)
     least, most = NUMBERS["least jamming fraction"], NUMBERS["largest jamming fraction"].value
-    findings.trend(f"packings with 2 N' - 1 contacts jam between {least.value:g} and {most:g}, by how fast they are made",
-                   least.source, least.value < fraction[0] < most,
+    findings.trend(f"packings with 2 N' - 1 contacts jam between {least.value:g} and {most:g}, by how fast they are "
+                   "made", least.source, least.value < fraction[0] < most,
                    f"{fraction[0]:.4f} ± {fraction[1]:.4f} at infinite size")
     if refused:
-        findings.notes.append(f"`pack` found no state with the wanted overlap for {counted(refused, 'cell')}, left out.")
+        findings.notes = [f"`pack` found no state with the wanted overlap for {counted(refused, 'cell')}, left out."]
     findings.tables["jamming"] = rows
     return findings
 
@@ -249,7 +254,8 @@ def friction(quick):
     discs, count, soft, decades = (150, 2, 1e7, 1) if quick else (500, 4, 1e7, 2)
 
     def settle(mu, stiffness, damping=1.0):
-        found = seeds_of(f"settling with friction {mu:g}, kN = {1e-6 * stiffness:g} MPa:", settled, count, mu, stiffness, discs, damping)
+        found = seeds_of(f"settling with friction {mu:g}, kN = {1e-6 * stiffness:g} MPa:", settled, count, mu,
+                         stiffness, discs, damping)
         z, depth = (mean_of(own) for own in zip(*found))
         return Row(friction=mu, kN_Pa=stiffness, z_without_rattlers=z.mean, standard_error=z.standard_error,
                    root_of_largest_overlap=depth.mean)
@@ -281,8 +287,8 @@ def friction(quick):
 
 def half_plane(kT):
     """E and the displacement under a unit force into y < 0 at the origin, in plane stress, up to a rigid translation
-    along y (Timoshenko & Goodier, article 36), of the sheet with kN = 1: K = sqrt3/2 kN, G = sqrt3/4 (kN + kT) (Abe 1996,
-    eq. 34)."""
+    along y (Timoshenko & Goodier, article 36), of the sheet with kN = 1: K = sqrt3/2 kN, G = sqrt3/4 (kN + kT) (Abe
+    1996, eq. 34)."""
     K, G = math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + kT)
     young, nu = 4 * K * G / (K + G), (K - G) / (K + G)
 
@@ -343,7 +349,8 @@ def point_load(quick):
         findings.formula(f"{name}: stress below the load over 2 P/(pi r), at {last.half_way[0]:.0f} diameters", 1,
                          "Flamant 1892", step_error(before.half_way[1], last.half_way[1]), WHY["lattice"])
         findings.formula(f"{name}: settlement at {last.shallow:.0f} less that at {last.deep:.0f} diameters over "
-                         "2 P/(pi E) ln(z2/z1)", 1, "Flamant 1892", step_error(before.settled, last.settled), WHY["lattice"])
+                         "2 P/(pi E) ln(z2/z1)", 1, "Flamant 1892", step_error(before.settled, last.settled),
+                         WHY["lattice"])
         for what in ("stress", "displacement"):
             errors = [block[what + "_difference"] for block in blocks]
             order = [math.log(a / b) / math.log(y / x) for a, b, x, y in zip(errors, errors[1:], depths, depths[1:])]
@@ -445,7 +452,8 @@ def reproduce(options):
         one.seconds = time.monotonic() - begun
         told = page.told[name]
         drawn = page.figures(told.get("figures", ()), **one.values, **one.tables)
-        one.heading, one.text, one.pictures = told["heading"], page.fill(told["text"].strip(), one.values), drawn.items()
+        one.heading, one.pictures = told["heading"], drawn.items()
+        one.text = page.fill(told["text"].strip(), one.values)
         one.notes = told.get("notes", []) + one.notes
         sections.append(one)
         plots.update(drawn)

@@ -32,8 +32,9 @@ class Scene:
 
     def simulation(self, step, steps):
         walls = {"wall": self.walls} if self.walls else {}
-        return eq.simulation(grains={"body": "sphere"}, grain=self.spheres, collisions={"law": self.law, **self.contact},
-                             run={"duration": steps * step, "time_step": step, "integrator": "velocity_verlet"}, **walls)
+        return eq.simulation(
+            grains={"body": "sphere"}, grain=self.spheres, collisions={"law": self.law, **self.contact}, **walls,
+            run={"duration": steps * step, "time_step": step, "integrator": "velocity_verlet"})
 
     def gap(self, places):
         radii = [body["radius"] for body in self.spheres]
@@ -95,7 +96,9 @@ def meeting_spheres(material):
 def impact_on_floor(material, radius, normal, tangential=0.0, restitution=1.0, mu=0.0, hertz=True):
     """The scene of an oblique impact, its duration."""
     k = hertz_stiffness(material, radius, False) * (1 if hertz else math.sqrt(radius))
-    contact = {"stiffness": k, "restitution": restitution, **({"friction": mu, "tangential_ratio": 2 / 7} if mu else {})}
+    contact = {"stiffness": k, "restitution": restitution}
+    if mu:
+        contact.update(friction=mu, tangential_ratio=2 / 7)
     body = sphere(radius, MATERIALS[material].density, (0, radius), (tangential, -normal))
     scene = Scene([body], "hertz_dashpot" if hertz else "linear_dashpot", contact, [FLOOR])
     return scene, hertz_elastic(scene, normal)[2] if hertz else math.pi * math.sqrt(mass_of(body) / k)
@@ -144,13 +147,13 @@ def impacts(quick):
         for hertz in (True, False):
             scene, duration = impact_on_floor(material, 0.0025, 3.9, restitution=e, hertz=hertz)
             ours = scene.measured(duration, lambda c: (c.velocities[0, 1] / 3.9,))
-            findings.formula(f"test 3, {material}, {'Hertz' if hertz else 'linear'}: restitution", e, "Chung & Ooi 2011",
-                             ours[0])
+            findings.formula(f"test 3, {material}, {'Hertz' if hertz else 'linear'}: restitution", e,
+                             "Chung & Ooi 2011", ours[0])
     progress.update(0.6)
     scene, duration, before, surface = oblique_of_steel(2, hertz=False)
     ours = scene.measured(duration, lambda c: (surface(c) / before * c.velocities[0, 1] / 5.0,))
-    findings.formula("test 5, linear springs with kT/kN = 2/7, surface speed 2 µ v_n: surface speed after over before", -1,
-                     "closed form", ours[0])
+    findings.formula("test 5, linear springs with kT/kN = 2/7, surface speed 2 µ v_n: surface speed after over before",
+                     -1, "closed form", ours[0])
     # Test 7: equal spheres that spin against each other do not slip, and nothing acts across the contact.
     alloy, spin = "aluminium alloy of test 6", 10.0
     contact = {"stiffness": hertz_stiffness(alloy, 0.05, True), "restitution": 0.5, "friction": 0.4,
@@ -232,7 +235,8 @@ def differences_by_their_rules():
         ("dem04, oblique impact on a wall: {}", "tangential velocity", TheirSphere(
             2e7, 5.7e6, 0.092, 1e-8, 0.00255, (2.5069, -2.9876), cN=2 * zeta * math.sqrt(mass * 2e7)).run(1724, 1133)),
         ("dem04, grazing impact, classic model: {}", "tangential velocity", TheirSphere(
-            2e7, 2 / 7 * 2e7, 0.5, 1e-8, 0.00255, (3.7839, -0.94345), cN=mass * 4300, cT=0.5 * mass * 4300).run(5400, 1000)),
+            2e7, 2 / 7 * 2e7, 0.5, 1e-8, 0.00255, (3.7839, -0.94345), cN=mass * 4300,
+            cT=0.5 * mass * 4300).run(5400, 1000)),
         ("dem05, sliding to rolling: {} at 0.4 s", "velocity", TheirSphere(
             1e4, 2.8e3, 0.4, 1e-5, 0.002499982, (1.4, 0), gravity=1.0).run(40000)))
     theirs = {row.name: float(row.published) for row in STORED} | {name: row.value for name, row in NUMBERS.items()}
@@ -261,8 +265,8 @@ def lammps(_quick):
         *(replayed("alone", step, steps).positions[0, 1] for step, steps in ((1e-4, 1000), (5e-5, 2000)))))
     # The closed form of a program whose recorded numbers could not be had, with numbers of our own.
     e, normal, k = 0.7, 2.0, 1e10
-    wall = Scene([sphere(0.0025, 2700, (0, 0.0025), (0, -normal))], "linear_dashpot", {"stiffness": k, "restitution": e},
-                 [FLOOR])
+    wall = Scene([sphere(0.0025, 2700, (0, 0.0025), (0, -normal))], "linear_dashpot",
+                 {"stiffness": k, "restitution": e}, [FLOOR])
     duration = math.pi * math.sqrt(wall.reduced_mass / k)
     findings.formula("dem11, region wall: speed after, e = 0.7, m/s", e * normal, "LAMMPS 2026", step_error(
         *(wall.collide(share * duration).velocities[0, 1] for share in (1e-3, 5e-4, 2.5e-4))))
