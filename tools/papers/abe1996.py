@@ -292,11 +292,6 @@ def errors_by_size(points, sizes):
     return zip(*columns)
 
 
-# Fig. 7 in both planes: highest nu shown, nu of the plane, theory.
-POISSON_PLOTS = (("figure7", "strain", 0.8, float, "eq. (22): (1 - $k_T/k_N$)/4"),
-                 ("figure7_plane_stress", "stress", 1.4, in_plane_stress, "(1 - $k_T/k_N$)/(3 + $k_T/k_N$)"))
-
-
 def draw_block(size, path):
     """Fig. 6: the block under tension, coloured by the stress of its discs."""
     from matplotlib import pyplot
@@ -324,7 +319,7 @@ def reproduce(options):
     r = compute(size)
     page = Page("abe1996", globals(), r, {"size": size})
     numbers = {key: value for key, value in r.items() if key not in ("edges", "large_points")}
-    numbers["unequal_radii"] = [{key: getattr(value, "mean", value) for key, value in p.items()}
+    numbers["unequal_radii"] = [{key: value if key == "spread" else value.mean for key, value in p.items()}
                                 for p in r.unequal_radii]
     return Output(page.text("report"), numbers,
                   plots={**page.figures(), "figure6": lambda path: draw_block(size, path)})

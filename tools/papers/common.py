@@ -207,41 +207,25 @@ def seeds_of(task, function, count, *arguments):
     return samples_of(task, function, [(*arguments, seed) for seed in range(1, count + 1)])
 
 
-@dataclasses.dataclass
-class Mean:
-    """Mean of samples, its standard error and their standard deviation; nan where the samples do not determine it."""
-    mean: float
-    standard_error: float = math.nan
-    standard_deviation: float = math.nan
-
-
 def mean_of(samples):
+    """Mean, its standard error and the standard deviation; nan where the samples do not determine it."""
     samples = [float(sample) for sample in samples]
     mean = sum(samples) / len(samples)
-    if len(samples) < 2:
-        return Mean(mean)
     scatter = sum((sample - mean) ** 2 for sample in samples)
-    deviation = math.sqrt(scatter / (len(samples) - 1))
-    return Mean(mean, deviation / math.sqrt(len(samples)), deviation)
-
-
-@dataclasses.dataclass
-class Line:
-    """y = intercept + slope x, with standard errors from those of y."""
-    intercept: float
-    slope: float
-    intercept_error: float
-    slope_error: float
+    deviation = math.sqrt(scatter / (len(samples) - 1)) if len(samples) > 1 else math.nan
+    return Row(mean=mean, standard_error=deviation / math.sqrt(len(samples)), standard_deviation=deviation)
 
 
 def fit_line(x, y, errors):
-    """The line of least squares, each y weighted by the inverse square of its standard error."""
+    """The line y = intercept + slope x of least squares, each y weighted by the inverse square of its standard error,
+    with its own errors."""
     weights = [1 / error**2 for error in errors]
     total = sum(weights)
     x_mean, y_mean = (sum(w * value for w, value in zip(weights, values)) / total for values in (x, y))
     xx = sum(w * (at - x_mean)**2 for w, at in zip(weights, x))
     slope = sum(w * (at - x_mean) * (value - y_mean) for w, at, value in zip(weights, x, y)) / xx
-    return Line(y_mean - slope * x_mean, slope, math.sqrt(1 / total + x_mean**2 / xx), math.sqrt(1 / xx))
+    return Row(intercept=y_mean - slope * x_mean, slope=slope, intercept_error=math.sqrt(1 / total + x_mean**2 / xx),
+               slope_error=math.sqrt(1 / xx))
 
 
 class Random:

@@ -86,18 +86,23 @@ def count_steps(variant, step):
     return count
 
 
+def impact(law, depth, closing, amend=lambda *step: step[-2:]):
+    """States (depth, closing) of an impact without gravity, the last one apart."""
+    first = True
+    while depth > 0:
+        yield depth, closing
+        change, shift = amend(depth, closing, first, *law.step(depth, closing, first))
+        closing, first = closing + change, False
+        depth += shift + closing
+    yield depth, closing
+
+
 def samples_of_law(law):
     """Depths and closings of 4096 states during impacts that begin at all phases of a step."""
-    states, impact = [], 0
+    states = []
     while len(states) < 4096:
-        closing = 1e-3
-        depth = max(1e-6, math.fmod(0.618033988749895 * (impact + 0.5), 1)) * closing
-        while depth > 0:
-            states.append((depth, closing))
-            change, shift = law.step(depth, closing, closing >= depth)
-            closing += change
-            depth += shift + closing
-        impact += 1
+        phase = math.fmod(0.618033988749895 * (len(states) + 0.5), 1)
+        states += [*impact(law, max(1e-6, phase) * 1e-3, 1e-3)][:-1]
     return np.ascontiguousarray(np.array(states[:4096]).T)
 
 
@@ -207,31 +212,23 @@ def impacts(fast):
     return [watch_impacts(variant, fast) for variant in laws]
 
 
-def ratio_without_gravity(reading, a, phase):
-    """Energy after over before an impact by P, with single equations as the paper prints them; theory: e²."""
-    law, depth, closing, first = eq._core.Law("energy_map", a, E), phase, 1.0, True
-    while depth > 0:
+def compare_printed():
+    """Energy after over before an impact by P without gravity over all phases of the contact step, with single
+    equations as the paper prints them; theory: e²."""
+    def amend(depth, closing, first, change, shift):
         s = closing / depth
-        change, shift = law.step(depth, closing, first)
         root = math.sqrt((1 + a) * s * s + a * a)
         if first and reading == "(20) with d_j":  # (17), (15) and (20) with d_j in place of the corrected depth
             corrected = s * E / math.sqrt(s * s + a) * closing
-            change = corrected - closing - depth / (1 + a) * ((1 + a) * s + a - root)
-            shift = corrected / s - depth
+            return corrected - closing - depth / (1 + a) * ((1 + a) * s + a - root), corrected / s - depth
         if not first and s > 0 and reading == "(21) in all of mode 2":  # also where it gives d' <= 0
             change = -depth / (1 + a) * ((1 + a) * s + a + root)
-        closing += change
-        depth += shift + closing
-        first = False
-    return closing * closing
-
-
-def compare_printed():
-    """Over all phases of the contact step."""
+        return change, shift
     rows = []
     for a in (0.10, 0.9):
         for reading in ("as used", "(20) with d_j", "(21) in all of mode 2"):
-            found = [ratio_without_gravity(reading, a, (k + 0.5) / 4000) for k in range(4000)]
+            law = eq._core.Law("energy_map", a, E)
+            found = [[*impact(law, (k + 0.5) / 4000, 1.0, amend)][-1][1]**2 for k in range(4000)]
             rows.append(Row(reading=reading, a=a, mean=sum(found) / 4000, least=min(found), largest=max(found)))
     return rows
 

@@ -88,14 +88,8 @@ def plan(quick):
     """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
     keys = ("shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
     small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
-    if quick:
-        rows = [(shape, "", seed, 400.0, 10.0, 10) for shape, seed in
-                (("discs", 1), ("bonded_pairs", 1), ("rigid_pairs", 1), ("ellipses", 1), ("discs", 2), ("discs", 3))]
-        rows += [(shape, "", 1, 1200.0, 2.0, 2) for shape in ("discs", "bonded_pairs")]
-        rows += [("discs", variant, 1, 400.0, 10.0, 10) for variant in ("bulk_springs", "bulk_density")]
-    else:
-        rows = [tuple(kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys))
-                for row in rows_of("sukegawa2010/runs") if row.variant in TOLD["variants"]]
+    rows = TOLD["quick_runs"] if quick else [row for row in rows_of("sukegawa2010/runs") if row.variant in TOLD["variants"]]
+    rows = [[kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys)] for row in rows]
     found = []
     for shape, variant, seed, gal, frequency, cycles in rows:
         name = f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz"
