@@ -445,32 +445,27 @@ def passages(law):
     return found
 
 
-def verdicts(r):
-    """What the numbers say of each conclusion of the paper."""
+def said(holds):
+    """Of a conclusion of the paper."""
+    return "holds" if holds else "does not hold here"
+
+
+def conclusions(r):
+    """Numbers by which the report decides each conclusion of the paper."""
     def worst_of(key, first):
         return Row({letter: worst(of(r.slow_impacts, letter)[key], first, 10) for letter in "CTFP"})
-    ten, late = worst_of("energy_ratios", 1), worst_of("energy_ratios", 6)
-    fast = {label: of(r.fast_impacts, label) for label in ("C", "T", "T soft", "F", "P")}
-    worst_fast = Row({letter: worst(fast[letter].energy_ratios) for letter in "FP"})
-    c, p = of(r.table1, "C"), of(r.table1, "P")
-    agree = sum(n == printed for row in r.table2 if row.variant.of_paper
-                for n, printed in zip(row.steps, printed_steps(row.letter)))
-    points = {letter: of(r.stacked, letter).points for letter in "CTFP"}
-    better = Row({key: sum(max(p[key], f[key]) < min(c[key], t[key]) for c, t, f, p in zip(*points.values()))
-                  for key in ("speed_error", "parting_error")})
-    apart = [abs(f.speed_error / p.speed_error - 1) for f, p in zip(points["F"], points["P"]) if p.time_step <= 1.01e-4]
-    last = Row({letter: own[-1].speed_error for letter, own in points.items()})
-    holds = {"narrow": max(ten.P, ten.F) < min(ten.C, ten.T), "late": late.P < late.F,
-             "through": len(fast["C"].energy_ratios) < 2, "goes_on": not fast["T"].ran_away,
-             "near": max(worst_fast.values()) < 1e-3, "counts": agree == 12,
-             "cheap": p.law_alone_nanoseconds < 1.1 * c.law_alone_nanoseconds,
-             "shorter": p.run_seconds < c.run_seconds and p.evaluations < c.evaluations,
-             "accurate": max(last.P, last.F) < min(last.C, last.T)}
-    said = {name: "holds" if one else "does not hold here" for name, one in holds.items()}
-    return Row(v=Row(said), ten=ten, late=late, of_flights=worst_of("energy_ratios_of_flights", 1),
-               fast=Row({label.replace(" ", "_"): law for label, law in fast.items()}), worst_fast=worst_fast,
-               passages=passages(fast["P"]), agree=agree, last=last, better=better, apart=apart,
-               f_better=sum(f.speed_error < p.speed_error for f, p in zip(points["F"], points["P"])))
+    points = Row({letter: of(r.stacked, letter).points for letter in "CTFP"})
+    fast = Row({label.replace(" ", "_"): of(r.fast_impacts, label) for label in ("C", "T", "T soft", "F", "P")})
+    return Row(
+        ten=worst_of("energy_ratios", 1), late=worst_of("energy_ratios", 6), fast=fast, passages=passages(fast.P),
+        of_flights=worst_of("energy_ratios_of_flights", 1), points=points,
+        worst_fast=Row({letter: worst(fast[letter].energy_ratios) for letter in "FP"}),
+        agree=sum(n == printed for row in r.table2 if row.variant.of_paper
+                  for n, printed in zip(row.steps, printed_steps(row.letter))),
+        better=Row({key: sum(max(p[key], f[key]) < min(c[key], t[key]) for c, t, f, p in zip(*points.values()))
+                    for key in ("speed_error", "parting_error")}),
+        last=Row({letter: own[-1].speed_error for letter, own in points.items()}),
+        apart=[abs(f.speed_error / p.speed_error - 1) for f, p in zip(points.F, points.P) if p.time_step <= 1.01e-4])
 
 
 # ---- figures
@@ -499,7 +494,7 @@ def first_paths(law):
 def reproduce(options):
     r = compute(options.quick)
     c, f, p = (of(r.table1, letter) for letter in "CFP")
-    page = Page("fujioka2005", globals(), r, verdicts(r), {
+    page = Page("fujioka2005", globals(), r, conclusions(r), {
         "c": c, "f": f, "p": p, "step": c.time_step,
         "at_rest_from": math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)})
 

@@ -246,11 +246,16 @@ class Page:
             (told["head"], names), *((told["row"], inside) for inside in self.items(told, names)))]
         return markdown(head, rows) if told.get("markdown") else aligned([head, *rows])
 
-    def series(self, told, names):
+    def leaves(self, told, names):
+        """(entry, names inside it) of an entry, for each item of `each` and all its `parts`."""
         for inside in self.each(told, names):
             if "parts" in told:
-                yield from (one for part in told["parts"] for one in self.series(part, inside))
-                continue
+                yield from (one for part in told["parts"] for one in self.leaves(part, inside))
+            else:
+                yield told, inside
+
+    def series(self, parts, names):
+        for told, inside in self.leaves({"parts": parts}, names):
             found = {key: told[key] for key in ("style", "colour", "marker", "filled") if key in told}
             found.update({key: self.fill(told[key], inside) for key in ("label", "column") if key in told})
             for key, member in (("x", "x"), ("y", "y"), ("error", "errors")):
@@ -276,5 +281,5 @@ class Page:
                     (self.value(x, inside), self.fill(label, inside), colour) for x, label, colour in lines]
                 found[self.fill(told.get("name", key), inside)] = Plot(
                     self.fill(told["title"], inside), self.axis(told["x"], inside), self.axis(told["y"], inside),
-                    [one for part in told["series"] for one in self.series(part, inside)], lines)
+                    [*self.series(told["series"], inside)], lines)
         return found

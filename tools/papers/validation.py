@@ -14,10 +14,17 @@ import numpy as np
 from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line, machine,
                     main, mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
 from shown import Page, Row
-from validation_findings import NUMBERS, WHY, Findings, columns, step_error, value_and_error
-from validation_spheres import impacts, lammps
+from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
 SOURCES = rows_of("validation/sources")
+CONFIDENCE_WIDTH = 2.576  # standard errors of 99 % of a normal distribution
+ROUND_OFF = 1e-12  # relative, of a computation of some thousand steps
+
+
+def estimate(found):
+    """Number and standard error of a mean, of the end of a line at 0, or of a pair."""
+    return (found.mean, found.standard_error) if "mean" in found else (
+        (found.intercept, found.intercept_error) if "intercept" in found else found)
 
 
 # ---- missing bonds and discs
@@ -80,20 +87,16 @@ def onset(arguments):
 def dilution(bonds, quick):
     """Thresholds of rigidity, from onsets of cells of several sizes."""
     what, name = ("bonds", "bond") if bonds else ("discs", "site")
-    key, exponent = name + " threshold", NUMBERS["rigidity exponent"].value
+    exponent = NUMBERS["rigidity exponent"].value
     sizes = [(8, 48), (12, 48), (20, 32)] if quick else [(8, 400), (12, 400), (18, 300), (26, 240), (38, 160)]
-    rows = []
+    rows, onsets = [], []
     for side, count in sizes:
         shares = sorted(seeds_of(f"removing {what} of {side} x {side} discs:", onset, count, bonds, side))
         mean = mean_of(shares)
         rows.append(Row(side_discs=side, samples=count, mean_onset=mean.mean, standard_error=mean.standard_error,
-                        standard_deviation=mean.standard_deviation, shares=shares))
-    findings = Findings(name + "_dilution", exponent=exponent, onsets=rows, name=name, what=what,
-                        threshold=NUMBERS[key])
-    fit = fit_line([row.side_discs**(-1 / exponent) for row in rows], *zip(
-        *((row.mean_onset, row.standard_error) for row in rows)))
-    findings.compare("threshold, mean onset extrapolated to infinite size", key, (fit.intercept, fit.intercept_error),
-                     WHY["size"])
+                        standard_deviation=mean.standard_deviation))
+        onsets.append(Row(side=side, shares=shares))
+    fit = fit_line(*zip(*((row.side_discs**(-1 / exponent), row.mean_onset, row.standard_error) for row in rows)))
     # Where the curves "share of cells that are rigid" of both sizes cross, both normal distributions of the onsets.
     small, large = rows[0], rows[-1]
     m1, m2, s1, s2 = small.mean_onset, large.mean_onset, small.standard_deviation, large.standard_deviation
@@ -101,10 +104,8 @@ def dilution(bonds, quick):
     t1, t2 = (row.standard_deviation / math.sqrt(2 * (row.samples - 1)) for row in (small, large))
     error = math.sqrt((s2 / wide * small.standard_error)**2 + (s1 / wide * large.standard_error)**2 +
                       (s2 * (m1 - m2) / wide**2 * t1)**2 + (s1 * (m2 - m1) / wide**2 * t2)**2)
-    findings.compare(f"threshold, crossing of sizes {small.side_discs} and {large.side_discs}", key,
-                     ((m2 * s1 - m1 * s2) / wide, error), WHY["size"])
-    findings.tables[name + "_onsets"] = [{key: row[key] for key in row if key != "shares"} for row in rows]
-    return findings
+    return {"exponent": exponent, "onsets": onsets, "name": name, "what": what, "threshold": NUMBERS[name + " threshold"],
+            "fit": fit, "crossing": ((m2 * s1 - m1 * s2) / wide, error)}, {name + "_onsets": rows}
 
 
 def site_dilution(quick):
@@ -128,26 +129,18 @@ def relative_moduli(arguments):
 
 
 def bond_dilution(quick):
-    findings = dilution(True, quick)
+    found, tables = dilution(True, quick)
     side, count = (16, 8) if quick else (48, 24)
-    rows = []
+    rows = tables["bond_moduli"] = []
     for p in [0.98, 0.94, 0.9, 0.8, 0.7] if quick else [0.98, 0.96, 0.94, 0.9, 0.85, 0.8, 0.75, 0.7, 0.68, 0.66]:
-        found = seeds_of(f"moduli at p = {p:g}:", relative_moduli, count, side, p)
-        (K, K_error), (G, G_error) = (value_and_error(mean_of(samples)) for samples in zip(*found))
+        samples = seeds_of(f"moduli at p = {p:g}:", relative_moduli, count, side, p)
+        (K, K_error), (G, G_error) = (estimate(mean_of(own)) for own in zip(*samples))
         rows.append(Row(p=p, K_over_full=K, K_standard_error=K_error, G_over_full=G, G_standard_error=G_error,
                         effective_medium=effective_medium(p)))
-    for name in "KG":
-        value, error = name + "_over_full", name + "_standard_error"
-        fit = fit_line(*zip(*((1 - row.p, (1 - row[value]) / (1 - row.p), row[error] / (1 - row.p))
-                              for row in rows if row.p >= 0.9)))
-        findings.compare(f"slope of {name}/{name}(1) over p at p = 1", "effective-medium slope",
-                         (fit.intercept, fit.intercept_error))
-        for row in rows:
-            if row.p in (0.9, 0.8, 0.7):
-                findings.formula(f"{name}/{name}(1) at p = {row.p:g}", effective_medium(row.p), "Feng et al. 1985",
-                                 (row[value], row[error]), WHY["medium"])
-    findings.tables["bond_moduli"] = rows
-    return findings
+    found["slopes"] = [fit_line(*zip(*(
+        (1 - row.p, (1 - row[name + "_over_full"]) / (1 - row.p), row[name + "_standard_error"] / (1 - row.p))
+        for row in rows if row.p >= 0.9))) for name in "KG"]
+    return found, tables
 
 
 # ---- packings
@@ -164,21 +157,19 @@ def coverage_after(arguments):
 def adsorption(quick):
     side, count = (40.0, 8) if quick else (80.0, 24)
     times = [4, 8, 16, 32, 64, 128, 256] + ([] if quick else [512])
-    coverage = [seeds_of(f"adsorbing until t = {t}:", coverage_after, count, t, side)
-                for t in times]
+    coverage = [seeds_of(f"adsorbing until t = {t}:", coverage_after, count, t, side) for t in times]
     # The coverages of one sample at several times are correlated: a line through those of each sample, then the mean.
     roots, late = [1 / math.sqrt(t) for t in times], list(zip(*coverage[-4:]))
     limit = mean_of([fit_line(roots[-4:], sample, [1] * 4).intercept for sample in late])
-    means, errors = columns([mean_of(samples) for samples in coverage])
-    findings = Findings("adsorption", side=side, count=count, first=times[-4], last=times[-1], limit=limit.mean,
-                        slope=(means[-1] - limit.mean) / roots[-1])
-    findings.compare("coverage at saturation", "adsorption coverage", value_and_error(limit), WHY["coverage"])
     # theta(4t) - theta(t) falls as t^a: a from two such differences a factor of two in t apart.
     exponent = mean_of([math.log2((d - b) / (c - a)) for a, b, c, d in late])
-    findings.compare("exponent of the approach", "adsorption exponent", value_and_error(exponent), WHY["approach"])
-    findings.tables["adsorption"] = [Row(t=t, coverage=mean, standard_error=error)
-                                     for t, mean, error in zip(times, means, errors)]
-    return findings
+    rows = []
+    for t, samples in zip(times, coverage):
+        mean, error = estimate(mean_of(samples))
+        rows.append(Row(t=t, coverage=mean, standard_error=error))
+    slope = (rows[-1].coverage - limit.mean) / roots[-1]
+    return {"side": side, "count": count, "first": times[-4], "last": times[-1], "limit": limit, "slope": slope,
+            "exponent": exponent}, {"adsorption": rows}
 
 
 JAMMING_OVERLAP = 1e-7  # mean, of the mean radius
@@ -206,10 +197,9 @@ def mean_columns(names, samples):
             for key, value in ((name, mean.mean), (name + "_standard_error", mean.standard_error))}
 
 
-def extrapolated(rows, name, x):
-    """The intercept of a line through the means, with its error."""
-    fit = fit_line(*zip(*((x(row), row[name], row[name + "_standard_error"]) for row in rows)))
-    return fit, (fit.intercept, fit.intercept_error)
+def line_of(rows, name, x):
+    """Through the means of that name."""
+    return fit_line(*zip(*((x(row), row[name], row[name + "_standard_error"]) for row in rows)))
 
 
 def jamming(quick):
@@ -221,23 +211,9 @@ def jamming(quick):
         samples = seeds_of(f"jamming {n} discs:", jam, count, n)
         rows.append(Row(discs=n, samples=count, **mean_columns(JAMMED, [one for one in samples if one])))
         refused += samples.count(None)
-    line, fraction = extrapolated(rows, "solid_fraction", lambda row: row.discs**(-0.5 / nu))
-    findings = Findings("jamming", overlap=JAMMING_OVERLAP, exponent=nu, excess=excess, line=line)
-    findings.compare("solid fraction, extrapolated to infinite size", "jamming fraction", fraction, WHY["made"])
-    findings.compare("z without rattlers, extrapolated in 1/N", "jamming coordination",
-                     extrapolated(rows, "z_without_rattlers", lambda row: 1 / row.discs)[1], allowance=excess)
-    for row in rows:
-        findings.compare(f"contacts beyond 2 N' - 1, N = {row.discs}", "contacts beyond 2 N' - 1",
-                         (row.contacts_beyond_isostatic, row.contacts_beyond_isostatic_standard_error),
-                         allowance=0.5 * row.discs * excess)
-    least, most = NUMBERS["least jamming fraction"], NUMBERS["largest jamming fraction"].value
-    findings.trend(f"packings with 2 N' - 1 contacts jam between {least.value:g} and {most:g}, by how fast they are "
-                   "made", least.source, least.value < fraction[0] < most,
-                   f"{fraction[0]:.4f} ± {fraction[1]:.4f} at infinite size")
-    if refused:
-        findings.notes = [f"`pack` found no state with the wanted overlap for {counted(refused, 'cell')}, left out."]
-    findings.tables["jamming"] = rows
-    return findings
+    return {"overlap": JAMMING_OVERLAP, "exponent": nu, "excess": excess, "refused": refused,
+            "line": line_of(rows, "solid_fraction", lambda row: row.discs**(-0.5 / nu)),
+            "z": line_of(rows, "z_without_rattlers", lambda row: 1 / row.discs)}, {"jamming": rows}
 
 
 def settled(arguments):
@@ -260,27 +236,22 @@ def friction(quick):
         return Row(friction=mu, kN_Pa=stiffness, z_without_rattlers=z.mean, standard_error=z.standard_error,
                    root_of_largest_overlap=depth.mean)
 
-    def shown_z(row):
-        return f"{row.z_without_rattlers:.3f} ± {row.standard_error:.3f}"
     over_friction = [settle(mu, soft) for mu in ([0, 0.3, 10] if quick else [0, 0.1, 0.3, 1, 10])]
     over_stiffness = [over_friction[-1]] + [settle(10, soft * 10**k) for k in range(1, decades + 1)]
     line = fit_line(*zip(*((row.root_of_largest_overlap, row.z_without_rattlers, row.standard_error)
                            for row in over_stiffness)))
-    findings = Findings("friction", discs=discs, count=count, line=line, stiffer=over_stiffness)
-    findings.compare("z without rattlers, friction 10, rigid discs", "frictional coordination",
-                     (line.intercept, line.intercept_error), WHY["fallen"])
     z = [row.z_without_rattlers for row in over_friction]
     falls = all(b.z_without_rattlers < a.z_without_rattlers + 2.6 * math.hypot(a.standard_error, b.standard_error)
                 for a, b in zip(over_friction, over_friction[1:]))
-    findings.trend("z falls from 4 towards 3 as friction grows, most of the way", "Shundyak et al. 2007",
-                   falls and 3 < z[-1] < 3.25 and z[0] > 3.75,
-                   ", ".join(f"{shown_z(row)} at {row.friction:g}" for row in over_friction))
-    braked = [f"{shown_z(over_stiffness[1] if damping == 1 else settle(10, 10 * soft, damping))} at h = {damping:g}"
+    braked = [(damping, over_stiffness[1] if damping == 1 else settle(10, 10 * soft, damping))
               for damping in ((0.1, 1.0) if quick else (0.1, 0.3, 1.0, 3.0))]
-    findings.notes = [f"How slowly the discs come to rest matters: at friction 10 and kN = {1e-5 * soft:g} MPa, z is "
-                      f"{', '.join(braked[:-1])} and {braked[-1]}."]
-    findings.tables["friction"] = over_friction + over_stiffness[1:]
-    return findings
+    return {"discs": discs, "count": count, "line": line, "stiffer": over_stiffness, "over_friction": over_friction,
+            "falls": falls and 3 < z[-1] < 3.25 and z[0] > 3.75, "braked": braked}, {
+                "friction": over_friction + over_stiffness[1:]}
+
+
+def shown_z(row):
+    return f"{row.z_without_rattlers:.3f} ± {row.standard_error:.3f}"
 
 
 # ---- a point load
@@ -339,28 +310,23 @@ def loaded_block(depth, kT):
 
 
 def point_load(quick):
-    progress, findings, rows = Progress("a point load:"), Findings("point_load"), []
+    progress, rows = Progress("a point load:"), []
     depths = [12, 24, 48] if quick else [16, 32, 64, 128, 256]
     for ratio in (0.0, 0.5):
         for depth in depths:
             rows.append(loaded_block(depth, ratio))
             progress.update(len(rows) / (2 * len(depths)))
-        name, blocks, (before, last) = f"kT/kN = {ratio:g}", rows[-len(depths):], rows[-2:]
-        findings.formula(f"{name}: stress below the load over 2 P/(pi r), at {last.half_way[0]:.0f} diameters", 1,
-                         "Flamant 1892", step_error(before.half_way[1], last.half_way[1]), WHY["lattice"])
-        findings.formula(f"{name}: settlement at {last.shallow:.0f} less that at {last.deep:.0f} diameters over "
-                         "2 P/(pi E) ln(z2/z1)", 1, "Flamant 1892", step_error(before.settled, last.settled),
-                         WHY["lattice"])
+    progress.end()
+    orders = []
+    for blocks in (rows[:len(depths)], rows[len(depths):]):
         for what in ("stress", "displacement"):
             errors = [block[what + "_difference"] for block in blocks]
             order = [math.log(a / b) / math.log(y / x) for a, b, x, y in zip(errors, errors[1:], depths, depths[1:])]
-            findings.trend(f"{name}: the difference of the {what} vanishes with the size", "Flamant 1892",
-                           order[-1] > 0.8 and errors[-1] < errors[0], f"{errors[-1]:.2g} at {depths[-1]} rows, order "
-                           f"{order[-1]:.2f} ± {abs(order[-1] - order[-2]):.2f}")
-    progress.end()
+            orders.append(Row(ratio=blocks[0].kT_over_kN, what=what, first=errors[0], last=errors[-1], order=order[-1],
+                              change=abs(order[-1] - order[-2])))
     kept = ("kT_over_kN", "rows", "stress_difference", "other_stresses", "displacement_difference")
-    findings.tables["point_load"] = [Row({key: row[key] for key in kept}) for row in rows]
-    return findings
+    return {"orders": orders, "depth": depths[-1], "finest": [rows[k - 2:k] for k in (len(depths), len(rows))]}, {
+        "point_load": [Row({key: row[key] for key in kept}) for row in rows]}
 
 
 # ---- moduli of packings
@@ -397,29 +363,18 @@ def packed_moduli(arguments):
 
 def disc_moduli(quick):
     discs, count, overlaps = (150, 4, [1e-4, 5e-3, 0.04]) if quick else (800, 12, [1e-5, 1e-3, 5e-3, 0.02, 0.05])
-    findings, rows = Findings("disc_moduli", discs=discs, least=overlaps[0], most=overlaps[-1], count=count), []
+    rows = []
     for overlap in overlaps:
         found = seeds_of(f"packings of overlap {overlap:g}:", packed_moduli, count, discs, overlap)
         rows += [Row(kT_over_kN=ratio, **mean_columns(MODULI, own)) for ratio, own in zip(RATIOS, zip(*found))]
-    for modulus in "KG":
-        key = f"{modulus}_over_uniform_strain"
-        shares = [row[key] for row in rows]
-        pairs = [(a, b) for a, b in zip(rows, rows[len(RATIOS):])]  # of one kT/kN, at one overlap and the next
-        holds = all(b[key] > a[key] - 2.6 * math.hypot(a[key + "_standard_error"], b[key + "_standard_error"])
-                    for a, b in pairs)
-        findings.trend(f"uniform strain overestimates {modulus}, the less the more contacts there are",
-                       "Agnolin & Kruyt 2008", holds and max(shares) < 1,
-                       f"{modulus} is {min(shares):.3f} to {max(shares):.3f} of it")
-    # "Generally": at three quarters of the points displacements do not relax the slip at all.
-    moved, rolled = ([row[name] for row in rows] for name in ("slip_by_displacements", "slip_by_rotations"))
-    alone = sum(slip >= 0 for slip in moved)
-    findings.trend("along the tangents of contacts the relaxation is generally due to rotations alone",
-                   "Agnolin & Kruyt 2008", max(rolled) < 0 and 4 * alone >= 3 * len(rows),
-                   f"rotations take up to {-min(rolled):.2f} of the slip of uniform shear; displacements change it by "
-                   f"{min(moved):+.2f} to {max(moved):+.2f}, and add to it at {alone} of {len(rows)} points, those of "
-                   "smaller kT/kN")
-    findings.tables["disc_moduli"] = rows
-    return findings
+    return {"discs": discs, "least": overlaps[0], "most": overlaps[-1], "count": count}, {"disc_moduli": rows}
+
+
+def grows(rows, key):
+    """Whether the means of each kT/kN grow with the overlap, within their errors, and stay below 1."""
+    return max(row[key] for row in rows) < 1 and all(
+        b[key] > a[key] - 2.6 * math.hypot(a[key + "_standard_error"], b[key + "_standard_error"])
+        for a, b in zip(rows, rows[len(RATIOS):]))
 
 
 # ---- the whole
@@ -440,29 +395,51 @@ def seconds_text(seconds):
     return "under a second" if seconds < 1 else f"{seconds:.0f} s"
 
 
-def reproduce(options):
-    sections, plots = [], {}
+def judged(page, told, names):
+    """A comparison: a published number, or a theory, and ours, each with its standard error; `why`: the reason known for
+    a difference; allowance: what the published number itself leaves out, added to its error."""
+    theirs = NUMBERS[page.fill(told["published"], names)] if "published" in told else Row(
+        value=float(page.value(told["theory"], names)), error=0, source=told["source"])
+    (ours, own_error), error = map(float, estimate(page.value(told["ours"], names))), float(theirs.error)
+    size = max(abs(theirs.value), abs(ours))
+    agrees = abs(ours - theirs.value) <= (CONFIDENCE_WIDTH * math.hypot(error, own_error, ROUND_OFF * size) +
+                                          page.value(told.get("allowance", 0), names))
+    why = page.told["why"].get(page.fill(told.get("why", ""), names), "")
+    verdict = "agrees" if agrees else f"differs by {ours - theirs.value:+.2g}" + (": " + why if why else "")
+    return Row(quantity=page.fill(told["quantity"], names), published=theirs.value, published_error=error,
+               source=theirs.source, ours=ours, standard_error=own_error, agrees=agrees, verdict=verdict)
 
+
+def section(page, name, quick):
+    """What an item found, and what its entry in validation.toml says of that."""
+    begun, told = time.monotonic(), page.told[name]
+    values, tables = ITEMS[name](quick)
+    names = {**values, **tables}
+    comparisons = [judged(page, *leaf) for leaf in page.leaves({"parts": told.get("comparisons", [])}, names)]
+    trends = [Row(statement=page.fill(one["statement"], inside), source=one["source"], evidence=page.fill(
+        one["evidence"], inside), holds=bool(page.value(one["holds"], inside)))
+        for one, inside in page.leaves({"parts": told.get("trends", [])}, names)]
+    stored = [row for row in STORED if row.item == name]
+    return Row(name=name, heading=told["heading"], words=page.fill(told["text"].strip(), names), tables=tables,
+               plots=page.figures(told.get("figures", ()), **names), comparisons=comparisons, trends=trends, stored=stored,
+               notes=[note for note in (page.fill(note, names) for note in told.get("notes", [])) if note],
+               verdicts=[one.agrees for one in comparisons] + [one.holds for one in trends],
+               sources=list(dict.fromkeys(one.source for one in (*comparisons, *trends, *stored))),
+               seconds=time.monotonic() - begun)
+
+
+def reproduce(options):
     def command(only=""):
         return f"tools/papers/validation.py{only}{' --quick' if options.quick else ''} --out DIR"
-    page = Page("validation", globals(), {"sections": sections, "command": command})
-    for name in options.only:
-        begun = time.monotonic()
-        one = ITEMS[name](options.quick)
-        one.seconds = time.monotonic() - begun
-        told = page.told[name]
-        drawn = page.figures(told.get("figures", ()), **one.values, **one.tables)
-        one.heading, one.pictures = told["heading"], drawn.items()
-        one.text = page.fill(told["text"].strip(), one.values)
-        one.notes = told.get("notes", []) + one.notes
-        sections.append(one)
-        plots.update(drawn)
+    page = Page("validation", globals(), {"command": command})
+    page.names["sections"] = sections = [section(page, name, options.quick) for name in options.only]
     tables = {f"{name}_values": columns_of(rows) for one in sections for name, rows in one.tables.items()}
     tables["comparisons"] = columns_of([{"item": one.name, **row} for one in sections for row in one.comparisons])
     del tables["comparisons"]["agrees"]
-    items = [{"item": one.name, "seconds": one.seconds, "comparisons": one.comparisons, "trends": one.trends,
-              "stored": one.stored} for one in sections]
-    return Output(page.lines("report", sections), {"quick": options.quick, "items": items}, tables, plots,
+    items = [{"item": one.name, **{key: one[key] for key in ("seconds", "comparisons", "trends", "stored")}}
+             for one in sections]
+    return Output(page.lines("report", sections), {"quick": options.quick, "items": items}, tables,
+                  {name: plot for one in sections for name, plot in one.plots.items()},
                   {"validation.md": page.text("page")})
 
 
