@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from common import Output, Progress, components, counted, disc_stresses, eq, main, mean_of
+from common import Output, Progress, components, counted, disc_stresses, eq, main, mean_of, vectors_of
 from shown import Page, Row, save
 
 SQRT3 = math.sqrt(3)
@@ -85,10 +85,9 @@ def uniform_state(block, ratio):
     side over the mean load of a row."""
     e11 = STRESS / (KN * theory_stiffness(ratio))
     forces = affine_forces(block, KN, ratio * KN, np.diag([e11, -in_plane_stress(theory_nu(ratio)) * e11]))
-    normals, missing = block.normals, np.zeros((len(block), 3))
-    on_i = forces[:, :1] * normals + forces[:, 1:] * np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    missing, on_first = np.zeros((len(block), 3)), vectors_of(forces, block.normals)
     for side, sign in ((0, -1), (1, 1)):
-        np.add.at(missing[:, :2], block.contacts[:, side], sign * on_i)
+        np.add.at(missing[:, :2], block.contacts[:, side], sign * on_first)
         np.add.at(missing[:, 2], block.contacts[:, side], -block.levers[:, side] * forces[:, 1])
     test = tension(block, ratio)
     left = [int(disc) for disc in block.groups["left"]]  # held, without reactions: the loads are in balance

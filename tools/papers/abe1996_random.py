@@ -197,7 +197,7 @@ class Result:
 
     def table(self):
         """mean_field.csv: one row for each point."""
-        names = [(f"{modulus}_{answer}", f"_over_kN" * (modulus != "nu"), answer == "exact")
+        names = [(f"{modulus}_{answer}", "_over_kN" * (modulus != "nu"), answer == "exact")
                  for modulus in ("nu", "G", "K") for answer in ("exact", "mean_field", "voigt", "uniform_stress")
                  if (modulus, answer) != ("K", "uniform_stress")]
         names += [(name, "", True) for name in ("nu_error", "G_error", "K_error", "anisotropy")]

@@ -21,8 +21,6 @@ TEST_OVER, SCATTERED_TEST_OVER = 0.9, 0.7
 # Notches: up to this share of the width; exponents of a alone are those of notches from so many distances on.
 LARGEST_SHARE, LEAST_LENGTH = 0.6, 12
 RATIOS, MODULI = (0.0, 0.4), (2, 4, 8)  # kT/kN of notched plates; Weibull moduli
-LOOKS = [{"colour": "blue", "marker": "circle"}, {"colour": "vermilion", "marker": "square"},
-         {"colour": "green", "marker": "triangle"}]
 
 
 # ---- notches

@@ -14,7 +14,6 @@ import pathlib
 import signal
 import sys
 import time
-import tomllib
 
 import numpy as np
 
@@ -270,13 +269,16 @@ def components(vectors, normals):
     return np.stack([(vectors * normals).sum(axis=1), (vectors * turned(normals)).sum(axis=1)], axis=1)
 
 
+def vectors_of(forces, normals):
+    """Normal (tension positive) and tangential forces (contacts, 2) as vectors, on the first disc of each contact."""
+    return forces[:, :1] * normals + forces[:, 1:] * turned(normals)
+
+
 def disc_stresses(assembly, forces):
-    """Abe (1996), (50), of every disc, (n, 2, 2): sum of force by arm over the area of the cell of the disc. Forces
-    (contacts, 2) are normal (tension positive) and tangential."""
-    normals, stresses = assembly.normals, np.zeros((len(assembly), 2, 2))
-    on_i = forces[:, :1] * normals + forces[:, 1:] * turned(normals)  # on j the opposite, at the opposite arm
-    dyad = on_i[:, :, None] * normals[:, None, :]
-    for end in (0, 1):
+    """Abe (1996), (50), of every disc, (n, 2, 2): sum of force by arm over the area of the cell of the disc."""
+    stresses = np.zeros((len(assembly), 2, 2))
+    dyad = vectors_of(forces, assembly.normals)[:, :, None] * assembly.normals[:, None, :]
+    for end in (0, 1):  # on the second disc the opposite force, at the opposite arm
         np.add.at(stresses, assembly.contacts[:, end], assembly.levers[:, end, None, None] * dyad)
     return stresses / assembly.cell_areas[:, None, None]
 

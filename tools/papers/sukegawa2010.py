@@ -249,12 +249,12 @@ def sides(runs, told):
 
 
 def compared(runs, told):
-    smaller, larger = sides(runs, told)
-    seeds = [seed for seed in smaller if seed in larger]
-    differences = [larger[seed] - smaller[seed] for seed in seeds]
-    return seeds and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
-                         smaller=mean_of([smaller[seed] for seed in seeds]).mean,
-                         larger=mean_of([larger[seed] for seed in seeds]).mean)
+    """Over the seeds that both sides have; nothing where there are none."""
+    both = [(smaller[seed], larger[seed]) for smaller, larger in [sides(runs, told)] for seed in smaller if seed in larger]
+    differences = [larger - smaller for smaller, larger in both]
+    smaller, larger = (mean_of(side).mean for side in zip(*both)) if both else (0, 0)
+    return both and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
+                        smaller=smaller, larger=larger)
 
 
 def statement(page, runs, told, stored):
@@ -291,10 +291,6 @@ def best_shakings(runs, shape):
 
 
 # ---- plots
-
-LOOKS = [{"colour": colour, "marker": marker} for colour, marker in (
-    ("blue", "circle"), ("vermilion", "square"), ("green", "triangle"))]
-
 
 def void_ratio_points(runs, key, after, offset):
     """Each seed, beside the number of its shape: void ratios between the walls, away from them, or printed."""
