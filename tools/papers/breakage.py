@@ -13,7 +13,7 @@ import time
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from common import Output, columns_of, eq, machine, main, mean_of, moved_discs, samples_of
+from common import Output, columns_of, eq, hexagonal_moduli, machine, main, mean_of, moved_discs, samples_of
 from shown import Page, Row
 
 # The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
@@ -43,16 +43,10 @@ def notched_plate(arguments):
                energy_error=found.energy_error)
 
 
-def moduli(ratio):
-    """K and G of the lattice over kN."""
-    return math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + ratio)
-
-
 def griffith_toughness(ratio):
     """Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least, so that
-    K² = E G >= E f_t²/(kN d), E = 4 K G/(K + G) in the plane."""
-    K, G = moduli(ratio)
-    return math.sqrt(4 * K * G / (K + G))
+    K² = E G >= E f_t²/(kN d)."""
+    return math.sqrt(hexagonal_moduli(ratio)[2])
 
 
 def toughness_within(radius, ratio):
@@ -67,8 +61,7 @@ def toughness_within(radius, ratio):
     # The crack opens the row of triangles along y = 0 for x < 0: its contacts are missing.
     opened = (places[i, 1] * places[j, 1] < 0) & (places[i, 0] + places[j, 0] < 0)
     lattice = eq.Assembly(places, 0.5, found.contacts[~opened])
-    K, G = moduli(ratio)
-    nu = (K - G) / (K + G)
+    _, G, _, nu = hexagonal_moduli(ratio)
     kappa = (3 - nu) / (1 + nu)
     held = np.flatnonzero(np.hypot(*places.T) > radius - rim)
     x, y = places[held].T

@@ -290,6 +290,12 @@ def moduli_of(c):
     return bulk, shear, (bulk - shear) / (2 * bulk)
 
 
+def hexagonal_moduli(ratio):
+    """K, G, E and nu in the plane of the hexagonal lattice with kN = 1 and that kT/kN (Abe 1996, eq. 34)."""
+    K, G = math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + ratio)
+    return K, G, 4 * K * G / (K + G), (K - G) / (K + G)
+
+
 def moved_discs(discs, motions, **groups):
     """Supports of discs, each with its motion, and their groups beside those given."""
     names = [f"disc {disc}" for disc in discs]

@@ -88,10 +88,10 @@ def plan(quick):
     """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
     keys = ("shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
     small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
-    rows = TOLD["quick_runs"] if quick else [row for row in rows_of("sukegawa2010/runs") if row.variant in TOLD["variants"]]
-    rows = [[kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys)] for row in rows]
-    found = []
-    for shape, variant, seed, gal, frequency, cycles in rows:
+    rows, found = TOLD["quick_runs"] if quick else rows_of("sukegawa2010/runs"), []
+    for row in (row for row in rows if row["variant"] in TOLD["variants"]):
+        shape, variant, seed, gal, frequency, cycles = (
+            kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys))
         name = f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz"
         name += f"_{cycles}cycles" if cycles > usual_cycles(frequency) else ""
         found.append((Row(run=name, **dict(zip(keys, (shape, variant, seed, gal, frequency, cycles)))),
@@ -250,11 +250,11 @@ def sides(runs, told):
 
 def compared(runs, told):
     """Over the seeds that both sides have; nothing where there are none."""
-    both = [(smaller[seed], larger[seed]) for smaller, larger in [sides(runs, told)] for seed in smaller if seed in larger]
-    differences = [larger - smaller for smaller, larger in both]
-    smaller, larger = (mean_of(side).mean for side in zip(*both)) if both else (0, 0)
+    smaller, larger = sides(runs, told)
+    both = [(smaller[seed], larger[seed]) for seed in smaller if seed in larger]
+    differences = [b - a for a, b in both]
     return both and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
-                        smaller=smaller, larger=larger)
+                        smaller=mean_of(a for a, _ in both).mean, larger=mean_of(b for _, b in both).mean)
 
 
 def statement(page, runs, told, stored):

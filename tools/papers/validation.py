@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line, machine,
-                    main, mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
+from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line,
+                    hexagonal_moduli, machine, main, mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
 from shown import Page, Row
 from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
@@ -258,10 +258,8 @@ def shown_z(row):
 
 def half_plane(kT):
     """E and the displacement under a unit force into y < 0 at the origin, in plane stress, up to a rigid translation
-    along y (Timoshenko & Goodier, article 36), of the sheet with kN = 1: K = sqrt3/2 kN, G = sqrt3/4 (kN + kT) (Abe
-    1996, eq. 34)."""
-    K, G = math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + kT)
-    young, nu = 4 * K * G / (K + G), (K - G) / (K + G)
+    along y (Timoshenko & Goodier, article 36), of the sheet with kN = 1."""
+    young, nu = hexagonal_moduli(kT)[2:]
 
     def displacement(x):
         r, angle, unit = np.hypot(*x.T), np.arctan2(x[:, 0], -x[:, 1]), 1 / (math.pi * young)
@@ -396,8 +394,8 @@ def seconds_text(seconds):
 
 
 def judged(page, told, names):
-    """A comparison: a published number, or a theory, and ours, each with its standard error; `why`: the reason known for
-    a difference; allowance: what the published number itself leaves out, added to its error."""
+    """A comparison: a published number, or a theory, and ours, each with its standard error; `why`: the reason known
+    for a difference; allowance: what the published number itself leaves out, added to its error."""
     theirs = NUMBERS[page.fill(told["published"], names)] if "published" in told else Row(
         value=float(page.value(told["theory"], names)), error=0, source=told["source"])
     (ours, own_error), error = map(float, estimate(page.value(told["ours"], names))), float(theirs.error)

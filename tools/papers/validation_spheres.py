@@ -115,18 +115,21 @@ def elastic(name, scene, closing):
     """Rows of an elastic impact beside Hertz's theory."""
     overlap, force, duration = hertz_elastic(scene, closing)
     ours = scene.measured(duration, lambda c: (1e6 * c.overlap, 1e-3 * c.force, 1e6 * c.duration), deep=True)
-    return [Row(name=name, what=what, theory=theory, ours=number) for what, theory, number in zip(
-        ("largest overlap, µm", "largest force, kN", "duration, µs"), (1e6 * overlap, 1e-3 * force, 1e6 * duration), ours)]
+    names = ("largest overlap, µm", "largest force, kN", "duration, µs")
+    theories = (1e6 * overlap, 1e-3 * force, 1e6 * duration)
+    return [Row(name=name, what=what, theory=theory, ours=number) for what, theory, number in zip(names, theories, ours)]
 
 
-def oblique_of_steel(over_friction, hertz=True):
-    """Test 5: surface speeds over mu times the normal speeds, before and after, for a step; duration."""
-    radius, normal, mu = 1e-5, 5.0, 0.3
-    scene, duration = impact_on_floor("steel", radius, normal, over_friction * mu * normal, mu=mu, hertz=hertz)
+OBLIQUE = Row(radius=1e-5, normal=5.0, mu=0.3)  # of test 5
 
-    def surface(found):
-        return (found.velocities[0, 0] + found.spins[0] * radius) / (mu * found.velocities[0, 1])
-    return scene, duration, over_friction * mu * normal / (mu * normal), surface
+
+def oblique(surface_speed, hertz=True):
+    """Test 5: steel meets the floor."""
+    return impact_on_floor("steel", OBLIQUE.radius, OBLIQUE.normal, surface_speed, mu=OBLIQUE.mu, hertz=hertz)
+
+
+def surface_after(found):
+    return found.velocities[0, 0] + found.spins[0] * OBLIQUE.radius
 
 
 def force_rows(material):
@@ -142,11 +145,11 @@ def force_rows(material):
 
 
 def impacts(quick):
-    progress, floor = Progress("eight impacts:"), impact_on_floor
-    found = {"elastic": [
-        *(row for material in ("glass", "limestone") for row in elastic(f"test 1, {material}", meeting_spheres(material), 20)),
-        *(row for material in ("aluminium alloy", "magnesium alloy")
-          for row in elastic(f"test 2, {material}", floor(material, 0.1, 0.2)[0], 0.2))], "restitutions": []}
+    progress, floor, found = Progress("eight impacts:"), impact_on_floor, {"elastic": [], "restitutions": []}
+    for material in ("glass", "limestone"):
+        found["elastic"] += elastic(f"test 1, {material}", meeting_spheres(material), 20)
+    for material in ("aluminium alloy", "magnesium alloy"):
+        found["elastic"] += elastic(f"test 2, {material}", floor(material, 0.1, 0.2)[0], 0.2)
     progress.update(0.3)
     for material, e in zip(("aluminium oxide", "cast iron", "aluminium oxide", "cast iron", "aluminium oxide"),
                            (0.2, 0.4, 0.6, 0.8, 1.0)):
@@ -155,8 +158,8 @@ def impacts(quick):
             ours, = scene.measured(duration, lambda c: (c.velocities[0, 1] / 3.9,))
             found["restitutions"].append(Row(name=f"{material}, {name}", theory=e, ours=ours))
     progress.update(0.6)
-    scene, duration, before, surface = oblique_of_steel(2, hertz=False)
-    found["stuck"], = scene.measured(duration, lambda c: (surface(c) / before * c.velocities[0, 1] / 5.0,))
+    scene, duration = oblique(2 * OBLIQUE.mu * OBLIQUE.normal, hertz=False)
+    found["stuck"], = scene.measured(duration, lambda c: (surface_after(c) / (2 * OBLIQUE.mu * OBLIQUE.normal),))
     # Test 7: equal spheres that spin against each other do not slip, and nothing acts across the contact.
     contact = {"stiffness": hertz_stiffness("aluminium alloy of test 6", 0.05, True), "restitution": 0.5, "friction": 0.4,
                "tangential_ratio": 2 / 7}
@@ -166,12 +169,13 @@ def impacts(quick):
                                                     lambda c: (c.spins[0], c.velocities[0, 1]))
     found["forces"] = {material: force_rows(material) for material in ("glass", "limestone")}
     rows = []
-    for x in np.arange(0.5, 14.01, 1.5 if quick else 0.5):
-        after = []
-        for hertz in (True, False):
-            scene, duration, before, surface = oblique_of_steel(x, hertz)
-            after.append(surface(scene.collide(duration / STEPS_PER_CONTACT)))
-        rows.append(Row(surface_before=before, surface_after_hertz=after[0], surface_after_linear=after[1]))
+    for before in np.arange(0.5, 14.01, 1.5 if quick else 0.5) * OBLIQUE.mu * OBLIQUE.normal:
+        row = Row(surface_before=before / (OBLIQUE.mu * OBLIQUE.normal))
+        for name, hertz in (("hertz", True), ("linear", False)):
+            scene, duration = oblique(before, hertz)
+            after = scene.collide(duration / STEPS_PER_CONTACT)
+            row["surface_after_" + name] = surface_after(after) / (OBLIQUE.mu * after.velocities[0, 1])
+        rows.append(row)
     progress.end()
     found["slides"] = [abs(row.surface_after_hertz - (row.surface_before - 7)) < 1e-3 for row in rows]
     found["first"] = rows[found["slides"].index(True)].surface_before
@@ -259,8 +263,8 @@ def lammps(_quick):
         readings.append(Row(name=row.name, ours=ours, why=row.why))
         progress.update(0.05 * len(readings))
     # The closed form of a program whose recorded numbers could not be had, with numbers of our own.
-    wall = Scene([sphere(0.0025, 2700, (0, 0.0025), (0, -2.0))], "linear_dashpot", {"stiffness": 1e10, "restitution": 0.7},
-                 [FLOOR])
+    wall = Scene([sphere(0.0025, 2700, (0, 0.0025), (0, -2.0))], "linear_dashpot",
+                 {"stiffness": 1e10, "restitution": 0.7}, [FLOOR])
     duration = math.pi * math.sqrt(wall.reduced_mass / 1e10)
     found = {"readings": readings, "apart": max(map(abs, differences_by_their_rules())),
              "fall": step_error(*(replayed("alone", step, steps).positions[0, 1]
