@@ -104,8 +104,9 @@ def dilution(bonds, quick):
     t1, t2 = (row.standard_deviation / math.sqrt(2 * (row.samples - 1)) for row in (small, large))
     error = math.sqrt((s2 / wide * small.standard_error)**2 + (s1 / wide * large.standard_error)**2 +
                       (s2 * (m1 - m2) / wide**2 * t1)**2 + (s1 * (m2 - m1) / wide**2 * t2)**2)
-    return {"exponent": exponent, "onsets": onsets, "name": name, "what": what, "threshold": NUMBERS[name + " threshold"],
-            "fit": fit, "crossing": ((m2 * s1 - m1 * s2) / wide, error)}, {name + "_onsets": rows}
+    return {"exponent": exponent, "onsets": onsets, "name": name, "what": what, "fit": fit,
+            "crossing": ((m2 * s1 - m1 * s2) / wide, error), "threshold": NUMBERS[name + " threshold"]}, {
+                name + "_onsets": rows}
 
 
 def site_dilution(quick):
@@ -419,8 +420,8 @@ def section(page, name, quick):
         for one, inside in page.leaves({"parts": told.get("trends", [])}, names)]
     stored = [row for row in STORED if row.item == name]
     return Row(name=name, heading=told["heading"], words=page.fill(told["text"].strip(), names), tables=tables,
-               plots=page.figures(told.get("figures", ()), **names), comparisons=comparisons, trends=trends, stored=stored,
-               notes=[note for note in (page.fill(note, names) for note in told.get("notes", [])) if note],
+               plots=page.figures(told.get("figures", ()), **names), comparisons=comparisons, trends=trends,
+               stored=stored, notes=[note for note in (page.fill(note, names) for note in told.get("notes", [])) if note],
                verdicts=[one.agrees for one in comparisons] + [one.holds for one in trends],
                sources=list(dict.fromkeys(one.source for one in (*comparisons, *trends, *stored))),
                seconds=time.monotonic() - begun)

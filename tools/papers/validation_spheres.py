@@ -117,7 +117,7 @@ def elastic(name, scene, closing):
     ours = scene.measured(duration, lambda c: (1e6 * c.overlap, 1e-3 * c.force, 1e6 * c.duration), deep=True)
     names = ("largest overlap, µm", "largest force, kN", "duration, µs")
     theories = (1e6 * overlap, 1e-3 * force, 1e6 * duration)
-    return [Row(name=name, what=what, theory=theory, ours=number) for what, theory, number in zip(names, theories, ours)]
+    return [Row(name=name, what=what, theory=theory, ours=one) for what, theory, one in zip(names, theories, ours)]
 
 
 OBLIQUE = Row(radius=1e-5, normal=5.0, mu=0.3)  # of test 5
@@ -161,8 +161,8 @@ def impacts(quick):
     scene, duration = oblique(2 * OBLIQUE.mu * OBLIQUE.normal, hertz=False)
     found["stuck"], = scene.measured(duration, lambda c: (surface_after(c) / (2 * OBLIQUE.mu * OBLIQUE.normal),))
     # Test 7: equal spheres that spin against each other do not slip, and nothing acts across the contact.
-    contact = {"stiffness": hertz_stiffness("aluminium alloy of test 6", 0.05, True), "restitution": 0.5, "friction": 0.4,
-               "tangential_ratio": 2 / 7}
+    stiffness = hertz_stiffness("aluminium alloy of test 6", 0.05, True)
+    contact = {"stiffness": stiffness, "restitution": 0.5, "friction": 0.4, "tangential_ratio": 2 / 7}
     equal = Scene([sphere(0.1, 2700, (-0.1, 0), (0.2, 0), 10.0), sphere(0.1, 2700, (0.1, 0), (-0.2, 0), -10.0)],
                   "hertz_dashpot", contact)
     found["spin"], found["across"] = equal.measured(hertz_elastic(equal, 0.4)[2],
