@@ -409,15 +409,19 @@ def judged(page, told, names):
                source=theirs.source, ours=ours, standard_error=own_error, agrees=agrees, verdict=verdict)
 
 
+def decided(page, told, names):
+    """A statement without a number."""
+    return Row(statement=page.fill(told["statement"], names), source=told["source"],
+               holds=bool(page.value(told["holds"], names)), evidence=page.fill(told["evidence"], names))
+
+
 def section(page, name, quick):
     """What an item found, and what its entry in validation.toml says of that."""
     begun, told = time.monotonic(), page.told[name]
     values, tables = ITEMS[name](quick)
     names = {**values, **tables}
-    comparisons = [judged(page, *leaf) for leaf in page.leaves({"parts": told.get("comparisons", [])}, names)]
-    trends = [Row(statement=page.fill(one["statement"], inside), source=one["source"], evidence=page.fill(
-        one["evidence"], inside), holds=bool(page.value(one["holds"], inside)))
-        for one, inside in page.leaves({"parts": told.get("trends", [])}, names)]
+    comparisons, trends = ([judge(page, *leaf) for leaf in page.leaves({"parts": told.get(kind, [])}, names)]
+                           for kind, judge in (("comparisons", judged), ("trends", decided)))
     stored = [row for row in STORED if row.item == name]
     return Row(name=name, heading=told["heading"], words=page.fill(told["text"].strip(), names), tables=tables,
                plots=page.figures(told.get("figures", ()), **names), comparisons=comparisons, trends=trends,
