@@ -425,7 +425,7 @@ def section(page, name, quick):
     stored = [row for row in STORED if row.item == name]
     return Row(name=name, heading=told["heading"], words=page.fill(told["text"].strip(), names), tables=tables,
                plots=page.figures(told.get("figures", ()), **names), comparisons=comparisons, trends=trends,
-               stored=stored, notes=[note for note in (page.fill(note, names) for note in told.get("notes", [])) if note],
+               stored=stored, notes=list(filter(None, (page.fill(note, names) for note in told.get("notes", [])))),
                verdicts=[one.agrees for one in comparisons] + [one.holds for one in trends],
                sources=list(dict.fromkeys(one.source for one in (*comparisons, *trends, *stored))),
                seconds=time.monotonic() - begun)
