@@ -31,7 +31,6 @@ LONGEST_SOURCE = 800  # lines
 WIDEST_LINE = 120  # characters
 FULLEST_FOLDER = 30  # sources in one folder of lib or tools
 LARGEST_SVG = 300_000  # bytes of a figure in data
-OVERFULL = {}  # folders above it, with the number that they may not exceed: being divided, never added to
 
 # Third-party headers, the places that may include them (patterns of paths), and the number of files of lib/equidem that
 # may do so.
@@ -214,9 +213,8 @@ def check_folders(paths):
         if path.startswith(("lib/", "tools/")) and path.endswith((".cpp", ".hpp")):
             count[os.path.dirname(path)] = count.get(os.path.dirname(path), 0) + 1
     for folder, files in sorted(count.items()):
-        most = OVERFULL.get(folder, FULLEST_FOLDER)
-        if files > most:
-            yield folder, 1, f"the folder has {files} sources, more than {most}: divide it by what they do"
+        if files > FULLEST_FOLDER:
+            yield folder, 1, f"the folder has {files} sources, more than {FULLEST_FOLDER}: divide it by what they do"
 
 
 def part_of(path, house):
