@@ -40,7 +40,7 @@ std::vector<Wall> box_around(const Assembly& assembly) {
 
 std::string refusal(const std::vector<Wall>& walls, const Assembly& assembly) {
   try {
-    check_walls(walls, assembly);
+    for (std::size_t k = 0; k < walls.size(); ++k) check_wall(walls, k, assembly);
   } catch (const Error& error) {
     return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
   }

@@ -123,9 +123,9 @@ TEST_CASE("quadratic_springs_move_clumps_and_ellipses_without_loss") {
 }
 
 TEST_CASE("a_law_of_a_longer_list_is_known_by_its_name") {
-  CHECK(normal_law_from("quadratic_spring") == quadratic);
+  CHECK(enum_from<NormalLaw>("quadratic_spring") == quadratic);
   CHECK(to_string(quadratic) == "quadratic_spring");
-  CHECK(letter_of(quadratic) == "Q");
+  CHECK(std::string(describe(quadratic).letter) == "Q");
   CAPTURE(names_of_laws(LawKind::force));
   CHECK(names_of_laws(LawKind::force).ends_with(" or quadratic_spring"));
 }

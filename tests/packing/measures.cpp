@@ -107,3 +107,18 @@ TEST_CASE("the_region_measured_keeps_away_from_walls_and_surface") {
   CHECK(region.low.x == Approx(4 * mean));
   CHECK(packing.box.size.y - region.high.y == Approx(4 * mean));
 }
+
+TEST_CASE("a_packing_and_a_run_of_it_have_one_void_ratio") {
+  // under an open top with a step in the surface, and shapes whose radii are not those of circles of equal area
+  GrainPacking packing = packing_of({{40, 20}, PackingBox::Sides::open_top}, {}, {});
+  for (int row = 0; row < 10; ++row)
+    for (int column = 0; column < (row < 8 ? 20 : 10); ++column)
+      packing.grains.push_back(
+          {.position = {1.0 + 2 * column, 1.0 + 2 * row}, .radius = 1, .inertia = {1, 1}, .short_half_axis = 0.7});
+  packing.radii.assign(packing.grains.size(), 1);
+  GrainScene scene;
+  scene.grains = packing.grains;
+  scene.walls = walls_of(packing.box);
+  BoxMeasures run(scene, {});
+  CHECK(measure(packing).void_ratio == run.record(0, 0, scene.grains, scene.walls).void_ratio);
+}

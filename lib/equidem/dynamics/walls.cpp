@@ -113,8 +113,4 @@ void check_wall(std::span<const Wall> walls, std::size_t k, const Assembly& asse
   check_discs(walls[k], assembly);
 }
 
-void check_walls(std::span<const Wall> walls, const Assembly& assembly) {
-  for (std::size_t k = 0; k < walls.size(); ++k) check_wall(walls, k, assembly);
-}
-
 }  // namespace equidem

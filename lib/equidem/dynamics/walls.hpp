@@ -37,7 +37,4 @@ WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motion
 ///         finite, a periodic assembly (it has no outside), two walls that face each other and cross, a disc behind
 void check_wall(std::span<const Wall> walls, std::size_t k, const Assembly& assembly);
 
-/// Check every wall.
-void check_walls(std::span<const Wall> walls, const Assembly& assembly);
-
 }  // namespace equidem

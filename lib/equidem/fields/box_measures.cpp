@@ -12,7 +12,7 @@
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 namespace equidem {
 namespace {
@@ -213,16 +213,8 @@ std::optional<Region> measured_region(std::span<const Grain> grains, std::span<c
   return region;
 }
 
-SolidMeasures measure_solids(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region) {
-  const Vec2 sides = region.high - region.low;
-  if (!(sides.x > 0 && sides.y > 0)) {
-    bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
-              "Give its lower left corner first");
-  }
-  double covered = 0;
-  for (const Grain& grain : grains) covered += clipped_area(grain, clumps, region);
-  SolidMeasures measures;
-  measures.solid_fraction = covered / region.area();
+SolidMeasures solid_measures(double covered, const Region& region) {
+  SolidMeasures measures{.solid_fraction = covered / region.area()};
   measures.porosity = 1 - measures.solid_fraction;
   measures.void_ratio = measures.porosity / measures.solid_fraction;
   return measures;
@@ -296,7 +288,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
     region = measured_region(grains, scene_.clumps, box, heap);
   }
   if (region) {
-    const SolidMeasures solids = measure_solids(grains, scene_.clumps, *region);
+    const SolidMeasures solids = solid_measures(clipped_area(grains, scene_.clumps, *region), *region);
     if (solids.solid_fraction > 0) moment.void_ratio = solids.void_ratio;
     moment.porosity = solids.porosity;
   }

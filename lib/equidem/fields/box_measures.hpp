@@ -82,9 +82,8 @@ struct SolidMeasures {
   double solid_fraction = 0, porosity = 0, void_ratio = 0;
 };
 
-/// Exact areas; where two bodies overlap the overlap counts twice, as their solid does.
-/// \throws Error (bad_input) on a region without area
-SolidMeasures measure_solids(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region);
+/// \param covered area of the bodies in the region, m²
+SolidMeasures solid_measures(double covered, const Region& region);
 
 struct MeasureOptions {
   std::optional<Region> region = {};  ///< of the void ratio, m, where the box stands at the start; none:

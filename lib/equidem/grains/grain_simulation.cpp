@@ -192,13 +192,13 @@ void GrainSimulation::advance(std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     const std::int64_t now = self.system.step;
     const GrainCounters counters = self.system.counters;
-    if (self.kept.arrays.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
+    if (!self.kept || now - self.kept->step >= steps_between_kept_states) self.kept = self.state();
     try {
-      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
+      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept->step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // the failed step has changed contacts: repeat the steps from an earlier state to its start
-      go_back_to(self.kept);
+      self.go_back_to(*self.kept);
       while (self.system.step < now) {
         self.system.contacts.near.record = self.system.step + 1 == now;
         self.make_step();
@@ -313,69 +313,30 @@ const Effects& GrainSimulation::effects() const {
   return implementation_->effects;
 }
 
-namespace {
-
-/// As they were in the last step.
-std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
-  const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
-  if (candidate.j < 0) return {radius * candidate.normal, {}};
-  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))].radius;
-  const double lever = radius / sum * (sum - candidate.overlap);
-  return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
-}
-
-std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
-  if (system.shapes.parts.empty()) return arms_of_discs(system, system.contacts.candidates[c]);
-  return {system.contacts.part_pairs[c].arm_i, system.contacts.part_pairs[c].arm_j};
-}
-
-}  // namespace
-
 std::vector<GrainContact> GrainSimulation::contacts() const {
   const GrainSystem& system = implementation_->system;
   std::vector<GrainContact> contacts;
-  const auto add = [&](const Candidate& candidate, std::pair<Vec2, Vec2> arms) {
-    if (!candidate.touching || candidate.steps == 0) return;
-    GrainContact contact;
-    std::tie(contact.arm_i, contact.arm_j) = arms;
-    contact.i = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.i)]);
-    contact.overlap = candidate.overlap;
-    contact.closing = candidate.closing;
-    contact.normal = candidate.normal;
-    contact.normal_force = candidate.impulse / system.dt();
-    contact.tangential_force = candidate.tangential_impulse / system.dt();
-    contact.mode = candidate.mode;
-    contact.steps = candidate.steps;
-    if (candidate.j < 0) {
-      contact.j = ~static_cast<std::int32_t>(system.walls.wall_of[static_cast<std::size_t>(~candidate.j)]);
-    } else {
-      const std::int32_t other = system.body_of(candidate.j);
-      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(other)]);
-      if (contact.j < contact.i) {
-        std::swap(contact.i, contact.j);
-        contact.normal = -contact.normal;
-        std::swap(contact.arm_i, contact.arm_j);
-      }
-    }
-    contacts.push_back(contact);
-  };
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const Candidate candidate = candidate_of(system, block, p);
-      add(candidate, arms_of_discs(system, candidate));
-    }
+  for (const ContactState& state : contact_states(system)) {
+    if (state.steps == 0) continue;
+    GrainContact& contact =
+        contacts.emplace_back(GrainContact{.i = static_cast<std::int32_t>(system.bodies.grain_of[state.i]),
+                                           .overlap = state.overlap,
+                                           .closing = state.closing,
+                                           .normal = state.normal,
+                                           .arm_i = state.arm_i,
+                                           .arm_j = state.arm_j,
+                                           .normal_force = state.impulse / system.dt(),
+                                           .tangential_force = state.tangential_impulse / system.dt(),
+                                           .mode = state.mode,
+                                           .steps = state.steps});
+    contact.j =
+        static_cast<std::int32_t>(state.j < 0 ? ~system.walls.wall_of[~state.j] : system.bodies.grain_of[state.j]);
+    if (contact.j < 0 || contact.j > contact.i) continue;
+    std::swap(contact.i, contact.j);
+    contact.normal = -contact.normal;
+    std::swap(contact.arm_i, contact.arm_j);
   }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      const auto [candidate, pair] = candidate_of(system, list, p);
-      add(candidate, {pair.arm_i, pair.arm_j});
-    }
-  });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
-    add(system.contacts.candidates[c], arms_of(system, c));
-  std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
-    return std::pair(a.i, a.j) < std::pair(b.i, b.j);
-  });
+  std::ranges::stable_sort(contacts, {}, [](const GrainContact& c) { return std::pair(c.i, c.j); });
   return contacts;
 }
 

@@ -20,6 +20,11 @@ std::vector<double>& SavedState::operator[](std::string_view name) {
   return const_cast<std::vector<double>&>(std::as_const(*this)[name]);
 }
 
+void refuse_saved_number(std::string_view array, double number) {
+  bad_input(fmt::format("the array '{}' of the saved state has {} where no such number can be", array, number),
+            "it is of another case, or damaged", "Continue with the case that the state was saved from");
+}
+
 std::vector<double> numbers_of(std::span<const DiscMotion> motions) {
   std::vector<double> numbers;
   numbers.reserve(3 * motions.size());

@@ -3,35 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/outline.hpp"
-#include "equidem/packing/overlaps.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr double touching_gap = 1e-8;  // of the smaller radius
-
-double mean_diameter(const GrainPacking& packing) {
-  return 2 * std::accumulate(packing.radii.begin(), packing.radii.end(), 0.0) / static_cast<double>(packing.size());
-}
-
-/// The lowest top of all columns.
-double lowest_surface(const GrainPacking& packing) {
-  double largest = 0;
-  for (const Grain& grain : packing.grains) largest = std::max(largest, grain.radius);
-  const auto columns = std::max<std::size_t>(1, static_cast<std::size_t>(packing.box.size.x / (4 * largest)));
-  std::vector<double> tops(columns, 0);
-  for (const Grain& grain : packing.grains) {
-    const double share = std::clamp(grain.position.x / packing.box.size.x, 0.0, 1.0);
-    double& top = tops[std::min(columns - 1, static_cast<std::size_t>(share * static_cast<double>(columns)))];
-    top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));
-  }
-  return *std::min_element(tops.begin(), tops.end());
-}
 
 /// Inverse of the distance from a point that lies `sunk` below the surface to the centre of curvature of the place that
 /// reaches farthest along n.
@@ -79,21 +59,16 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_
   };
   const double largest = *std::max_element(packing.radii.begin(), packing.radii.end());
   const double margin = gap_of(largest, largest);
-  const auto whole = [](double shift, double period) {
-    return period > 0 ? static_cast<std::int32_t>(std::lround(shift / period)) : 0;
-  };
-  PairFinder finder;
-  for (const BodyPair& pair : finder.within(packing.box, circles, margin)) {
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
-    if (packing.body_of(i) == packing.body_of(j) && pair.shift == Vec2{}) continue;
+  for (const CirclePair& pair : pairs_within(circles, packing.box.periods(), margin)) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
+    if (i == j || (packing.body_of(i) == packing.body_of(j) && pair.shift == Vec2{})) continue;
     const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
-    const double gap = gap_of(radius_of(packing, pair.i), radius_of(packing, pair.j));
+    const double gap = gap_of(radius_of(packing, pair.i), radius_of(packing, pair.j.body));
     for_touches(outlines[i], outlines[j], branch, gap, [&](const Touch& touch) {
       // Midway between the points of the two surfaces, then nearer to the smaller one.
       const Vec2 middle = 0.5 * (touch.arm_i + touch.arm_j + branch);
       const double sunk_i = touch.share * touch.overlap, sunk_j = touch.overlap - sunk_i;
-      contacts.push_back({pair.i, pair.j, whole(pair.shift.x, packing.box.size.x),
-                          whole(pair.shift.y, packing.box.size.y), touch.overlap, touch.normal,
+      contacts.push_back({pair.i, pair.j.body, pair.j.a, pair.j.b, touch.overlap, touch.normal,
                           middle + (0.5 - touch.share) * touch.overlap * touch.normal,
                           curvature(outlines[i].part(touch.part_i), touch.normal, sunk_i),
                           curvature(outlines[j].part(touch.part_j), -touch.normal, sunk_j)});
@@ -123,15 +98,10 @@ std::vector<BondCount> bond_counts(const GrainPacking& packing) {
 }
 
 Region measured_region(const GrainPacking& packing) {
-  const Vec2 size = packing.box.size;
-  const Region whole = {{0, 0}, size};
+  const Region whole = {{0, 0}, packing.box.size};
   if (packing.box.periodic()) return whole;
-  const double diameter = mean_diameter(packing);
-  const bool open = packing.box.sides == PackingBox::Sides::open_top;
-  const double top = open ? lowest_surface(packing) - 3 * diameter : size.y - 2 * diameter;
-  const Region region = {{2 * diameter, 2 * diameter}, {size.x - 2 * diameter, top}};
-  const bool large = region.high.x - region.low.x > 2 * diameter && region.high.y - region.low.y > 2 * diameter;
-  return large ? region : whole;
+  const GrainBox box{.inside = whole, .lid = packing.box.sides != PackingBox::Sides::open_top};
+  return measured_region(packing.grains, packing.clumps, box).value_or(whole);
 }
 
 namespace {
@@ -143,8 +113,7 @@ double covered_area(const GrainPacking& packing, const Region& region) {
   for (int y = -images; y <= images; ++y) {
     for (int x = -images; x <= images; ++x) {
       const Vec2 shift = {x * packing.box.size.x, y * packing.box.size.y};
-      const Region seen = {region.low - shift, region.high - shift};
-      for (const Grain& grain : packing.grains) covered += clipped_area(grain, packing.clumps, seen);
+      covered += clipped_area(packing.grains, packing.clumps, {region.low - shift, region.high - shift});
     }
   }
   return covered;
@@ -178,9 +147,7 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Region> regio
   if (region && !(covered > 0)) {
     bad_input("no body reaches into the region measured", "it has no void ratio", "Give one that holds some bodies");
   }
-  result.solid_fraction = covered / result.region.area();
-  result.porosity = 1 - result.solid_fraction;
-  result.void_ratio = result.porosity / result.solid_fraction;
+  static_cast<SolidMeasures&>(result) = solid_measures(covered, result.region);
 
   std::vector<std::vector<std::int32_t>> partners(packing.size());
   for (const PackingContact& contact : contacts_of(packing)) {

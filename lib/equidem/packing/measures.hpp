@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/assembly/touching.hpp"
-#include "equidem/grains/scene/clipped_area.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
@@ -39,11 +39,8 @@ std::vector<BondCount> bond_counts(const GrainPacking& packing);
 /// \param partners of each body, one for each contact; negative: a wall
 std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed);
 
-struct PackingMeasures {
-  Region region;  ///< in which the next three are measured
-  double solid_fraction = 0;
-  double void_ratio = 0;  ///< e = n/(1 - n)
-  double porosity = 0;    ///< n = 1 - solid fraction
+struct PackingMeasures : SolidMeasures {
+  Region region;  ///< in which solids are measured
   std::int64_t contacts = 0, wall_contacts = 0;
   double coordination = 0;                   ///< contacts of a body, those with walls included
   double coordination_without_rattlers = 0;  ///< the same of the rest
@@ -52,9 +49,7 @@ struct PackingMeasures {
   double largest_overlap = 0;  ///< over the smaller radius (of the body: PackingShape)
 };
 
-/// The box without strips of two mean diameters at its walls; under an open top also without three below the lowest
-/// place of the surface, seen in columns two largest diameters wide. The whole box where it is periodic, or too small
-/// for that.
+/// As that of a box in a run (fields/box_measures.hpp); the whole box where it is periodic, or too small for that.
 Region measured_region(const GrainPacking& packing);
 
 /// \throws Error (bad_input) on a region without area, or out of a periodic box

@@ -7,29 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
-
-/// Two bodies that overlap or may soon: i and the image of j at x_j + shift.
-struct BodyPair {
-  std::int32_t i = 0, j = 0;
-  Vec2 shift;
-};
-
-/// Pairs i < j of circles with |x_j + shift - x_i| < r_i + r_j + margin, across the period of a periodic box too.
-class PairFinder {
- public:
-  const std::vector<BodyPair>& within(const PackingBox& box, std::span<const Circle> circles, double margin);
-
- private:
-  NeighbourFinder finder_;
-  std::vector<Circle> circles_;
-  std::vector<std::int32_t> owner_;
-  std::vector<Vec2> shift_;
-  std::vector<BodyPair> pairs_;
-};
 
 /// Unit springs between overlapping bodies, and between bodies and walls: energy sum overlap²/2 (- weight . x).
 struct PushingOptions {

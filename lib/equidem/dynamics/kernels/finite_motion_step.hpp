@@ -187,22 +187,6 @@ EQUIDEM_INLINE Resultant resultant_of(const BondSums& sum, double kN, double kT)
   }
 }
 
-/// A group's own motion and velocity.
-struct GroupState {
-  Lanes x, y, theta, vx, vy, omega;
-};
-
-template <LoopKind kind>
-EQUIDEM_INLINE GroupState load_state(const LoopData& data, int parity, std::int32_t group) {
-  const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(group) * 4 * kind.width();
-  GroupState own;
-  load_group<kind.width()>(data.motion[parity] + at, own.x, own.y, own.theta);
-  if constexpr (kind.resistance == LoopKind::Resistance::dashpot) {
-    load_group<kind.width()>(data.velocity_at[parity] + at, own.vx, own.vy, own.omega);
-  }
-  return own;
-}
-
 /// The contacts of one group.
 template <LoopKind kind>
 struct GroupBonds {

@@ -7,45 +7,24 @@
 /// Loops and scenes without a cell do not change by it.
 #pragma once
 
-#include <compare>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "equidem/core/vector.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 namespace equidem {
 
 struct GrainSystem;
-struct ImagedContact;
+struct ContactState;
 struct PeriodicCell;
-
-/// A body moved by a whole number of each period.
-struct PeriodicImage {
-  std::int32_t body = 0;
-  std::int32_t b = 0, a = 0;  ///< along y, along x
-  auto operator<=>(const PeriodicImage&) const = default;
-};
-
-struct Periods {
-  Vec2 a, b;  ///< a along x; b = {} without a period along y
-  [[nodiscard]] Vec2 shift(const PeriodicImage& image) const {
-    return static_cast<double>(image.a) * a + static_cast<double>(image.b) * b;
-  }
-};
 
 Periods periods_of(const PeriodicCell& cell);
 
-/// The image of a body in the cell around a centre: body 0, and the periods by which it is moved into the cell.
-PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);
-
-/// All images that come near a body or could: those nearer to the box of all centres than their radius, the largest
-/// radius and the margin together. Ascending.
-std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin);
-
-/// Find the images again, and replace the near pairs and parts by contacts.
-void list_contacts(GrainSystem& system, const std::vector<ImagedContact>& contacts);
+/// Whether a contact is one of near pairs or parts, not of candidates.
+bool is_listed(const GrainSystem& system, const ContactState& contact);
+/// Find the images again, and replace the near pairs and parts by contacts, in any order; those with walls are not
+/// read.
+void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts);
 
 /// Find the images again for the present margin of the candidates; contacts keep their state.
 void find_images(GrainSystem& system);

@@ -129,24 +129,6 @@ void set_stress(GrainSystem& system, const CellSums& sums) {
   cell.stress = (-1 / cell.area()) * ((1 / system.dt()) * sums.here + sums.flux);
 }
 
-/// The members of a control that are saved.
-constexpr double CellControl::*control_saved[] = {
-    &CellControl::wanted,    &CellControl::stress,         &CellControl::rate,      &CellControl::stiffness,
-    &CellControl::viscosity, &CellControl::largest_wanted, &CellControl::overshoot, &CellControl::errors,
-    &CellControl::steps,     &CellControl::reached,        &CellControl::side};
-
-/// All numbers of a cell that are saved, in their order.
-template <class Cell, class Visit>
-void visit_numbers(Cell& cell, const Visit& visit) {
-  for (auto* periods : {&cell.now, &cell.before})
-    for (auto* vector : {&periods->a, &periods->b}) visit(vector->x), visit(vector->y);
-  for (auto* tensor : {&cell.gradient, &cell.moment, &cell.stress})
-    visit(tensor->xx), visit(tensor->xy), visit(tensor->yx), visit(tensor->yy);
-  visit(cell.strain.xx), visit(cell.strain.yy), visit(cell.strain.xy);
-  for (auto& control : cell.controls)
-    for (const auto number : control_saved) visit(control.*number);
-}
-
 }  // namespace
 
 void set_cell(GrainSystem& system) {
@@ -348,20 +330,6 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   add("xx", servo.stress_xx, state.stress.xx, cell.controls[0]);
   add("yy", servo.stress_yy, state.stress.yy, cell.controls[1]);
   return state;
-}
-
-std::vector<double> numbers_of_cell(const MovingCell& cell) {
-  std::vector<double> numbers;
-  visit_numbers(cell, [&](double number) { numbers.push_back(number); });
-  return numbers;
-}
-
-bool take_numbers(const std::vector<double>& numbers, MovingCell& cell) {
-  if (numbers.size() != numbers_of_cell(cell).size()) return false;
-  auto from = numbers.begin();
-  visit_numbers(cell, [&](double& number) { number = *from++; });
-  cell.next = cell.now;
-  return true;
 }
 
 }  // namespace equidem

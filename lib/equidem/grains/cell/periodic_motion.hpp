@@ -3,6 +3,7 @@
 /// Steps of a periodic cell that deforms, and its state.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -34,17 +35,22 @@ struct CellSums {
   double work = 0;       ///< J
 };
 
+/// What the motion of a cell goes on from.
+struct CellMotion {
+  Periods now, before;                    ///< at the start of this step, of the last one
+  Tensor2 gradient = {};                  ///< L in the step that is being made, 1/s
+  Voigt strain = {};                      ///< as in CellState
+  Tensor2 moment = {};                    ///< sum of impulse times branch of the last kick, N s m
+  Tensor2 stress = {};                    ///< deforming cells: at the start of this step, Pa
+  std::array<CellControl, 2> controls{};  ///< of xx and yy
+};
+
 /// The cell in the present step.
-struct MovingCell {
+struct MovingCell : CellMotion {
   bool active = false, deforms = false;
   Vec2 centre;                 ///< it stays in place, m
   double largest_radius = 0;   ///< of the bodies, m
-  Periods now, before, next;   ///< at the start of this step, of the last one, at the end of this one
-  Tensor2 gradient;            ///< L in the step that is being made, 1/s
-  Voigt strain;                ///< as in CellState
-  Tensor2 moment;              ///< sum of impulse times branch of the last kick, N s m
-  Tensor2 stress;              ///< deforming cells: at the start of this step, Pa
-  CellControl controls[2];     ///< of xx and yy
+  Periods next;                ///< at the end of this step
   std::vector<CellSums> sums;  ///< of each block
   CellSums bond_sums;          ///< of the impulses of bonds on images
   double solid = 0;            ///< area of the bodies, m²
@@ -75,10 +81,5 @@ void begin_cell_stress(GrainSystem& system, std::span<const GrainContact> contac
 
 /// The cell as it is, its stress by the contacts of the last step.
 CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts);
-
-/// The numbers of a cell besides places of bodies, to save and to restore.
-std::vector<double> numbers_of_cell(const MovingCell& cell);
-/// \return whether there are as many as a cell has
-bool take_numbers(const std::vector<double>& numbers, MovingCell& cell);
 
 }  // namespace equidem

@@ -189,26 +189,4 @@ void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
   tie_those_left(system);
 }
 
-std::vector<double> numbers_of(const std::vector<BondBreak>& breaks) {
-  std::vector<double> numbers;
-  for (const BondBreak& event : breaks) {
-    numbers.insert(numbers.end(), {static_cast<double>(event.step), static_cast<double>(event.bond),
-                                   static_cast<double>(event.mode), event.place.x, event.place.y, event.energy});
-  }
-  return numbers;
-}
-
-std::vector<BondBreak> breaks_of(const std::vector<double>& numbers) {
-  std::vector<BondBreak> breaks;
-  for (std::size_t at = 0; at + numbers_per_break <= numbers.size(); at += numbers_per_break) {
-    const double* n = numbers.data() + at;
-    breaks.push_back({static_cast<std::int64_t>(n[0]),
-                      static_cast<std::size_t>(n[1]),
-                      static_cast<BreakMode>(n[2]),
-                      {n[3], n[4]},
-                      n[5]});
-  }
-  return breaks;
-}
-
 }  // namespace equidem

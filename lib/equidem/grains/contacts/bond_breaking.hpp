@@ -64,9 +64,4 @@ void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& break
 /// \param breaks checked
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks);
 
-/// Numbers of a SavedState.
-inline constexpr std::size_t numbers_per_break = 6;
-std::vector<double> numbers_of(const std::vector<BondBreak>& breaks);
-std::vector<BondBreak> breaks_of(const std::vector<double>& numbers);
-
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Dashpots of bonds (contact/viscous_bond.hpp).
+/// Dashpots of bonds (contact/finite_bond.hpp).
 ///
 /// The energy that they take in a step is -sum J (v + s (g0 + g)): J their impulses, v the rates at its start, g0 and g
 /// what the impulses of others and those of dashpots add to the rates, s the share of all impulses that has acted. A

@@ -319,7 +319,8 @@ Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::si
   return candidate;
 }
 
-void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
+void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
+  std::ranges::sort(contacts, {}, [](const ContactState& contact) { return std::pair(contact.i, contact.j); });
   const BodyBlocks& blocks = system.bodies.blocks;
   auto contact = contacts.begin();
   for (std::size_t b = 0; b < blocks.count(); ++b) {

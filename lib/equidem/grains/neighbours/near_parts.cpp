@@ -387,17 +387,18 @@ void refresh_near_parts(GrainSystem& system, double reach) {
   near.moved += reach;
 }
 
-void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts) {
-  std::ranges::sort(contacts, {}, [](const auto& contact) { return std::pair(contact.second.i, contact.second.j); });
+void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts) {
+  std::ranges::sort(contacts, {},
+                    [](const ContactState& contact) { return std::pair(contact.part_i, contact.part_j); });
   auto next = contacts.begin();
   for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
     auto& lists = system.contacts.near_parts.blocks[b].lists;
     lists[0].count = lists[1].count = 0;
     std::array<NewList, 2> taken{NewList(system, lists[0], b), NewList(system, lists[1], b)};
-    for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->first.i)) == b; ++next) {
-      const auto& [contact, pair] = *next;
-      const std::size_t l = list_of(system, pair.i, pair.j);
-      taken[l].add(pair.i, pair.j, contact.normal);
+    for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next) {
+      const ContactState& contact = *next;
+      const std::size_t l = list_of(system, contact.part_i, contact.part_j);
+      taken[l].add(contact.part_i, contact.part_j, contact.normal);
       PartGroup& group = lists[l].groups.back();
       const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
       group.since[k] = system.step + 1 - contact.steps;
@@ -407,19 +408,13 @@ void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartP
       set(PartGroup::stretch, contact.stretch);
       set(PartGroup::overlap, contact.overlap);
       set(PartGroup::closing, contact.closing);
-      set(PartGroup::arm_i_x, pair.arm_i.x);
-      set(PartGroup::arm_i_y, pair.arm_i.y);
-      set(PartGroup::arm_j_x, pair.arm_j.x);
-      set(PartGroup::arm_j_y, pair.arm_j.y);
+      set(PartGroup::arm_i_x, contact.arm_i.x);
+      set(PartGroup::arm_i_y, contact.arm_i.y);
+      set(PartGroup::arm_j_x, contact.arm_j.x);
+      set(PartGroup::arm_j_y, contact.arm_j.y);
     }
   }
 }
-
-namespace {
-
-using PartColumn = PartGroup::Column;
-
-}  // namespace
 
 void load_part_bodies(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;

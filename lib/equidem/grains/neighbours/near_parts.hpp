@@ -143,8 +143,8 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
 /// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
-/// Replace the pairs by the contacts of a saved state, which may come in any order.
-void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts);
+/// Replace the pairs by these contacts; j may be an image.
+void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts);
 
 /// The loop compiled for round parts or for ellipses; it computes the impulses of this step by the
 /// pairs of a block.

@@ -173,6 +173,12 @@ double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Reg
   return clipped_area(grain.position, grain.radius, region);
 }
 
+double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region) {
+  double area = 0;
+  for (const Grain& grain : grains) area += clipped_area(grain, clumps, region);
+  return area;
+}
+
 DiscUnion union_of(std::span<const Clump::Disc> discs) {
   const std::vector<Moments> parts = parts_of_union(discs, nullptr);
   DiscUnion whole;

@@ -24,6 +24,8 @@ double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region);
 double clipped_area(std::span<const Clump::Disc> discs, const Region& region);
 /// Area of the intersection of a grain and a rectangle, m².
 double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Region& region);
+/// That of all grains; where two overlap the overlap counts twice, as their solid does.
+double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region);
 
 /// Area moments of a union of discs.
 struct DiscUnion {

@@ -40,14 +40,6 @@ std::vector<double> agility_of_kinds(const GrainScene& scene) {
   return agility;
 }
 
-/// d_c.
-double reference_length_of(const GrainScene& scene, const GrainOptions& options) {
-  double length = options.reference_length;
-  if (length == 0)
-    for (const Grain& grain : scene.grains) length = std::max(length, 2 * grain.radius);
-  return length;
-}
-
 /// \param step s, for a stiffness that is kept in steps; 0: not known
 /// \throws Error where the contact of some pair has no known duration
 Shortest shortest_contact(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
@@ -81,7 +73,7 @@ Shortest shortest_contact(const GrainScene& scene, const ContactTable& contacts,
         const double k = properties.stiffness > 0
                              ? properties.stiffness
                              : properties.dimensionless * reduced->smallest /
-                                   (step * step * law.length_factor(reference_length_of(scene, options)));
+                                   (step * step * law.length_factor(reference_length(scene, options)));
         const ElasticImpact impact = law.elastic_impact(k, reduced->smallest, pair.closing_speed);
         duration = impact.duration / faster;
         omega = faster * std::sqrt(law.spring_power * k * law.length_factor(impact.overlap) / reduced->smallest);

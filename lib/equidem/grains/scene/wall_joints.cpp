@@ -76,21 +76,6 @@ void put_end(Wall& wall, int end, Vec2 point) {
   (end == 1 ? wall.point : wall.end) = point;
 }
 
-/// Transfer of the state of a contact to another one at the same point.
-void go_on(const Candidate& left, Candidate& contact) {
-  contact.touching = true;
-  contact.parted = left.parted;
-  contact.mode = left.mode;
-  contact.steps = left.steps;
-  contact.overlap = left.overlap;
-  contact.closing = left.closing;
-  contact.normal = left.normal;
-  contact.impulse = left.impulse;
-  contact.moment = left.moment;
-  contact.tangential_impulse = left.tangential_impulse;
-  contact.stretch = left.stretch;
-}
-
 }  // namespace
 
 std::optional<std::pair<std::size_t, std::size_t>> coinciding_walls(std::span<const Wall> walls, double tolerance) {
@@ -235,7 +220,7 @@ void cover_joints(GrainSystem& system) {
     const std::int32_t cover = cover_of(system, candidate->i, part_of(*candidate), ~candidate->j);
     candidate->covered = cover >= 0;
     if (!candidate->covered || !candidate->touching) continue;
-    const Candidate left = *candidate;
+    const ContactState left = state_of(system, *candidate, {});
     candidate->stretch = 0;  // not lost
     forget_contact(*candidate, system.lost);
     const auto same_body = [&](const Candidate& other) { return other.i == candidate->i; };
@@ -244,7 +229,7 @@ void cover_joints(GrainSystem& system) {
     const auto is_cover = [&] { return other->j == ~cover && part_of(*other) == part_of(*candidate); };
     while (other != system.contacts.candidates.end() && same_body(*other) && !is_cover()) ++other;
     if (other == system.contacts.candidates.end() || !same_body(*other) || other->touching) continue;
-    go_on(left, *other);
+    take(left, *other);
   }
 }
 

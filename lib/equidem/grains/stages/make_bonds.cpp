@@ -5,17 +5,15 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
 
-#include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
 
 namespace equidem {
 namespace {
@@ -40,42 +38,18 @@ BondRest rest_under(const GrainContact& contact, const GrainBond& bond, const Bo
 /// The pairs whose gap is at most a share of the sum of their radii, as touching_discs; in a periodic cell with the
 /// nearest image. Ascending.
 std::set<PairOfGrains> near_discs(const GrainScene& scene, double gap_tolerance) {
-  std::set<PairOfGrains> pairs;
-  if (!scene.cell) {
-    Assembly discs;
-    for (const Grain& grain : scene.grains) {
-      discs.centres.push_back(grain.position);
-      discs.radii.push_back(grain.radius);
-    }
-    for (const Contact& near : touching_discs(discs, gap_tolerance))
-      pairs.insert(std::minmax(static_cast<std::size_t>(near.i), static_cast<std::size_t>(near.j)));
-    return pairs;
-  }
   constexpr double rounding_gap = 1e-9;  // of the smaller radius
-  std::vector<Circle> circles;
-  double largest = 0;
-  for (const Grain& grain : scene.grains) {
-    circles.push_back({grain.position, grain.radius});
-    largest = std::max(largest, grain.radius);
-  }
-  const std::size_t count = circles.size();
-  const double margin = 2 * largest * std::max(gap_tolerance, rounding_gap);
-  const Periods periods = periods_of(*scene.cell);
-  std::vector<std::size_t> bodies(count);
-  std::iota(bodies.begin(), bodies.end(), std::size_t{0});
-  for (const PeriodicImage& image : images_near(circles, periods, margin)) {
-    bodies.push_back(static_cast<std::size_t>(image.body));
-    circles.push_back({circles[bodies.back()].centre + periods.shift(image), circles[bodies.back()].radius});
-  }
-  const NeighbourList near = neighbours_within(circles, margin);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
-      const auto partner = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
-      const Circle &a = circles[i], &b = circles[partner];
-      const double gap = norm(b.centre - a.centre) - a.radius - b.radius;
-      if (gap <= std::max(rounding_gap * std::min(a.radius, b.radius), gap_tolerance * (a.radius + b.radius)))
-        pairs.insert(std::minmax(i, bodies[partner]));
-    }
+  std::vector<Circle> circles;           // larger by the gap
+  for (const Grain& grain : scene.grains)
+    circles.push_back({grain.position, grain.radius * (1 + gap_tolerance + 2 * rounding_gap)});
+  std::optional<Periods> periods;
+  if (scene.cell) periods = periods_of(*scene.cell);
+  std::set<PairOfGrains> pairs;
+  for (const CirclePair& near : pairs_within(circles, periods, 0)) {
+    const auto i = static_cast<std::size_t>(near.i), j = static_cast<std::size_t>(near.j.body);
+    const double r = scene.grains[i].radius, s = scene.grains[j].radius;
+    const double gap = norm(circles[j].centre + near.shift - circles[i].centre) - r - s;
+    if (i != j && gap <= std::max(rounding_gap * std::min(r, s), gap_tolerance * (r + s))) pairs.insert({i, j});
   }
   return pairs;
 }

@@ -190,11 +190,10 @@ class StagedSimulation final : public AnySimulation {
   /// Arrays of the present GrainSimulation; stages: first, last, over, ended, the values of StageReport and its effects
   /// as bits, a row for each stage that has begun; stage_walls: places of the walls at the start of the present stage;
   /// stage_cell: width, height, shift, corner and strain of the cell there; stage_bodies: numbers and kinds of the
-  /// bodies in the order of the loops; stage_motions, stage_velocities: of the bodies at the start of the present
-  /// stage, where it is not the first; stage_bonds: made so far, with stage, i, j, rest and strengths; stage_breaks: of
-  /// bonds whose bodies are gone; stage_servos: the reports of stages that are over; stage_cell_servos: likewise of
-  /// cells; stage_idle: stage, 1 for
-  /// a renaming, number of a choice that held no body; stage_energies.
+  /// bodies in the order of the loops; stage_motions: of the bodies at the start of the present stage, where it is
+  /// not the first; stage_bonds: made so far, with stage, i, j, rest and strengths; stage_breaks: of bonds whose bodies
+  /// are gone; stage_servos: the reports of stages that are over; stage_cell_servos: likewise of cells; stage_idle:
+  /// stage, 1 for a renaming, number of a choice that held no body; stage_energies.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
   /// The number of stages that have begun in a saved state; 0: it is of no simulation in stages.
