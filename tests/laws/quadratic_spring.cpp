@@ -6,7 +6,7 @@
 
 #include "equidem/contact/laws/normal_law.hpp"
 
-#include "grains/one_by_one.hpp"
+#include "grains/scenes.hpp"
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
@@ -94,17 +94,6 @@ TEST_CASE("the_ledger_of_quadratic_springs_closes_to_the_order_of_the_scheme") {
   CAPTURE(static_cast<int>(integrator), errors, order);
   CHECK(errors.back() < 0.01);
   CHECK(order > (integrator == GrainIntegrator::semi_implicit_euler ? 0.9 : 1.9));
-}
-
-TEST_CASE("quadratic_springs_move_discs_alike_one_by_one_and_eight_at_a_time") {
-  const GrainIntegrator integrator = GENERATE(GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet);
-  GrainSimulation lanes(crowd(), stepping(integrator, 1e-3)), single(crowd(), one_by_one(stepping(integrator, 1e-3)));
-  lanes.advance(4000);
-  single.advance(4000);
-  CAPTURE(static_cast<int>(integrator), lanes.counters().contacts, distance_of_motions(lanes, single));
-  CHECK(lanes.counters().contacts > 3);
-  CHECK(lanes.counters().contacts == single.counters().contacts);
-  CHECK(distance_of_motions(lanes, single) < 1e-11);
 }
 
 TEST_CASE("quadratic_springs_move_clumps_and_ellipses_without_loss") {

@@ -66,8 +66,8 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 
 bool touches_walls_alone(const GrainSystem& system) {
   if (system.shapes.parts.empty() || system.cell.active) return system.contacts.near.active;
-  const std::size_t discs = system.bodies.constants.size() - system.shapes.shaped.size();
-  return system.contacts.near_parts.active && (system.contacts.near.active || discs < 2);
+  const bool discs = system.bodies.constants.size() > system.shapes.shaped.size();
+  return system.contacts.near_parts.active && (system.contacts.near.active || !discs);
 }
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {

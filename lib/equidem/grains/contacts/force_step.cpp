@@ -136,16 +136,6 @@ template <class Law, bool friction>
 
 namespace {
 
-template <class Law>
-ContactStep normal_step(const Candidate& candidate, double depth, double closing) {
-  if constexpr (Law::kind == LawKind::force) {
-    return force_step<Law>(depth, closing, candidate.a, candidate.dissipation, candidate.attraction);
-  } else {
-    static_assert(Law::kind == LawKind::map);
-    return Law::step(depth, closing, candidate.a, candidate.dissipation, !candidate.touching);
-  }
-}
-
 /// Give an impulse to j, its opposite to i.
 template <bool friction>
 void push(std::vector<BodyImpulse>& impulses, const Candidate& candidate, const ContactGeometry& geometry, Vec2 impulse,
@@ -203,38 +193,27 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
   return step.force * dt;
 }
 
-TouchPlace place_of(const ContactGeometry& geometry, bool wall) {
-  return {geometry.overlap, geometry.normal, geometry.lever_i * geometry.normal,
-          wall ? Vec2{} : -geometry.lever_j * geometry.normal};
+TouchPlace place_of(const ContactGeometry& geometry) {
+  return {geometry.overlap, geometry.normal, geometry.lever_i * geometry.normal, {}};
 }
 
-/// The normal turns in a drift, and levers change: as in the loop over near pairs; with walls the normal is known.
+/// Of a disc and a wall.
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
-  const double dt = system.dt();
-  const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(candidate.i)];
-  if (candidate.j < 0) {
-    const Vec2 relative = system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity - motion.velocity;
-    const Vec2 before = candidate.steps > 0 ? candidate.normal : geometry.normal;
-    const Vec2 normal = 0.5 * (before + geometry.normal);
-    return {-dot(relative, normal), dot(relative, perpendicular(normal)) - motion.spin * geometry.lever_i,
-            candidate.overlap};
-  }
-  const GrainMotion& other = system.bodies.motions[static_cast<std::size_t>(candidate.j)];
-  const Vec2 relative = other.velocity - motion.velocity;
-  const double along = dot(relative, perpendicular(geometry.normal)), closing = -dot(relative, geometry.normal);
-  const double rims = motion.spin * geometry.lever_i + other.spin * geometry.lever_j;
-  const double part = dt / (geometry.lever_i + geometry.lever_j);
-  const double mean = closing + 0.5 * part * along * along;
-  const double before = std::hypot(1 + part * closing, part * along);  // distance, in the present one
-  return {mean, 0.5 * (along - rims + along / before - rims * before), geometry.overlap - mean * dt};
+  const GrainMotion& motion = system.bodies.motions[candidate.i];
+  const Vec2 relative = passed_velocity(system, candidate) - motion.velocity;
+  const Vec2 before = candidate.steps > 0 ? candidate.normal : geometry.normal;
+  const Vec2 normal = 0.5 * (before + geometry.normal);
+  return {-dot(relative, normal), dot(relative, perpendicular(normal)) - motion.spin * geometry.lever_i,
+          candidate.overlap};
 }
 
+/// The contacts of discs with walls in Verlet schemes.
 template <class Law, bool friction>
 void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
   for (std::size_t c = begin; c < end; ++c) {
     Candidate& candidate = system.contacts.candidates[c];
     const ContactGeometry geometry = geometry_of(system, candidate);
-    const TouchPlace place = place_of(geometry, candidate.j < 0);
+    const TouchPlace place = place_of(geometry);
     if (!(geometry.overlap > 0)) {
       if (candidate.touching)
         end_contact<Law>(system, candidate, place.arm_i, drift_of(system, candidate, geometry), sums.sums());
@@ -249,12 +228,9 @@ void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, 
   }
 }
 
+/// The contacts of discs by a map.
 template <class Law, bool friction>
 void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
-  constexpr bool map = Law::kind == LawKind::map;
-  if constexpr (!map) {
-    if (system.options.verlet()) return collide_by_verlet<Law, friction>(system, begin, end, sums);
-  }
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
@@ -266,17 +242,14 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
       if (candidate.touching) forget_contact(candidate, lost);
       continue;
     }
-    if constexpr (map) {
-      if (candidate.parted) forget_contact(candidate, lost);
-    }
+    if (candidate.parted) forget_contact(candidate, lost);
     count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
     const double closing = -dot(relative, geometry.normal);
     const double depth = geometry.overlap * per_length;
     const double sigma = closing * per_speed;
-    const ContactStep step = normal_step<Law>(candidate, depth, sigma);
+    const ContactStep step = Law::step(depth, sigma, candidate.a, candidate.dissipation, !candidate.touching);
     const double unit = candidate.reduced_mass * unit_speed;
-    if constexpr (!map) lost.lost_dashpot += dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed);
     candidate.touching = true;
     ++candidate.steps;
     candidate.mode = step.mode;
@@ -285,11 +258,9 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
     candidate.normal = geometry.normal;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * geometry.normal;
-    if constexpr (map) {
-      candidate.parted = depth + step.shift + sigma + step.change <= 0;
-      lost.lost_restitution += step.loss * unit * unit_speed;
-      if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
-    }
+    candidate.parted = depth + step.shift + sigma + step.change <= 0;
+    lost.lost_restitution += step.loss * unit * unit_speed;
+    if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
     double tangential = 0;  // also where the friction of an earlier stage left one
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0)
@@ -312,6 +283,8 @@ CandidateLoop candidate_loop(NormalLaw law, bool friction) {
   return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
     if constexpr (Law::kind == LawKind::simultaneous) {
       return nullptr;
+    } else if constexpr (Law::kind == LawKind::force) {
+      return friction ? collide_by_verlet<Law, true> : collide_by_verlet<Law, false>;
     } else {
       return friction ? collide<Law, true> : collide<Law, false>;
     }

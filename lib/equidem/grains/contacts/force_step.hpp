@@ -12,12 +12,12 @@
 
 namespace equidem {
 
-/// The loop compiled for a force law or a map, with or without friction: impulses of this step from positions and
-/// velocities. Null for a simultaneous law.
+/// The loop compiled for a map, or over contacts with walls by a force law in Verlet schemes, with or without friction:
+/// impulses of this step from positions and velocities. Null for a simultaneous law.
 CandidateLoop candidate_loop(NormalLaw law, bool friction);
 
-/// The loop over contacts with walls of discs whose pairs are near pairs, eight at a time; null where candidate_loop()
-/// is needed.
+/// The loop over contacts of discs with walls by a force law and semi-implicit Euler, eight at a time; null in other
+/// scenes.
 CandidateLoop wall_loop(const GrainSystem& system);
 
 /// Count a contact that acts in this step.

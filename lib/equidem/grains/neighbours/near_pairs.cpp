@@ -245,9 +245,8 @@ double margin_of_near_pairs(const GrainSystem& system, double size, double reach
 void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.contacts.near;
   const std::vector<Grain>& grains = system.scene.grains;
-  const auto discs =
-      std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (discs < 2 || !gives_force(system.options.law) || system.options.one_by_one) return;
+  const bool discs = std::ranges::any_of(grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  if (!discs || !gives_force(system.options.law)) return;
   near.active = true;
   if (const std::optional<PairLaw> law = common_law(system)) {
     near.equal = true;

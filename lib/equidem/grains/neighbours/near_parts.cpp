@@ -362,7 +362,7 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 
 void prepare_near_parts(GrainSystem& system) {
   if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !gives_force(system.options.law)) return;
-  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact || system.options.one_by_one) return;
+  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.law = common_law(system);
