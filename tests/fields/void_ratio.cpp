@@ -16,7 +16,7 @@ using namespace equidem::test;
 TEST_CASE("the_void_ratio_of_every_shape_is_that_of_points_thrown_at_random") {
   for (const GrainShape shape : {GrainShape::disc, GrainShape::ellipse, GrainShape::clump}) {
     const Bodies bodies = scattered(shape, 60, 3);
-    const Region region{{0.2, 0.1}, {0.9, 0.7}};
+    const Rectangle region{{0.2, 0.1}, {0.9, 0.7}};
     const SolidMeasures measures = solid_measures(clipped_area(bodies.grains, bodies.clumps, region), region);
     Random random(7);
     constexpr int points = 20'000;
@@ -42,7 +42,7 @@ TEST_CASE("the_densest_lattice_has_the_void_ratio_of_the_book") {
       grains.push_back(disc({2 * r * column + (row % 2 == 0 ? 0 : r), height * row}, r));
   const double e = 2 * std::sqrt(3.0) / std::numbers::pi - 1;
   for (const Vec2 corner : {Vec2{0, 0}, Vec2{0.0033, 0.0071}}) {
-    const Region region{corner, corner + Vec2{2 * r * 15, height * 14}};
+    const Rectangle region{corner, corner + Vec2{2 * r * 15, height * 14}};
     CHECK(solid_measures(clipped_area(grains, {}, region), region).void_ratio == Approx(e).epsilon(1e-12));
   }
 }

@@ -7,7 +7,6 @@
 #include "equidem/contact/laws/normal_law.hpp"
 
 #include "grains/scenes.hpp"
-#include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -163,7 +163,7 @@ GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, doub
                        std::max(box.inside.high.y, grain.position.y + grain.radius)};
     middle += grain.position / static_cast<double>(grains.size());
   }
-  Region walled{{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
+  Rectangle walled{{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
   for (const Wall& wall : walls) {
     const Vec2 normal = normal_of(wall);
     const Vec2 place = wall.point + wall.displacement(time);
@@ -191,11 +191,11 @@ double mean_diameter(std::span<const Grain> grains, std::span<const Clump> clump
   return sum / static_cast<double>(grains.size());
 }
 
-std::optional<Region> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps, const GrainBox& box,
-                                      std::span<const char> heap) {
+std::optional<Rectangle> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps,
+                                         const GrainBox& box, std::span<const char> heap) {
   const double diameter = mean_diameter(grains, clumps);
   const Vec2 strip{side_strip * diameter, side_strip * diameter};
-  Region region{box.inside.low + strip, box.inside.high - strip};
+  Rectangle region{box.inside.low + strip, box.inside.high - strip};
   if (!box.lid) {
     double largest = 0;
     for (const Grain& grain : grains) largest = std::max(largest, grain.radius);
@@ -213,7 +213,7 @@ std::optional<Region> measured_region(std::span<const Grain> grains, std::span<c
   return region;
 }
 
-SolidMeasures solid_measures(double covered, const Region& region) {
+SolidMeasures solid_measures(double covered, const Rectangle& region) {
   SolidMeasures measures{.solid_fraction = covered / region.area()};
   measures.porosity = 1 - measures.solid_fraction;
   measures.void_ratio = measures.porosity / measures.solid_fraction;
@@ -281,9 +281,9 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
   MeasuredMoment moment;
   moment.step = step;
   moment.time = time;
-  std::optional<Region> region;
+  std::optional<Rectangle> region;
   if (options_.region) {
-    region = Region{options_.region->low + moved, options_.region->high + moved};
+    region = Rectangle{options_.region->low + moved, options_.region->high + moved};
   } else {
     region = measured_region(grains, scene_.clumps, box, heap);
   }
@@ -310,7 +310,7 @@ const MeasuredMoment& BoxMeasures::record(std::int64_t step, double time, const 
 
 CoarseGrid BoxMeasures::grid_of_fields(const GrainSimulation& simulation) const {
   const GrainBox box = box_of(simulation.placed_walls(), simulation.grains(), simulation.time());
-  Region region = box.inside;
+  Rectangle region = box.inside;
   if (!box.lid) {
     region.high.y = -INFINITY;
     for (const double height : last_.heights)

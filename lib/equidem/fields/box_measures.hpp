@@ -58,7 +58,7 @@ Vec2 centre_of_mass(std::span<const Grain> grains);
 
 /// The rectangle that walls leave for bodies.
 struct GrainBox {
-  Region inside;     ///< m; where there is no wall, as far as the bodies reach
+  Rectangle inside;  ///< m; where there is no wall, as far as the bodies reach
   bool lid = false;  ///< a wall above
 };
 
@@ -74,8 +74,8 @@ double mean_diameter(std::span<const Grain> grains, std::span<const Clump> clump
 /// place of the surface, seen in columns two largest diameters wide.
 /// \param heap of each body: whether it belongs to the surface (heap_of); empty: all do
 /// \return none where nothing as large as two diameters each way is left
-std::optional<Region> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps, const GrainBox& box,
-                                      std::span<const char> heap = {});
+std::optional<Rectangle> measured_region(std::span<const Grain> grains, std::span<const Clump> clumps,
+                                         const GrainBox& box, std::span<const char> heap = {});
 
 /// Solid fraction, porosity n = 1 - solid fraction, void ratio e = n/(1 - n).
 struct SolidMeasures {
@@ -83,12 +83,12 @@ struct SolidMeasures {
 };
 
 /// \param covered area of the bodies in the region, m²
-SolidMeasures solid_measures(double covered, const Region& region);
+SolidMeasures solid_measures(double covered, const Rectangle& region);
 
 struct MeasureOptions {
-  std::optional<Region> region = {};  ///< of the void ratio, m, where the box stands at the start; none:
-                                      ///< measured_region at each moment
-  std::optional<double> cell = {};    ///< width of the cells of the fields, m; none: no fields
+  std::optional<Rectangle> region = {};  ///< of the void ratio, m, where the box stands at the start; none:
+                                         ///< measured_region at each moment
+  std::optional<double> cell = {};       ///< width of the cells of the fields, m; none: no fields
 };
 
 /// \throws Error (bad_input), its place the name of the option: spheres, whose volumes no area of the plane tells; a

@@ -36,14 +36,14 @@ void add_crossings(double from, double way, double low, double width, std::size_
 
 }  // namespace
 
-Region CoarseGrid::cell(std::size_t k) const {
+Rectangle CoarseGrid::cell(std::size_t k) const {
   const Vec2 size = cell_size();
   const std::size_t column = k % columns, row = k / columns;
   const Vec2 low = region.low + Vec2{size.x * static_cast<double>(column), size.y * static_cast<double>(row)};
   return {low, low + size};
 }
 
-CoarseGrid grid_over(const Region& region, double width) {
+CoarseGrid grid_over(const Rectangle& region, double width) {
   const Vec2 sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0))
     bad_input(fmt::format("the region of the fields is {} m wide and {} m high", sides.x, sides.y), "it has no area",

@@ -20,7 +20,7 @@ namespace equidem {
 
 /// A rectangle in equal cells, row by row from below; none where there is nothing to measure.
 struct CoarseGrid {
-  Region region;  ///< m
+  Rectangle region;  ///< m
   std::size_t columns = 1, rows = 1;
 
   [[nodiscard]] std::size_t size() const { return columns * rows; }
@@ -28,12 +28,12 @@ struct CoarseGrid {
     return {(region.high.x - region.low.x) / static_cast<double>(columns),
             (region.high.y - region.low.y) / static_cast<double>(rows)};
   }
-  [[nodiscard]] Region cell(std::size_t k) const;
+  [[nodiscard]] Rectangle cell(std::size_t k) const;
 };
 
 /// A grid over a region whose cells are about `width` wide and high.
 /// \throws Error (bad_input) on a region without area, a width that is not positive, more than a million cells
-CoarseGrid grid_over(const Region& region, double width);
+CoarseGrid grid_over(const Rectangle& region, double width);
 
 /// One value for each cell.
 struct CoarseFields {

@@ -12,15 +12,15 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -163,7 +163,7 @@ void GrainSimulation::Implementation::find_impulses(BlockMove move) {
   collide_bodies(system, collide, at_once ? move : nullptr);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
   if (at_once || !move) return;
-  system.bodies.blocks.each([&](std::size_t block) { move(system, block, system.free_flight); });
+  system.bodies.blocks.each([&](std::size_t block) { move(system, block); });
 }
 
 void GrainSimulation::Implementation::update_candidates() {

@@ -10,7 +10,7 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
@@ -289,7 +289,6 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   system.walls.loads = state.walls;
   for (std::size_t s = 0; s < state.servos.size(); ++s)
     static_cast<ServoMotion&>(system.walls.servos[s]) = state.servos[s];
-  system.free_flight = false;
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   find_images_of_bonds(system);
   place_walls(system);

@@ -220,10 +220,9 @@ struct GrainSystem {
   MovingCell cell;
 
   std::int64_t step = 0;
-  bool free_flight = false;  ///< all impulses are zero
-  double longest_way = 0;    ///< square of the longest displacement of a body in the present step, m²
-  double deepest = 0;        ///< deepest overlap of the present step, m
-  EnergyLedger lost;         ///< losses and work since the start
+  double longest_way = 0;  ///< square of the longest displacement of a body in the present step, m²
+  double deepest = 0;      ///< deepest overlap of the present step, m
+  EnergyLedger lost;       ///< losses and work since the start
   GrainCounters counters;
 
   [[nodiscard]] ContactSums sums() { return {lost, &walls.loads}; }

@@ -97,8 +97,8 @@ std::vector<BondCount> bond_counts(const GrainPacking& packing) {
   return bond_counts(gaps, packing.size());
 }
 
-Region measured_region(const GrainPacking& packing) {
-  const Region whole = {{0, 0}, packing.box.size};
+Rectangle measured_region(const GrainPacking& packing) {
+  const Rectangle whole = {{0, 0}, packing.box.size};
   if (packing.box.periodic()) return whole;
   const GrainBox box{.inside = whole, .lid = packing.box.sides != PackingBox::Sides::open_top};
   return measured_region(packing.grains, packing.clumps, box).value_or(whole);
@@ -107,7 +107,7 @@ Region measured_region(const GrainPacking& packing) {
 namespace {
 
 /// Area of the bodies, m²; in a periodic box also of the images that reach in across its sides.
-double covered_area(const GrainPacking& packing, const Region& region) {
+double covered_area(const GrainPacking& packing, const Rectangle& region) {
   const int images = packing.box.periodic() ? 1 : 0;
   double covered = 0;
   for (int y = -images; y <= images; ++y) {
@@ -121,7 +121,7 @@ double covered_area(const GrainPacking& packing, const Region& region) {
 
 }  // namespace
 
-void check_region(const PackingBox& box, const Region& region) {
+void check_region(const PackingBox& box, const Rectangle& region) {
   const Vec2 size = box.size, sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
     bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
@@ -134,7 +134,7 @@ void check_region(const PackingBox& box, const Region& region) {
   }
 }
 
-PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region) {
+PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> region) {
   PackingMeasures result;
   result.region = region ? *region : measured_region(packing);
   check_region(packing.box, result.region);

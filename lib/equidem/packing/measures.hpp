@@ -40,7 +40,7 @@ std::vector<BondCount> bond_counts(const GrainPacking& packing);
 std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed);
 
 struct PackingMeasures : SolidMeasures {
-  Region region;  ///< in which solids are measured
+  Rectangle region;  ///< in which solids are measured
   std::int64_t contacts = 0, wall_contacts = 0;
   double coordination = 0;                   ///< contacts of a body, those with walls included
   double coordination_without_rattlers = 0;  ///< the same of the rest
@@ -50,13 +50,13 @@ struct PackingMeasures : SolidMeasures {
 };
 
 /// As that of a box in a run (fields/box_measures.hpp); the whole box where it is periodic, or too small for that.
-Region measured_region(const GrainPacking& packing);
+Rectangle measured_region(const GrainPacking& packing);
 
 /// \throws Error (bad_input) on a region without area, or out of a periodic box
-void check_region(const PackingBox& box, const Region& region);
+void check_region(const PackingBox& box, const Rectangle& region);
 
 /// \param region none: measured_region
 /// \throws Error (bad_input) on a region without area, without any body, or out of a periodic box
-PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region = {});
+PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> region = {});
 
 }  // namespace equidem

@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
-#include "equidem/core/turns.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/packing_shape.hpp"
 
@@ -37,17 +36,12 @@ struct Outline {
   }
 };
 
-/// (cos, sin), the same bits on every machine.
-inline Vec2 axis_of_turns(double turns) {
-  return {sine_of_turns(turns + 0.25), sine_of_turns(turns)};
-}
-
 /// \param body stays where it is while the outline is used
 inline Outline outline_of(const UnitBody& body, double radius, double turns) {
   return {body.a * radius, body.b * radius, axis_of_turns(turns), body.discs, radius};
 }
 inline Outline outline_of(const Grain& grain, std::span<const Clump> clumps) {
-  const Vec2 axis = axis_of_turns(grain.angle / (2 * std::numbers::pi));
+  const Vec2 axis = axis_at(grain.angle);
   switch (grain.shape()) {
     case GrainShape::clump:
       return {.axis = axis, .discs = clumps[static_cast<std::size_t>(grain.clump)].discs};

@@ -24,7 +24,7 @@ namespace equidem {
 struct PackCase : CaseDocument {
   PackingOptions packing;
   NetworkOptions network;              ///< of the assembly that is written; no springs where the case weights them
-  std::optional<Region> region;        ///< region of measurement
+  std::optional<Rectangle> region;     ///< region of measurement
   std::optional<double> density;       ///< kg/m³, of the bodies; none: see body_density
   std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
   Body body = Body::disc;

@@ -11,7 +11,6 @@
 #include <cstddef>
 
 #include "equidem/dynamics/kernels/lanes.hpp"
-#include "equidem/dynamics/kernels/lanes_math.hpp"
 #include "equidem/dynamics/kernels/small_motion_step.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 

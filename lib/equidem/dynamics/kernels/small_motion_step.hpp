@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "equidem/dynamics/kernels/lanes.hpp"
-#include "equidem/dynamics/kernels/lanes_math.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {

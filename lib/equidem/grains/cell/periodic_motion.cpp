@@ -7,7 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/scene/clipped_area.hpp"
 

@@ -161,7 +161,6 @@ bool break_bonds(GrainSystem& system) {
     any = true;
   }
   if (!any) return false;
-  system.free_flight = false;
   tie_those_left(system);
   if (system.contacts.near.active) load_pair_bodies(system);
   find_candidates(system);

@@ -492,7 +492,6 @@ void push_springs(GrainSystem& system) {
 void add_bond_impulses(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
   std::vector<BodyImpulse>& impulses = system.bodies.impulses;
-  system.free_flight = false;
   if (packed.resist) {
     packed.drifted = true;
     step_batches(system, packed.resist);

@@ -7,9 +7,9 @@
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 
 namespace equidem {
 namespace {

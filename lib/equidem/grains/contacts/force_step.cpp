@@ -14,7 +14,6 @@
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -291,32 +290,21 @@ CandidateLoop candidate_loop(NormalLaw law, bool friction) {
   });
 }
 
-void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight) {
+void move_by_euler(GrainSystem& system, std::size_t block) {
+  if (system.contacts.near.active) return move_pair_bodies(system, block);
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  if (system.contacts.near.active) {
-    move_pair_bodies(system, block);
-  } else if (free_flight) {
-    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += fall;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-  } else {
-    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
-      const GrainBody& body = system.bodies.constants[i];
-      const BodyImpulse& push = system.bodies.impulses[i];
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += body.inverse_mass * push.impulse + fall;
-      motion.spin += body.inverse_moment * push.torque;
-      motion.position += dt * motion.velocity;
-      if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-  }
+  system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
+    const GrainBody& body = system.bodies.constants[i];
+    const BodyImpulse& push = system.bodies.impulses[i];
+    GrainMotion motion = system.bodies.motions[i];
+    motion.velocity += body.inverse_mass * push.impulse + fall;
+    motion.spin += body.inverse_moment * push.torque;
+    motion.position += dt * motion.velocity;
+    if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
+    motion.angle += dt * motion.spin;
+    return motion;
+  });
 }
 
 void drift_of_verlet(GrainSystem& system) {
@@ -337,16 +325,6 @@ void drift_of_verlet(GrainSystem& system) {
     });
     return;
   }
-  if (system.free_flight) {
-    move_bodies(system, [&](std::size_t i) {
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += 0.5 * fall;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-    return;
-  }
   move_bodies(system, [&](std::size_t i) {
     const GrainBody& body = system.bodies.constants[i];
     GrainMotion motion = system.bodies.motions[i];
@@ -358,14 +336,10 @@ void drift_of_verlet(GrainSystem& system) {
   });
 }
 
-void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight) {
+void kick_of_verlet(GrainSystem& system, std::size_t block) {
   const Vec2 fall = system.dt() * system.scene.gravity;
   for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
     GrainMotion& motion = system.bodies.motions[i];
-    if (free_flight) {
-      motion.velocity += 0.5 * fall;
-      continue;
-    }
     const GrainBody& body = system.bodies.constants[i];
     motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
     motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;

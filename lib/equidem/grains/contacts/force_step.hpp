@@ -44,12 +44,12 @@ double dashpot_heat(const Candidate& candidate, const ContactStep& step, double 
 
 /// Set system.bodies.next of a block from the impulses: v' = v + a dt, x' = x + v' dt (+ the shifts of maps); and
 /// system.bodies.ways.
-void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight);
+void move_by_euler(GrainSystem& system, std::size_t block);
 
 /// Set system.bodies.next: half kick by the impulses of the last step, then the drift.
 void drift_of_verlet(GrainSystem& system);
 /// Second half kick of a block, by the impulses computed from the velocities at the half step.
-void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight);
+void kick_of_verlet(GrainSystem& system, std::size_t block);
 
 /// The loop over contacts of parts compiled for a force law, with or without friction; null for other laws.
 ///

@@ -8,7 +8,7 @@
 /// impulses that are given one after the other make together sum J g = sum J (2 d + J/m), needs no second pass.
 #include <array>
 
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/kernels/bond_lanes.hpp"
 
 namespace equidem {
@@ -103,7 +103,7 @@ EQUIDEM_ALWAYS_INLINE void add_motion_of_cell(const GrainSystem& system, std::si
       apart[k] = load<Row<Lanes>>(&before[group.j[k]]) - load<Row<Lanes>>(&before[group.i[k]]);
     Lanes u, v;
     columns_of(apart, x, y, u, v);
-    const LanesOfVectors<Lanes> shift = shift_of<Lanes>(system.cell.before, packed.images[g]);
+    const Vectors<Lanes> shift = shift_of<Lanes>(system.cell.before, packed.images[g]);
     x += shift.x;
     y += shift.y;
   }

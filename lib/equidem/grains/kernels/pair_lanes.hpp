@@ -335,4 +335,10 @@ EQUIDEM_ALWAYS_INLINE void subtract(void* from, const Numbers& change) {
   store(load<Numbers>(from) - change, from);
 }
 
+/// Eight vectors.
+template <class Lanes>
+struct Vectors {
+  Lanes x, y;
+};
+
 }  // namespace equidem::eight

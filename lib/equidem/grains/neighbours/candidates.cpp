@@ -8,7 +8,7 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 

@@ -11,7 +11,6 @@
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 

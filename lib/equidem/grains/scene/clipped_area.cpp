@@ -55,7 +55,7 @@ Moments sector_or_triangle(Vec2 a, Vec2 b, double radius) {
   return sum;
 }
 
-std::array<Vec2, 4> corners_of(const Region& region) {
+std::array<Vec2, 4> corners_of(const Rectangle& region) {
   return {region.low, {region.high.x, region.low.y}, region.high, {region.low.x, region.high.y}};
 }
 
@@ -98,7 +98,7 @@ class CutDisc {
 /// The moments of disjoint parts of a union of discs, one part of each disc: the points of which its power |x - c|² -
 /// r² is the least. Rounding shifts the straight line between two parts, by digits of their distance, and no part
 /// depends on whether two circles cross: that is not decidable where they touch.
-std::vector<Moments> parts_of_union(std::span<const Clump::Disc> discs, const Region* region) {
+std::vector<Moments> parts_of_union(std::span<const Clump::Disc> discs, const Rectangle* region) {
   std::vector<Moments> parts;
   for (std::size_t k = 0; k < discs.size(); ++k) {
     const auto& [centre, r] = discs[k];
@@ -135,11 +135,11 @@ std::vector<Clump::Disc> placed(const Grain& grain, const Clump& clump) {
 
 }  // namespace
 
-double clipped_area(Vec2 centre, double radius, const Region& region) {
+double clipped_area(Vec2 centre, double radius, const Rectangle& region) {
   return clipped_area(Ellipse{radius, radius}, centre, region);
 }
 
-double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region) {
+double clipped_area(const Ellipse& ellipse, Vec2 centre, const Rectangle& region) {
   // In a plane where the ellipse is the unit circle.
   auto corners = corners_of(region);
   for (Vec2& x : corners) {
@@ -151,13 +151,13 @@ double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region) {
   return ellipse.a * ellipse.b * area;
 }
 
-double clipped_area(std::span<const Clump::Disc> discs, const Region& region) {
+double clipped_area(std::span<const Clump::Disc> discs, const Rectangle& region) {
   double area = 0;
   for (const Moments& part : parts_of_union(discs, &region)) area += part.area;
   return area;
 }
 
-double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Region& region) {
+double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Rectangle& region) {
   const Vec2 low = grain.position - region.low, high = region.high - grain.position;
   const double inside = std::min({low.x, low.y, high.x, high.y});
   if (inside >= grain.radius) return area_of(grain, clumps);
@@ -173,7 +173,7 @@ double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Reg
   return clipped_area(grain.position, grain.radius, region);
 }
 
-double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region) {
+double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Rectangle& region) {
   double area = 0;
   for (const Grain& grain : grains) area += clipped_area(grain, clumps, region);
   return area;

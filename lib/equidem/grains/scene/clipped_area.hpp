@@ -5,27 +5,22 @@
 
 #include <span>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
 
-/// A rectangle, m.
-struct Region {
-  Vec2 low, high;
-  [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
-};
-
 /// Area of the intersection of a disc and a rectangle, m².
-double clipped_area(Vec2 centre, double radius, const Region& region);
+double clipped_area(Vec2 centre, double radius, const Rectangle& region);
 /// Area of the intersection of an ellipse and a rectangle, m².
-double clipped_area(const Ellipse& ellipse, Vec2 centre, const Region& region);
+double clipped_area(const Ellipse& ellipse, Vec2 centre, const Rectangle& region);
 /// Area of the intersection of a union of discs and a rectangle, m².
-double clipped_area(std::span<const Clump::Disc> discs, const Region& region);
+double clipped_area(std::span<const Clump::Disc> discs, const Rectangle& region);
 /// Area of the intersection of a grain and a rectangle, m².
-double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Region& region);
+double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Rectangle& region);
 /// That of all grains; where two overlap the overlap counts twice, as their solid does.
-double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Region& region);
+double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Rectangle& region);
 
 /// Area moments of a union of discs.
 struct DiscUnion {

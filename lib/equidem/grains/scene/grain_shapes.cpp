@@ -95,9 +95,11 @@ double smallest_inscribed_radius(const GrainScene& scene) {
   return smallest;
 }
 
-Vec2 axis_at(double angle) {
-  const double turns = angle / (2 * std::numbers::pi);
+Vec2 axis_of_turns(double turns) {
   return {sine_of_turns(turns + 0.25), sine_of_turns(turns)};
+}
+Vec2 axis_at(double angle) {
+  return axis_of_turns(angle / (2 * std::numbers::pi));
 }
 
 namespace {

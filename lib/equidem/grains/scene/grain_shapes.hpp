@@ -54,6 +54,7 @@ double smallest_inscribed_radius(const GrainScene& scene);
 
 /// The x-axis of a body as unit vector, to 1e-15; bit-identical on every machine.
 Vec2 axis_at(double angle);
+Vec2 axis_of_turns(double turns);  ///< angle over 2 pi
 
 /// From the centre of mass of a body to the centre of a part.
 inline Vec2 offset_of(const GrainPart& part, Vec2 axis) {
