@@ -98,9 +98,6 @@ inline constexpr IntegrationScheme velocity_verlet{
     .stages = leapfrog.stages,
 };
 
-}  // namespace integrators
-
-namespace equidem::integrators {
 namespace omelyan {
 
 inline constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054, chi = -0.06626458266981849;
@@ -162,7 +159,7 @@ inline constexpr IntegrationScheme fourth_order{
     .first_drift = omelyan::xi,
 };
 
-}  // namespace equidem::integrators
+}  // namespace integrators
 
 enum class Integrator { leapfrog, velocity_verlet, thesis, fourth_order };
 

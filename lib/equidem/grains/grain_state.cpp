@@ -91,8 +91,6 @@ constexpr auto cell_numbers = [](auto& cell, const auto& visit) {
 
 constexpr auto image_numbers = [](auto& image, const auto& visit) { visit(image.a), visit(image.b); };
 
-constexpr auto one_number = [](auto& number, const auto& visit) { visit(number); };
-
 /// Whether the contacts of a saved state are between bodies, walls and parts of the scene.
 bool are_of_scene(const GrainSystem& system, const std::vector<ContactState>& contacts) {
   const auto bodies = std::ssize(system.bodies.constants), walls = std::ssize(system.walls.loads);

@@ -78,6 +78,9 @@ std::vector<Row> rows_in(const SavedState& state, std::string_view name, const N
   return rows;
 }
 
+/// Rows of one number.
+inline constexpr auto one_number = [](auto& number, const auto& visit) { visit(number); };
+
 /// Rows of x, y and rotation.
 std::vector<double> numbers_of(std::span<const DiscMotion> motions);
 std::vector<DiscMotion> motions_of(std::span<const double> numbers);

@@ -31,7 +31,7 @@ struct OfStage {
   Report report = {};
 };
 
-constexpr auto servo_numbers = [](auto& s, const auto& visit) {
+constexpr auto servo_report_numbers = [](auto& s, const auto& visit) {
   auto& r = s.report;
   visit(s.stage), visit(r.touched), visit(r.reached), visit(r.wanted), visit(r.force), visit(r.max_speed);
   visit(r.overshoot), visit(r.peak), visit(r.mean_error);
@@ -62,7 +62,7 @@ constexpr auto body_numbers = [](auto& s, const auto& visit) { visit(s.number), 
 
 constexpr auto place_numbers = [](auto& place, const auto& visit) { visit(place.x), visit(place.y); };
 
-constexpr auto motion_numbers = [](auto& g, const auto& visit) {
+constexpr auto velocity_numbers = [](auto& g, const auto& visit) {
   visit(g.position.x), visit(g.position.y), visit(g.angle), visit(g.velocity.x), visit(g.velocity.y), visit(g.spin);
 };
 
@@ -77,8 +77,6 @@ constexpr auto bond_numbers = [](auto& s, const auto& visit) {
   visit(s.stage), visit(s.bond.i), visit(s.bond.j), visit(rest.branch.x), visit(rest.branch.y), visit(rest.angle_i);
   visit(rest.angle_j), visit(s.tension), visit(s.shear);
 };
-
-constexpr auto one_number = [](auto& number, const auto& visit) { visit(number); };
 
 /// \param effects all that there are, in the order of their bits
 double bits_of(const std::vector<std::string>& names, const Effects& effects) {
@@ -126,7 +124,7 @@ void take_idle(const SavedState& state, const std::vector<GrainStage>& stages, s
 
 /// Reports of servo walls; names are those of the walls of the stage, in their order.
 void take_servos(const SavedState& state, const std::vector<GrainStage>& stages, std::vector<StageReport>& reports) {
-  for (auto& [stage, saved] : rows_in<OfStage<ServoReport>>(state, "stage_servos", servo_numbers)) {
+  for (auto& [stage, saved] : rows_in<OfStage<ServoReport>>(state, "stage_servos", servo_report_numbers)) {
     std::vector<ServoReport>& servos = report_at(reports, stage).servos;
     std::size_t skip = servos.size();
     for (const Wall& wall : stages[stage].scene.walls) {
@@ -175,10 +173,10 @@ SavedState StagedSimulation::save() const {
            saved_rows("stage_walls", start_.walls, place_numbers),
            saved_rows("stage_cell", std::move(cell), one_number),
            saved_rows("stage_bodies", std::move(bodies), body_numbers),
-           saved_rows("stage_motions", number() > 0 ? start_.bodies.grains : std::vector<Grain>{}, motion_numbers),
+           saved_rows("stage_motions", number() > 0 ? start_.bodies.grains : std::vector<Grain>{}, velocity_numbers),
            saved_rows("stage_bonds", std::move(made), bond_numbers),
            saved_rows("stage_breaks", past_breaks_, break_numbers),
-           saved_rows("stage_servos", std::move(servos), servo_numbers),
+           saved_rows("stage_servos", std::move(servos), servo_report_numbers),
            saved_rows("stage_cell_servos", std::move(cell_servos), cell_servo_numbers),
            saved_rows("stage_idle", std::move(idle), idle_numbers),
            saved_rows("stage_energies", std::vector{initial_, potential_, changes_}, one_number)})
@@ -216,7 +214,7 @@ StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std:
                                                    std::vector<std::size_t>& order) const {
   const GrainStage& stage = stages_[begun - 1];
   const auto cell = rows_in<double>(state, "stage_cell", one_number);
-  const auto motions = rows_in<Grain>(state, "stage_motions", motion_numbers);
+  const auto motions = rows_in<Grain>(state, "stage_motions", velocity_numbers);
   const auto in_loops = rows_in<SavedBody>(state, "stage_bodies", body_numbers);
   Start start{.walls = rows_in<Vec2>(state, "stage_walls", place_numbers), .bodies = {}, .cell = stage.scene.cell};
   for (const auto& [number, kind] : in_loops) {
