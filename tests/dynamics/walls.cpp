@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/dynamics/walls.hpp"
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/fields/coarse_fields.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 
 #include "fields/bodies.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/scene/clipped_area.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "equidem/core/random.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "support/catch.hpp"
 

@@ -10,8 +10,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
-#include "equidem/packing/outline.hpp"
 #include "equidem/packing/overlaps.hpp"
 
 #include "packing/packings.hpp"

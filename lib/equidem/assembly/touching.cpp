@@ -2,8 +2,6 @@
 #include "equidem/assembly/touching.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <tuple>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/dynamics/driven_discs.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -2,7 +2,6 @@
 #include "equidem/dynamics/time_step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>

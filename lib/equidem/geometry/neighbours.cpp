@@ -244,9 +244,7 @@ void NeighbourFinder::Memory::search_rows(double margin) {
   }
   found.resize(static_cast<std::size_t>(thread_count()));
   for (Found& f : found) f.count = 0;
-  parallel_tasks(tasks.size(), [&](std::size_t task, int worker) {
-    search(tasks[task], margin, found[static_cast<std::size_t>(worker)]);
-  });
+  parallel_tasks(tasks.size(), [&](std::size_t task, int worker) { search(tasks[task], margin, found[worker]); });
 }
 
 /// Each row with itself, the rows above it, and the near rows of all larger classes.
@@ -302,7 +300,7 @@ void NeighbourFinder::Memory::order_pairs(std::size_t count) {
   partner.resize(static_cast<std::size_t>(begin.back()));
   for (const Found& f : found) {
     for (const Pair& pair : std::span(f.pairs).first(f.count)) {
-      partner[static_cast<std::size_t>(begin[static_cast<std::size_t>(pair.i) + 1]++)] = pair.j;
+      partner[begin[static_cast<std::size_t>(pair.i) + 1]++] = pair.j;
     }
   }
   begin.pop_back();

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/grain_system.hpp"

@@ -230,9 +230,8 @@ struct GrainSystem {
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
-    const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(body_of(candidate.j))].kind
-                                       : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
-    return scene.between(bodies.constants[static_cast<std::size_t>(candidate.i)].kind, other);
+    const int other = candidate.j >= 0 ? bodies.constants[body_of(candidate.j)].kind : scene.walls[~candidate.j].kind;
+    return scene.between(bodies.constants[candidate.i].kind, other);
   }
   /// The image that a number behind those of all bodies stands for.
   [[nodiscard]] const PeriodicImage& image(std::int32_t j) const {
@@ -245,9 +244,8 @@ struct GrainSystem {
   [[nodiscard]] std::int32_t body_of(std::int32_t j) const { return is_image(j) ? image(j).body : j; }
   /// The part that a part of an image stands for; itself otherwise.
   [[nodiscard]] std::int32_t own_part(std::int32_t part) const {
-    const std::int32_t holder = shapes.body_of_part[static_cast<std::size_t>(part)];
-    return part + shapes.first_part[static_cast<std::size_t>(body_of(holder))] -
-           shapes.first_part[static_cast<std::size_t>(holder)];
+    const std::int32_t holder = shapes.body_of_part[part];
+    return part + shapes.first_part[body_of(holder)] - shapes.first_part[holder];
   }
   /// Whether bodies meet images of others.
   [[nodiscard]] bool meets_images() const {
@@ -255,16 +253,16 @@ struct GrainSystem {
   }
   /// Place of a body or an image at the start of the step.
   [[nodiscard]] Vec2 position_of(std::int32_t j) const {
-    const Vec2 own = bodies.motions[static_cast<std::size_t>(body_of(j))].position;
+    const Vec2 own = bodies.motions[body_of(j)].position;
     return is_image(j) ? own + cell.now.shift(image(j)) : own;
   }
   /// Likewise of bodies.next.
   [[nodiscard]] Vec2 next_position_of(std::int32_t j) const {
-    const Vec2 own = bodies.next[static_cast<std::size_t>(body_of(j))].position;
+    const Vec2 own = bodies.next[body_of(j)].position;
     return is_image(j) ? own + cell.next.shift(image(j)) : own;
   }
   [[nodiscard]] double dissipation(const Candidate& candidate) const {
-    return dissipations[static_cast<std::size_t>(&properties(candidate) - scene.pairs.data())];
+    return dissipations[&properties(candidate) - scene.pairs.data()];
   }
 };
 

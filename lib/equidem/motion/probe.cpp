@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/motion/probe.hpp"
 
-#include <algorithm>
-
 namespace equidem {
 
 void Oscillation::add(double time, double value) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/motion/saved_state.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 

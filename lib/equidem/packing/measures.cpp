@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "equidem/packing/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
+#include "equidem/packing/overlaps.hpp"
 
 namespace equidem {
+
 namespace {
 
 constexpr double touching_gap = 1e-8;  // of the smaller radius
@@ -172,14 +179,251 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> re
   for (std::size_t k = 0; k < partners.size(); ++k) {
     ends += static_cast<double>(partners[k].size());
     if (rattles[k]) continue;
-    ends_without_rattlers +=
-        static_cast<double>(std::count_if(partners[k].begin(), partners[k].end(), [&](std::int32_t other) {
-          return other < 0 || !rattles[static_cast<std::size_t>(other)];
-        }));
+    ends_without_rattlers += static_cast<double>(std::count_if(
+        partners[k].begin(), partners[k].end(), [&](std::int32_t other) { return other < 0 || !rattles[other]; }));
   }
   const double count = static_cast<double>(partners.size()), rest = count - static_cast<double>(result.rattlers);
   result.coordination = ends / count;
   result.coordination_without_rattlers = rest > 0 ? ends_without_rattlers / rest : 0;
+  return result;
+}
+
+namespace {
+
+/// Forces on i are the negatives of those on j; neither normal nor tangential force changes where i and j change
+/// places.
+ContactForce force_on_first(const GrainContact& contact) {
+  return {-contact.normal_force, -contact.tangential_force};
+}
+
+/// The settled contact of the same bodies, of clumps the nearest; null where there is none.
+class SettledContacts {
+ public:
+  explicit SettledContacts(const std::vector<GrainContact>& contacts) {
+    for (const GrainContact& contact : contacts) {
+      const bool swapped = contact.j >= 0 && contact.j < contact.i;
+      by_bodies_[swapped ? std::pair(contact.j, contact.i) : std::pair(contact.i, contact.j)].push_back(
+          {&contact, swapped ? contact.arm_j : contact.arm_i});
+    }
+  }
+
+  [[nodiscard]] const GrainContact* find(const PackingContact& wanted) const {
+    const auto found = by_bodies_.find({wanted.i, wanted.j});
+    if (found == by_bodies_.end()) return nullptr;
+    const auto distance = [&](const Placed& placed) { return norm(placed.arm - wanted.arm_i); };
+    return std::ranges::min_element(found->second, {}, distance)->contact;
+  }
+
+ private:
+  struct Placed {
+    const GrainContact* contact;
+    Vec2 arm;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Placed>> by_bodies_;
+};
+
+}  // namespace
+
+std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std::vector<PackingContact>& contacts,
+                                         const std::optional<SpringConstants>& springs) {
+  std::vector<ContactForce> forces;
+  if (!packing.contacts.empty()) {
+    const SettledContacts settled(packing.contacts);
+    for (const PackingContact& contact : contacts) {
+      const GrainContact* const found = contact.overlap > 0 ? settled.find(contact) : nullptr;
+      forces.push_back(found == nullptr ? ContactForce{} : force_on_first(*found));
+    }
+  } else if (packing.jammed && springs) {
+    for (const PackingContact& contact : contacts) forces.push_back({-springs->kN * std::max(contact.overlap, 0.0), 0});
+  }
+  return forces;
+}
+
+namespace {
+
+/// The centre behind a wall of the body that mirrors one at the wall.
+Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
+  switch (wall) {
+    case 0:
+      return {centre.x, -centre.y};
+    case 1:
+      return {-centre.x, centre.y};
+    case 2:
+      return {2 * box.x - centre.x, centre.y};
+    default:
+      return {centre.x, 2 * box.y - centre.y};
+  }
+}
+
+/// Centre of mass of a body of the packing, m.
+Vec2 centre_of(const GrainPacking& packing, std::size_t body) {
+  if (packing.bonds.empty()) return packing.grains[body].position;
+  return 0.5 * (packing.grains[2 * body].position + packing.grains[2 * body + 1].position);
+}
+
+/// From the centre of its body to that of a grain.
+Vec2 place_in_body(const GrainPacking& packing, std::size_t grain) {
+  if (packing.bonds.empty()) return {};
+  return packing.grains[grain].position - centre_of(packing, packing.body_of(grain));
+}
+
+BodySection section_of(const GrainPacking& packing, std::size_t body) {
+  BodySection section;
+  const std::size_t grains = packing.bonds.empty() ? 1 : 2;
+  for (std::size_t k = grains * body; k < grains * (body + 1); ++k) {
+    const Grain& grain = packing.grains[k];
+    const double area = area_of(grain, packing.clumps);
+    const Vec2 place = place_in_body(packing, k);
+    section.area += area;
+    section.polar_moment += area * (grain.inertia.moment / grain.inertia.mass + dot(place, place));
+  }
+  return section;
+}
+
+void add_body(const GrainPacking& packing, std::size_t body, Vec2 centre, Assembly& assembly) {
+  assembly.centres.push_back(centre);
+  if (packing.shape == PackingShape::Kind::disc) {
+    assembly.radii.push_back(packing.radii[body]);
+    return;
+  }
+  assembly.sections.push_back(section_of(packing, body));
+  assembly.radii.push_back(std::sqrt(assembly.sections.back().area / std::numbers::pi));
+}
+
+/// The smallest rectangle along the walls that holds all bodies.
+Rectangle outline_of_all(const GrainPacking& packing) {
+  Rectangle box{.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+  for (const Grain& grain : packing.grains) {
+    const Outline outline = outline_of(grain, packing.clumps);
+    const auto reach = [&](Vec2 direction) { return reach_along(outline, direction); };
+    const Vec2 x = grain.position;
+    box.low = {std::min(box.low.x, x.x - reach({-1, 0})), std::min(box.low.y, x.y - reach({0, -1}))};
+    box.high = {std::max(box.high.x, x.x + reach({1, 0})), std::max(box.high.y, x.y + reach({0, 1}))};
+  }
+  return box;
+}
+
+/// Contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
+struct BodyContacts {
+  std::vector<PackingContact> places;
+  std::vector<ContactForce> forces;  ///< of each place; empty: none are known
+
+  [[nodiscard]] const ContactForce* force(std::size_t contact) const {
+    return forces.empty() ? nullptr : &forces[contact];
+  }
+};
+
+BodyContacts contacts_of_bodies(const GrainPacking& packing, const NetworkOptions& options) {
+  BodyContacts contacts{.places = contacts_of(packing, options.gap_tolerance), .forces = {}};
+  contacts.forces = carried_forces(packing, contacts.places, options.springs);
+  for (PackingContact& contact : contacts.places) {
+    const auto i = static_cast<std::size_t>(contact.i);
+    contact.arm_i += place_in_body(packing, i);
+    contact.i = static_cast<std::int32_t>(packing.body_of(i));
+    if (contact.j >= 0) contact.j = static_cast<std::int32_t>(packing.body_of(static_cast<std::size_t>(contact.j)));
+  }
+  return contacts;
+}
+
+/// \param found between bodies of the assembly
+/// \param force that it carries at rest; null: not known
+/// \param has_walls whether some contacts of the assembly are with walls, which are flat
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const ContactForce* force, bool has_walls,
+                 const std::optional<SpringConstants>& springs, Assembly& assembly) {
+  Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
+  const Vec2 branch = assembly.branch(contact);
+  if (shape == PackingShape::Kind::disc) {
+    const double distance = norm(branch), ri = assembly.radii[contact.i];
+    contact.lever_i = distance * ri / (ri + assembly.radii[contact.j]);
+    contact.lever_j = distance - contact.lever_i;
+  } else {
+    const Vec2 n = found.normal, s = perpendicular(n), rest = branch - found.arm_i;
+    const double round_off = 1e-12 * (norm(found.arm_i) + norm(rest));
+    const auto offset = [&](Vec2 arm) { return std::abs(dot(arm, s)) > round_off ? dot(arm, s) : 0.0; };
+    contact.lever_i = dot(found.arm_i, n);
+    contact.lever_j = dot(rest, n);
+    assembly.contact_arms.push_back({n, offset(found.arm_i), offset(rest)});
+  }
+  assembly.contacts.push_back(contact);
+  if (force != nullptr) {
+    assembly.contact_normal_force.push_back(force->normal);
+    assembly.contact_tangential_force.push_back(force->tangential);
+    if (!assembly.contact_arms.empty() || has_walls) {
+      assembly.contact_curvature_i.push_back(found.curvature_i);
+      assembly.contact_curvature_j.push_back(found.curvature_j);
+    }
+  }
+  if (!springs) return;
+  assembly.contact_kN.push_back(springs->kN);
+  assembly.contact_kT.push_back(springs->kT);
+}
+
+/// 1 for the bodies with two contacts or more, counted without the bodies that have fewer.
+std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
+  std::vector<std::vector<std::int32_t>> partners(bodies);
+  for (const PackingContact& c : contacts) {
+    partners[c.i].push_back(c.j);
+    if (c.j >= 0) partners[c.j].push_back(c.i);
+  }
+  std::vector<char> held = rattlers_of(partners, 2);
+  for (char& value : held) value = value ? 0 : 1;
+  return held;
+}
+
+}  // namespace
+
+Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  Assembly assembly;
+  assembly.kind = "packing";
+  assembly.gap_tolerance = options.gap_tolerance;
+  for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
+  if (packing.box.periodic()) {
+    assembly.period = packing.box.size;
+  } else {
+    assembly.box = outline_of_all(packing);
+  }
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    if (contacts.places[c].j < 0) continue;
+    add_contact(packing.shape, contacts.places[c], contacts.force(c), false, options.springs, assembly);
+  }
+  return assembly;
+}
+
+HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  const std::vector<char> held = held_by_two(contacts.places, packing.size());
+  HeldNetwork result;
+  Assembly& assembly = result.assembly;
+  assembly.kind = "packing";
+  std::vector<std::int32_t> number(packing.size(), -1);
+  for (std::size_t k = 0; k < packing.size(); ++k) {
+    if (!held[k]) continue;
+    number[k] = static_cast<std::int32_t>(assembly.size());
+    add_body(packing, k, centre_of(packing, k), assembly);
+    result.bodies.push_back(static_cast<std::int32_t>(k));
+  }
+  DiscGroup walls;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>
+      mirrors;  // of a body at a wall, which it may touch twice
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    PackingContact found = contacts.places[c];
+    const auto i = static_cast<std::size_t>(found.i);
+    if (!held[i] || (found.j >= 0 && !held[found.j])) continue;
+    if (found.j >= 0) {
+      found.j = number[found.j];
+    } else {
+      const auto [mirror, is_new] = mirrors.try_emplace({found.i, found.j}, static_cast<std::int32_t>(assembly.size()));
+      if (is_new) {
+        walls.discs.push_back(mirror->second);
+        add_body(packing, i, mirrored(centre_of(packing, i), ~found.j, packing.box.size), assembly);
+      }
+      found.j = mirror->second;
+    }
+    found.i = number[i];
+    add_contact(packing.shape, found, contacts.force(c), true, options.springs, assembly);
+  }
+  if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;
 }
 

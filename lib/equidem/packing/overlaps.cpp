@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/packing/overlaps.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/core/progress.hpp"
-#include "equidem/packing/outline.hpp"
 
 namespace equidem {
 

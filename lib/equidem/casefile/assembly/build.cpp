@@ -15,7 +15,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/homogenize/tension_test.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 
 namespace equidem {
 namespace {

@@ -15,7 +15,6 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/methods.hpp"
-#include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {

@@ -4,7 +4,6 @@
 #include <array>
 #include <string_view>
 
-#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -26,7 +26,7 @@ void collide_block(GrainSystem& system, std::size_t block, bool clear) {
 void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
   std::vector<BodyImpulse>& impulses = system.bodies.impulses;
   for (const auto& [body, impulse] : system.bodies.inwards[block]) {
-    BodyImpulse& sum = impulses[static_cast<std::size_t>(body)];
+    BodyImpulse& sum = impulses[body];
     sum.impulse += impulse->impulse;
     sum.torque += impulse->torque;
     sum.rim += impulse->rim;

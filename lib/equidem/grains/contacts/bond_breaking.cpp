@@ -5,12 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -28,7 +26,7 @@ std::size_t number_of(const BreakableBonds& breakable, const TiedPair& bond) {
 
 /// The place of the bond as far as the levers say, between both centres.
 Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
-  return system.bodies.motions[static_cast<std::size_t>(bond.i)].position + bond.share * branch_of(system, bond);
+  return system.bodies.motions[bond.i].position + bond.share * branch_of(system, bond);
 }
 
 /// The bodies of a bond as a contact that begins now.

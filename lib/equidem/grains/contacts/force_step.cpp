@@ -8,13 +8,10 @@
 /// is of the first order of the step there.
 #include "equidem/grains/contacts/force_step.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "equidem/contact/laws/visit.hpp"
-#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 
@@ -43,14 +40,14 @@ inline Vec2 impulse_of(const Candidate& candidate) {
 }
 
 inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidate) {
-  return candidate.j >= 0 ? Vec2{} : system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity;
+  return candidate.j >= 0 ? Vec2{} : system.walls.places[~candidate.j].passed_velocity;
 }
 
 /// Count what the body gave to a wall in the drift before: half of each of the kicks at its ends.
 /// \param kicks sum of both, N s
 inline void push_wall_in_drift(const GrainSystem& system, const Candidate& candidate, Vec2 arm, Vec2 kicks,
                                ContactSums sums) {
-  const Vec2 point = system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + arm;
+  const Vec2 point = system.bodies.motions[candidate.i].position + arm;
   push_wall(system, candidate.j, point, 0.5 * kicks, passed_velocity(system, candidate), sums);
 }
 
@@ -139,19 +136,19 @@ namespace {
 template <bool friction>
 void push(std::vector<BodyImpulse>& impulses, const Candidate& candidate, const ContactGeometry& geometry, Vec2 impulse,
           double tangential) {
-  BodyImpulse& on_i = impulses[static_cast<std::size_t>(candidate.i)];
+  BodyImpulse& on_i = impulses[candidate.i];
   on_i.impulse -= impulse;
   if constexpr (friction) on_i.torque -= geometry.lever_i * tangential;
   if (candidate.j >= 0) {
-    BodyImpulse& on_j = impulses[static_cast<std::size_t>(candidate.j)];
+    BodyImpulse& on_j = impulses[candidate.j];
     on_j.impulse += impulse;
     if constexpr (friction) on_j.torque -= geometry.lever_j * tangential;
   }
 }
 
 void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
-  system.bodies.moments[static_cast<std::size_t>(candidate.i)] += moment;
-  if (candidate.j >= 0) system.bodies.moments[static_cast<std::size_t>(candidate.j)] -= moment;
+  system.bodies.moments[candidate.i] += moment;
+  if (candidate.j >= 0) system.bodies.moments[candidate.j] -= moment;
 }
 
 /// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
@@ -269,10 +266,8 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
     candidate.tangential_impulse = tangential;
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
     if (candidate.j < 0)
-      push_wall(
-          system, candidate.j,
-          system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.lever_i * geometry.normal,
-          impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
+      push_wall(system, candidate.j, system.bodies.motions[candidate.i].position + geometry.lever_i * geometry.normal,
+                impulse, system.walls.places[~candidate.j].acting_velocity, sums.sums());
   }
 }
 
@@ -372,8 +367,7 @@ struct PartContact {
 [[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const PartContact& contact) {
   const GrainMotion& motion = system.bodies.motions[contact.i()];
   const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.geometry.arm_i);
-  if (!contact.body_j)
-    return system.walls.places[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity - of_i;
+  if (!contact.body_j) return system.walls.places[~contact.candidate.j].acting_velocity - of_i;
   const GrainMotion& other = system.bodies.motions[contact.j()];
   return other.velocity + other.spin * perpendicular(contact.geometry.arm_j) - of_i;
 }
@@ -451,7 +445,7 @@ TouchPlace place_before(const Candidate& candidate, const PartPair& pair) {
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const TouchPlace& now,
                       const TouchPlace& before) {
   const auto at = [&](std::int32_t body, Vec2 arm) {
-    const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(body)];
+    const GrainMotion& motion = system.bodies.motions[body];
     return motion.velocity + motion.spin * perpendicular(arm);
   };
   const auto relative = [&](const TouchPlace& place) {
@@ -535,9 +529,8 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
     candidate.tangential_impulse = tangential;
     push(system.bodies.impulses, contact, impulse);
     if (candidate.j < 0)
-      push_wall(system, candidate.j,
-                system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.arm_i, impulse,
-                system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
+      push_wall(system, candidate.j, system.bodies.motions[candidate.i].position + geometry.arm_i, impulse,
+                system.walls.places[~candidate.j].acting_velocity, sums.sums());
   }
 }
 

@@ -22,7 +22,7 @@ constexpr int terms_of_mean = 14;
 constexpr auto coefficients_of_mean = [] {
   std::array<double, terms_of_mean> coefficient{};
   double factorial = 1;
-  for (int k = 0; k < terms_of_mean; ++k) coefficient[static_cast<std::size_t>(k)] = 1 / (factorial *= k + 1);
+  for (int k = 0; k < terms_of_mean; ++k) coefficient[k] = 1 / (factorial *= k + 1);
   return coefficient;
 }();
 

@@ -4,9 +4,7 @@
 /// numbers Twice. Plain C++ with the vector types of GCC and Clang.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>

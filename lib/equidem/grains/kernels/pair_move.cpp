@@ -120,15 +120,14 @@ std::pair<double, double> elastic_of_block(const GrainSystem& system, const Pair
   const NearPairs& near = system.contacts.near;
   const bool images = system.meets_images();
   const auto position_of = [&](std::int32_t j) {
-    return images ? system.position_of(j) : system.bodies.motions[static_cast<std::size_t>(j)].position;
+    return images ? system.position_of(j) : system.bodies.motions[j].position;
   };
   double normal = 0, tangential = 0;
   for (std::size_t g = 0; g < block.groups.size(); ++g) {
     const PairGroup& group = block.groups[g];
     PairLanes x, y, energy;
     for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-      const Vec2 branch =
-          position_of(group.j[k]) - system.bodies.motions[static_cast<std::size_t>(group.i[k])].position;
+      const Vec2 branch = position_of(group.j[k]) - system.bodies.motions[group.i[k]].position;
       x[k] = branch.x;
       y[k] = branch.y;
     }
@@ -194,7 +193,7 @@ void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
     const std::size_t used = std::min(most, end - first);
     double angle[most] = {}, largest = 0;
     for (std::size_t k = 0; k < used; ++k) {
-      angle[k] = system.bodies.motions[static_cast<std::size_t>(system.shapes.shaped[first + k])].angle;
+      angle[k] = system.bodies.motions[system.shapes.shaped[first + k]].angle;
       largest = std::max(largest, std::abs(angle[k]));
     }
     double x[most], y[most];
@@ -205,8 +204,7 @@ void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
       store(sines_of_turns(turns), y + k);
     }
     for (std::size_t k = 0; k < used; ++k) {
-      system.shapes.axes[static_cast<std::size_t>(system.shapes.shaped[first + k])] =
-          largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
+      system.shapes.axes[system.shapes.shaped[first + k]] = largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
     }
   }
 }

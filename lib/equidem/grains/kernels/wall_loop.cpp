@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
-#include <vector>
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"

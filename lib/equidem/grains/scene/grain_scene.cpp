@@ -5,15 +5,13 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/neighbours.hpp"
-#include "equidem/grains/cell/periodic_images.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
@@ -80,7 +78,7 @@ void check_shape(const GrainScene& scene, std::size_t i) {
   }
   // grains of the same clump and radius are checked once
   const bool known = i > 0 && scene.grains[i - 1].clump == grain.clump && scene.grains[i - 1].radius == grain.radius;
-  if (!known) check_clump(scene.clumps[static_cast<std::size_t>(grain.clump)], grain, i);
+  if (!known) check_clump(scene.clumps[grain.clump], grain, i);
 }
 
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) {

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -103,9 +102,7 @@ struct GrainScene : AnyScene {
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row
 
-  [[nodiscard]] const PairProperties& between(int a, int b) const {
-    return pairs[static_cast<std::size_t>(a * kinds + b)];
-  }
+  [[nodiscard]] const PairProperties& between(int a, int b) const { return pairs[a * kinds + b]; }
 };
 
 struct GrainOptions {

@@ -26,25 +26,23 @@ struct Places {
     for (std::size_t k = 0; k < bodies_then.size(); ++k) {
       const std::int32_t origin = origins.bodies[own.bodies.grain_of[k]];
       if (origin < 0) continue;
-      bodies_then[k] = old.bodies.place_of_grain[static_cast<std::size_t>(origin)];
-      bodies_now[static_cast<std::size_t>(bodies_then[k])] = static_cast<std::int32_t>(k);
+      bodies_then[k] = old.bodies.place_of_grain[origin];
+      bodies_now[bodies_then[k]] = static_cast<std::int32_t>(k);
     }
     for (std::size_t w = 0; w < walls_then.size(); ++w) {
       const std::int32_t origin = origins.walls[own.walls.wall_of[w]];
       if (origin < 0) continue;
-      walls_then[w] = static_cast<std::int32_t>(old.walls.place_of_wall[static_cast<std::size_t>(origin)]);
-      walls_now[static_cast<std::size_t>(walls_then[w])] = static_cast<std::int32_t>(w);
+      walls_then[w] = static_cast<std::int32_t>(old.walls.place_of_wall[origin]);
+      walls_now[walls_then[w]] = static_cast<std::int32_t>(w);
     }
   }
   /// The number that a body or a wall (negative) of the first has now, as Candidate::j; none: it is gone.
   [[nodiscard]] std::optional<std::int32_t> partner(std::int32_t j) const {
-    const std::int32_t now = j >= 0 ? bodies_now[static_cast<std::size_t>(j)] : walls_now[static_cast<std::size_t>(~j)];
+    const std::int32_t now = j >= 0 ? bodies_now[j] : walls_now[~j];
     if (now < 0) return {};
     return j >= 0 ? now : ~now;
   }
-  [[nodiscard]] bool is_new(std::int32_t j) const {
-    return (j >= 0 ? bodies_then[static_cast<std::size_t>(j)] : walls_then[static_cast<std::size_t>(~j)]) < 0;
-  }
+  [[nodiscard]] bool is_new(std::int32_t j) const { return (j >= 0 ? bodies_then[j] : walls_then[~j]) < 0; }
 };
 
 /// Impulses of bodies; none where steps do not need those of the last one.
