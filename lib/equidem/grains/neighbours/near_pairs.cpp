@@ -227,7 +227,7 @@ std::optional<PairLaw> common_law(const GrainSystem& system) {
     const bool plain = pair->stiffness > 0 && (!system.friction || pair->friction > 0);
     return plain && *pair == *pairs[0];
   });
-  if (!equal) return {};
+  if (!equal || system.bodies.constants.size() < 2) return {};
   Candidate candidate;
   candidate.j = 1;
   set_constants(system, candidate);
