@@ -16,7 +16,6 @@
 #include "equidem/dynamics/driven_discs.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 
 namespace equidem {

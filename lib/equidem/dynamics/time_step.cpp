@@ -9,7 +9,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/waves/vibration.hpp"
 

@@ -305,28 +305,16 @@ void move_by_euler(GrainSystem& system, std::size_t block) {
 void drift_of_verlet(GrainSystem& system) {
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  if (system.contacts.near.active) {
-    move_bodies(system, [&](std::size_t i) {
-      const GrainBody& body = system.bodies.constants[i];
-      GrainMotion motion = system.bodies.motions[i];
-      const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
-      const double turn = body.inverse_moment * system.bodies.impulses[i].torque;
-      motion.velocity += 0.5 * (gain + fall);
-      motion.spin += 0.5 * turn;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      system.contacts.near.bodies[i] = pair_body(body, motion, gain, turn);
-      return motion;
-    });
-    return;
-  }
-  move_bodies(system, [&](std::size_t i) {
+  move_bodies(system, [&, near = system.contacts.near.active](std::size_t i) {
     const GrainBody& body = system.bodies.constants[i];
     GrainMotion motion = system.bodies.motions[i];
-    motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
-    motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+    const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
+    const double turn = body.inverse_moment * system.bodies.impulses[i].torque;
+    motion.velocity += 0.5 * (gain + fall);
+    motion.spin += 0.5 * turn;
     motion.position += dt * motion.velocity;
     motion.angle += dt * motion.spin;
+    if (near) system.contacts.near.bodies[i] = pair_body(body, motion, gain, turn);
     return motion;
   });
 }

@@ -19,8 +19,8 @@
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/motion/wall.hpp"
 
