@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <utility>
@@ -18,6 +19,12 @@ namespace equidem {
 namespace {
 
 using Pair = eight::Two;
+
+// These members are loaded and stored as one row, here and by the loops over bonds.
+static_assert(offsetof(GrainMotion, velocity) == sizeof(Vec2) &&
+              offsetof(GrainMotion, angle) - offsetof(GrainMotion, spin) == sizeof(double));
+static_assert(offsetof(BodyImpulse, rim) - offsetof(BodyImpulse, impulse) == 3 * sizeof(double));
+static_assert(offsetof(PairBody, rim_speed) - offsetof(PairBody, middle_velocity) == 3 * sizeof(double));
 
 /// Two numbers anywhere: copied byte by byte they would go through general registers. A struct, because Clang 14 takes
 /// an alias of a vector type with less alignment for the aligned type.

@@ -9,6 +9,10 @@
 namespace equidem {
 namespace {
 
+// These members are loaded as one row.
+static_assert(offsetof(PartBody, middle_velocity) == 2 * sizeof(Vec2) &&
+              offsetof(PartBody, turned) - offsetof(PartBody, spin) == 2 * sizeof(double));
+
 using namespace eight;
 
 struct PartLoopKind {
