@@ -8,7 +8,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/notch.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/statics/critical_load.hpp"

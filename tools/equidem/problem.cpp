@@ -21,7 +21,6 @@
 #include "equidem/assembly/voids.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"

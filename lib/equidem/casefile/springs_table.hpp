@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/contact/bending.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/material/spring_constants.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"

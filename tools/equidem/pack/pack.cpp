@@ -13,7 +13,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 
 #include "command.hpp"
 #include "pack/pack_results.hpp"

@@ -8,7 +8,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 
 #include "problem.hpp"
 
@@ -209,7 +209,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
     out.line("packed", fmt::format("all radii scaled by {:.6g}: {:.6g} to {:.6g} m",
                                    packing.radii[0] / options.radii[0], smallest, largest));
   }
-  const Region& region = measures.region;
+  const Rectangle& region = measures.region;
   out.line("solid fraction")
       .add("solid_fraction", "", measures.solid_fraction)
       .add("porosity", "porosity", measures.porosity)

@@ -6,7 +6,6 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 
 namespace equidem {
 

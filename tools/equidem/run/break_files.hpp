@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/grains/scene/bond_break.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/output/results.hpp"
 
 namespace equidem {

@@ -22,10 +22,9 @@
 #include "equidem/casefile/assembly/viscoelastic_case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
-#include "equidem/contact/bending.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/bounds.hpp"
@@ -49,7 +48,7 @@ struct AssemblyCase {
   LatticeOptions lattice;
   DelaunayOptions delaunay;
   std::optional<ScalablePacking> packing;  ///< for the kind packing; else none
-  std::optional<Region> region;            ///< in which the packing is measured
+  std::optional<Rectangle> region;         ///< in which the packing is measured
   double gap_tolerance = 0;                ///< of the contacts of a packing
   std::filesystem::path path;              ///< path resolved against the folder of the file
   AssemblyFileOptions file;

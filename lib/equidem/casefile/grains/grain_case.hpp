@@ -14,7 +14,7 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/fields/box_measures.hpp"
-#include "equidem/grains/scene/grain_time_step.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/motion/probe.hpp"

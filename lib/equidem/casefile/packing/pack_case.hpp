@@ -15,7 +15,6 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/methods.hpp"
-#include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {
@@ -24,7 +23,7 @@ namespace equidem {
 struct PackCase : CaseDocument {
   PackingOptions packing;
   NetworkOptions network;              ///< of the assembly that is written; no springs where the case weights them
-  std::optional<Region> region;        ///< region of measurement
+  std::optional<Rectangle> region;     ///< region of measurement
   std::optional<double> density;       ///< kg/m³, of the bodies; none: see body_density
   std::optional<double> of_continuum;  ///< kg/m³, of bodies and voids together
   Body body = Body::disc;

@@ -20,7 +20,7 @@ struct PackingTables {
   PackingOptions options;         ///< without radii and box
   std::optional<double> density;  ///< kg/m³, of the bodies
   double gap_tolerance = 0;
-  std::optional<Region> region;  ///< region of measurement
+  std::optional<Rectangle> region;  ///< region of measurement
   PackingAmount amount;
   PackingBox::Sides sides = PackingBox::Sides::walls;
   SizeDistribution sizes;

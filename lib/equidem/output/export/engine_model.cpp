@@ -7,7 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 
 namespace equidem {

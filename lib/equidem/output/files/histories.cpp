@@ -10,7 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/fields/coarse_fields.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/run/cell_history.hpp"

@@ -44,7 +44,7 @@ void add_fields(Table& table, const CoarseFields& f) {
 
 Table table_of(const CoarseFields& fields) {
   const auto middle = [&](std::size_t k) {
-    const Region cell = fields.grid.cell(k);
+    const Rectangle cell = fields.grid.cell(k);
     return 0.5 * (cell.low + cell.high);
   };
   Table table;

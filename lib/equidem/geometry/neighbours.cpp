@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -243,9 +244,7 @@ void NeighbourFinder::Memory::search_rows(double margin) {
   }
   found.resize(static_cast<std::size_t>(thread_count()));
   for (Found& f : found) f.count = 0;
-  parallel_tasks(tasks.size(), [&](std::size_t task, int worker) {
-    search(tasks[task], margin, found[static_cast<std::size_t>(worker)]);
-  });
+  parallel_tasks(tasks.size(), [&](std::size_t task, int worker) { search(tasks[task], margin, found[worker]); });
 }
 
 /// Each row with itself, the rows above it, and the near rows of all larger classes.
@@ -301,7 +300,7 @@ void NeighbourFinder::Memory::order_pairs(std::size_t count) {
   partner.resize(static_cast<std::size_t>(begin.back()));
   for (const Found& f : found) {
     for (const Pair& pair : std::span(f.pairs).first(f.count)) {
-      partner[static_cast<std::size_t>(begin[static_cast<std::size_t>(pair.i) + 1]++)] = pair.j;
+      partner[begin[static_cast<std::size_t>(pair.i) + 1]++] = pair.j;
     }
   }
   begin.pop_back();
@@ -330,19 +329,73 @@ NeighbourList neighbours_within(std::span<const Circle> circles, double margin) 
   return finder.within(circles, margin);
 }
 
-NeighbourList neighbours_by_brute_force(std::span<const Circle> circles, double margin) {
-  check(circles, margin);
-  NeighbourList list;
-  list.begin.push_back(0);
-  for (auto a = circles.begin(); a != circles.end(); ++a) {
-    for (auto b = a + 1; b != circles.end(); ++b) {
-      if (come_near(a->centre - b->centre, a->radius, b->radius, margin)) {
-        list.partner.push_back(static_cast<std::int32_t>(b - circles.begin()));
-      }
-    }
-    list.begin.push_back(static_cast<std::int64_t>(list.partner.size()));
+PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position) {
+  PeriodicImage image;
+  if (periods.b.y > 0) image.b = static_cast<std::int32_t>(-std::floor((position.y - centre.y) / periods.b.y + 0.5));
+  const double x = position.x + image.b * periods.b.x - centre.x;
+  image.a = static_cast<std::int32_t>(-std::floor(x / periods.a.x + 0.5));
+  return image;
+}
+
+std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin) {
+  std::vector<PeriodicImage> images;
+  if (circles.empty()) return images;
+  Vec2 low = circles[0].centre, high = low;
+  double largest = 0;
+  for (const Circle& circle : circles) {
+    low = {std::min(low.x, circle.centre.x), std::min(low.y, circle.centre.y)};
+    high = {std::max(high.x, circle.centre.x), std::max(high.y, circle.centre.y)};
+    largest = std::max(largest, circle.radius);
   }
-  return list;
+  // a hundred roundings more than nothing, so that a body on the edge of the box has its image
+  const double more = largest + margin + 1e-13 * (norm(low) + norm(high));
+  const auto first = [](double from, double period) { return static_cast<std::int32_t>(std::ceil(from / period)); };
+  const auto last = [](double to, double period) { return static_cast<std::int32_t>(std::floor(to / period)); };
+  for (std::size_t k = 0; k < circles.size(); ++k) {
+    const auto [centre, radius] = circles[k];
+    const double reach = radius + more;
+    const bool rows = periods.b.y > 0;
+    const std::int32_t lowest = rows ? first(low.y - reach - centre.y, periods.b.y) : 0;
+    const std::int32_t highest = rows ? last(high.y + reach - centre.y, periods.b.y) : 0;
+    for (std::int32_t b = lowest; b <= highest; ++b) {
+      const double x = centre.x + b * periods.b.x;
+      const std::int32_t right = last(high.x + reach - x, periods.a.x);
+      for (std::int32_t a = first(low.x - reach - x, periods.a.x); a <= right; ++a)
+        if (a != 0 || b != 0) images.push_back({static_cast<std::int32_t>(k), b, a});
+    }
+  }
+  return images;
+}
+
+const std::vector<CirclePair>& PairFinder::within(std::span<const Circle> circles,
+                                                  const std::optional<Periods>& periods, double margin) {
+  const std::size_t count = circles.size();
+  circles_.assign(circles.begin(), circles.end());
+  std::vector<PeriodicImage> images;
+  if (periods) images = images_near(circles, *periods, margin);
+  for (const PeriodicImage& image : images) {
+    const Circle& body = circles[image.body];
+    circles_.push_back({body.centre + periods->shift(image), body.radius});
+  }
+  const NeighbourList& list = finder_.within(circles_, margin);
+  pairs_.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::int32_t>(k);
+    for (std::int64_t p = list.begin[k]; p < list.begin[k + 1]; ++p) {
+      const auto partner = static_cast<std::size_t>(list.partner[p]);
+      const PeriodicImage j = partner < count ? PeriodicImage{list.partner[p]} : images[partner - count];
+      // A pair with an image is found from both ends; it counts at the first.
+      if (partner >= count && std::tuple(j.body, j.a, j.b) < std::tuple(i, 0, 0)) continue;
+      pairs_.push_back({i, j, periods ? periods->shift(j) : Vec2{}});
+    }
+  }
+  return pairs_;
+}
+
+std::vector<CirclePair> pairs_within(std::span<const Circle> circles, const std::optional<Periods>& periods,
+                                     double margin) {
+  PairFinder finder;
+  return finder.within(circles, periods, margin);
 }
 
 }  // namespace equidem

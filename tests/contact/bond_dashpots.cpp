@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Dashpots between two discs: their change of the rates in a step, and the limit of the step.
-#include "equidem/contact/viscous_bond.hpp"
-
 #include <array>
 #include <cmath>
 
+#include "equidem/contact/finite_bond.hpp"
 #include "equidem/core/random.hpp"
 
+#include "support/bond_rates.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
 
@@ -42,20 +43,6 @@ TEST_CASE("the_decay_of_a_dashpot_is_the_exponential") {
   }
   CHECK(decay(0).keep == 1);
   CHECK(decay(0).mean == 1);
-}
-
-TEST_CASE("an_exact_dashpot_solves_its_equation_under_steady_forces") {
-  // v' = -x v + g over 0..1 from v + before, in one step and in a thousand
-  const double x = GENERATE(1e-6, 0.1, 1.0, 5.0, 30.0, 1e4);
-  const double rate = 0.7, before = -0.4, gained = 1.3;
-  const double change = exact_dashpot_change(x, rate, before, gained);
-  double v = rate + before;
-  for (int k = 0; k < 1000; ++k) v += gained / 1000 + exact_dashpot_change(x / 1000, v, 0, gained / 1000);
-  CAPTURE(x, change, v);
-  CHECK(rate + before + gained + change == Approx(v).epsilon(1e-12));
-  // what is steady creeps at g/x
-  const double creep = gained / x;
-  CHECK(creep + gained + exact_dashpot_change(x, creep, 0, gained) == Approx(creep).epsilon(1e-10));
 }
 
 TEST_CASE("dashpots_do_not_feel_rigid_motions_nor_discs_that_roll_on_one_another") {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/motion/oscillation.hpp"
-
-#include <algorithm>
+#include "equidem/motion/probe.hpp"
 
 namespace equidem {
 

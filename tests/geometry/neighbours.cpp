@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 #include <cmath>
 #include <limits>
@@ -77,6 +77,21 @@ std::vector<Case> cases() {
     all.back().circles.push_back({{-size, 0.3 * size}, 0.7 * size});
   }
   return all;
+}
+
+/// By comparison of all pairs.
+NeighbourList neighbours_by_brute_force(const std::vector<Circle>& circles, double margin) {
+  NeighbourList list;
+  list.begin.push_back(0);
+  for (std::size_t a = 0; a < circles.size(); ++a) {
+    for (std::size_t b = a + 1; b < circles.size(); ++b) {
+      const Vec2 branch = circles[a].centre - circles[b].centre;
+      const double reach = circles[a].radius + circles[b].radius + margin;
+      if (dot(branch, branch) < reach * reach) list.partner.push_back(static_cast<std::int32_t>(b));
+    }
+    list.begin.push_back(static_cast<std::int64_t>(list.partner.size()));
+  }
+  return list;
 }
 
 void check_equal(const NeighbourList& list, const NeighbourList& expected) {
@@ -178,14 +193,12 @@ TEST_CASE("bodies_that_are_nowhere_are_refused") {
       std::vector<Circle> circles = lattice(4, 1, {});
       (what == 0 ? circles[7].centre.x : what == 1 ? circles[7].centre.y : circles[7].radius) = bad;
       CAPTURE(bad, what);
-      for (const auto& search : {neighbours_within, neighbours_by_brute_force}) {
-        try {
-          (void)search(circles, 0.1);
-          FAIL("not refused");
-        } catch (const Error& error) {
-          CHECK(error.kind() == ErrorKind::computation_failed);
-          CHECK_THAT(error.what(), Catch::Contains("body 7 "));
-        }
+      try {
+        (void)neighbours_within(circles, 0.1);
+        FAIL("not refused");
+      } catch (const Error& error) {
+        CHECK(error.kind() == ErrorKind::computation_failed);
+        CHECK_THAT(error.what(), Catch::Contains("body 7 "));
       }
     }
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Neighbour lists of bodies that may touch, with a margin so that they are valid for many steps.
+/// Neighbour lists of bodies that may touch, with a margin so that they are valid for many steps; pairs of bodies that
+/// repeat.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,7 +58,51 @@ class NeighbourFinder {
 /// The neighbour list of one call to NeighbourFinder::within.
 NeighbourList neighbours_within(std::span<const Circle> circles, double margin);
 
-/// The neighbour list by comparison of all pairs.
-NeighbourList neighbours_by_brute_force(std::span<const Circle> circles, double margin);
+/// A body moved by a whole number of each period.
+struct PeriodicImage {
+  std::int32_t body = 0;
+  std::int32_t b = 0, a = 0;  ///< along y, along x
+  auto operator<=>(const PeriodicImage&) const = default;
+};
+
+struct Periods {
+  Vec2 a, b;  ///< a along x; b = {} without a period along y
+  [[nodiscard]] Vec2 shift(const PeriodicImage& image) const {
+    return static_cast<double>(image.a) * a + static_cast<double>(image.b) * b;
+  }
+};
+
+/// The image of a body in the cell around a centre: body 0, and the periods by which it is moved into the cell.
+PeriodicImage image_inside(const Periods& periods, Vec2 centre, Vec2 position);
+
+/// All images that come near a body or could: those nearer to the box of all centres than their radius, the largest
+/// radius and the margin together. Ascending.
+std::vector<PeriodicImage> images_near(std::span<const Circle> circles, const Periods& periods, double margin);
+
+/// Circle i and an image of circle j.
+struct CirclePair {
+  std::int32_t i = 0;
+  PeriodicImage j;
+  Vec2 shift;  ///< of the image from j, m
+};
+
+/// Finds pairs repeatedly in the same memory.
+class PairFinder {
+ public:
+  /// \param periods none: nothing repeats
+  /// \return valid until the next call: each pair with |x_j + shift - x_i| < r_i + r_j + margin once, i <= j, ascending
+  ///         by i; for i = j the image further along (a, b)
+  const std::vector<CirclePair>& within(std::span<const Circle> circles, const std::optional<Periods>& periods,
+                                        double margin);
+
+ private:
+  NeighbourFinder finder_;
+  std::vector<Circle> circles_;
+  std::vector<CirclePair> pairs_;
+};
+
+/// The pairs of one call to PairFinder::within.
+std::vector<CirclePair> pairs_within(std::span<const Circle> circles, const std::optional<Periods>& periods,
+                                     double margin);
 
 }  // namespace equidem
