@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "equidem/breakage/disjoint_ways.hpp"
@@ -18,22 +19,17 @@
 
 namespace equidem {
 
-/// Some contacts of a network, with all its discs.
-struct RestOfNetwork {
-  Assembly assembly;
-  ContactSprings springs;
-  std::vector<Support> supports;
-  std::vector<std::size_t> contacts;  // of the whole, ascending
-};
-
 namespace {
 
 constexpr double negligible = 1e-8;  // over the size of the terms: what rounding leaves where loads balance
 
-/// Without the contacts `gone` (per contact, 1).
-RestOfNetwork without(const BreakableNetwork& network, const std::vector<std::uint8_t>& gone) {
+/// A part of a network, with its numbers in the whole.
+using Rest = LoadBearingNetwork::Part;
+
+/// All discs, and the contacts that are not `gone` (per contact, 1).
+Rest without(const BreakableNetwork& network, const std::vector<std::uint8_t>& gone) {
   const Assembly& whole = network.assembly;
-  RestOfNetwork rest{{}, network.springs, network.supports, {}};
+  Rest rest{{}, network.springs, {}, {}};
   Assembly& a = rest.assembly;
   a.kind = whole.kind;
   a.centres = whole.centres;
@@ -44,12 +40,14 @@ RestOfNetwork without(const BreakableNetwork& network, const std::vector<std::ui
   std::vector<SpringConstants> springs;
   for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
     if (gone[c] != 0) continue;
-    rest.contacts.push_back(c);
+    rest.contacts.push_back(static_cast<std::int32_t>(c));
     a.contacts.push_back(whole.contacts[c]);
     if (!whole.contact_arms.empty()) a.contact_arms.push_back(whole.contact_arms[c]);
     if (!network.springs.uniform()) springs.push_back(network.springs[c]);
   }
   if (!springs.empty()) rest.springs = ContactSprings(std::move(springs));
+  rest.discs.resize(whole.size());
+  std::iota(rest.discs.begin(), rest.discs.end(), 0);
   return rest;
 }
 
@@ -69,6 +67,22 @@ std::vector<std::uint8_t> held_or_loaded(const BreakableNetwork& network) {
   return held;
 }
 
+/// The discs that can carry a force, and their contacts.
+Rest load_bearing_rest(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken) {
+  Rest rest = without(network, broken);
+  LoadBearingNetwork found =
+      load_bearing_network(rest.assembly, rest.springs, network.effects, held_or_loaded(network));
+  if (!found.part) return rest;
+  for (std::int32_t& contact : found.part->contacts) contact = rest.contacts[static_cast<std::size_t>(contact)];
+  return std::move(*found.part);
+}
+
+std::vector<std::uint8_t> discs_outside(const Rest& rest, std::size_t discs) {
+  std::vector<std::uint8_t> outside(discs, 1);
+  for (const std::int32_t disc : rest.discs) outside[static_cast<std::size_t>(disc)] = 0;
+  return outside;
+}
+
 /// K u - f of held components, 0 of free ones, from K u.
 void keep_reactions(const DegreesOfFreedom& unknowns, const std::vector<double>& load, std::vector<double>& internal) {
   for (std::size_t k = 0; k < internal.size(); ++k) {
@@ -85,6 +99,16 @@ void add(const UpdateCounters& more, SolverReport& to) {
   to.updates += more.updates;
   to.mended += more.mended;
   to.refinements += more.refinements;
+}
+
+/// A mechanism on which the load works, where there is one. Where no spring is negative a mechanism deforms no contact,
+/// so that only loads can drive it.
+std::vector<double> driven_mechanism(const std::vector<double>& load, const StiffnessSolver& solver) {
+  for (std::int64_t m = 0; !load.empty() && m < solver.factor().report().zero_pivots; ++m) {
+    std::vector<double> motion = solver.factor().null_motion(m);
+    if (does_work(load, motion, solver.unknowns().per_disc)) return motion;
+  }
+  return {};
 }
 
 /// Whether energies and lengths of residuals, which are made of squares of forces, stay in the range of numbers.
@@ -107,13 +131,7 @@ bool squares_fit(const BreakableNetwork& network, double stiffest) {
 }  // namespace
 
 std::vector<std::uint8_t> idle_discs(const BreakableNetwork& network, const std::vector<std::uint8_t>& broken) {
-  const RestOfNetwork rest = without(network, broken);
-  const LoadBearingNetwork found =
-      load_bearing_network(rest.assembly, rest.springs, network.effects, held_or_loaded(network));
-  std::vector<std::uint8_t> idle(network.assembly.size(), found.part ? 1 : 0);
-  if (!found.part) return idle;
-  for (const std::int32_t disc : found.part->discs) idle[static_cast<std::size_t>(disc)] = 0;
-  return idle;
+  return discs_outside(load_bearing_rest(network, broken), network.assembly.size());
 }
 
 std::vector<std::int32_t> discs_set(const std::vector<std::uint8_t>& now, const std::vector<std::uint8_t>& before) {
@@ -237,7 +255,7 @@ void BreakableSystem::take_out(std::size_t contact) {
   for (State& state : states_) state.carried = false;
   leave();
   for (const std::int32_t disc : discs_set(left_)) motion[static_cast<std::size_t>(disc)] = {};
-  why_not_ = "a load drives " + describe_motion(rest().assembly, motion);
+  why_not_ = describe_driven(motion);
   measured(0);
 }
 
@@ -308,22 +326,20 @@ void BreakableSystem::measured(double residual) {
   report_.largest_residual = std::max(report_.largest_residual, residual);
 }
 
-RestOfNetwork BreakableSystem::rest() const {
+/// \param motions 0 of discs that have left
+std::string BreakableSystem::describe_driven(const std::vector<DiscMotion>& motions) const {
   std::vector<std::uint8_t> gone = broken_;
   for (std::size_t c = 0; c < gone.size(); ++c) {
     const Contact& contact = network_.assembly.contacts[c];
     if (left_[contact.i] != 0 || left_[contact.j] != 0) gone[c] = 1;
   }
-  RestOfNetwork rest = without(network_, gone);
-  const char* const outside = "outside the network";  // a group that no case can name
-  rest.assembly.groups[outside].discs = discs_set(left_);
-  if (!rest.assembly.groups[outside].discs.empty()) rest.supports.push_back({outside, 0.0, 0.0, 0.0});
-  return rest;
+  return "a load drives " + describe_motion(without(network_, gone).assembly, motions);
 }
 
 void BreakableSystem::solve_anew() {
   why_not_.clear();
-  left_ = idle_discs(network_, broken_);
+  const Rest rest = load_bearing_rest(network_, broken_);
+  left_ = discs_outside(rest, left_.size());
   for (State& state : states_) {
     state.forces.assign(network_.assembly.contacts.size(), {});
     state.motion.assign(network_.assembly.size() * per_disc_, 0.0);
@@ -332,11 +348,11 @@ void BreakableSystem::solve_anew() {
   }
   measured(0);
   unstable_modes_ = 0;
-  if (std::ranges::count(left_, 0) == 0) return;
-  const RestOfNetwork rest = this->rest();
+  if (rest.discs.empty()) return;
   StageTimes times;
   ContactGraph graph(rest.assembly);
-  DegreesOfFreedom unknowns = number_unknowns(rest.assembly, rest.springs, network_.effects, rest.supports);
+  DegreesOfFreedom unknowns = number_unknowns(rest.assembly, rest.springs, network_.effects, network_.supports);
+  unknowns.rotation_scale = network_.assembly.mean_radius();
   const HeldMotions held = hold_free_motions(rest.assembly, graph, rest.springs, unknowns);
   const StiffnessSolver solver(rest.assembly, rest.springs, std::move(graph), std::move(unknowns), network_.solver,
                                Mechanisms::hold, times);
@@ -347,59 +363,64 @@ void BreakableSystem::solve_anew() {
   solve_cases(solver, held, rest, times);
 }
 
-void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const RestOfNetwork& rest,
+void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const Rest& rest,
                                   StageTimes& times) {
+  std::vector<std::size_t> components;  // of the whole, per component of the rest
+  for (const std::int32_t disc : rest.discs) {
+    for (std::size_t k = 0; k < per_disc_; ++k) components.push_back(static_cast<std::size_t>(disc) * per_disc_ + k);
+  }
+  const auto of_rest = [&](const std::vector<double>& whole) {
+    std::vector<double> part;
+    for (std::size_t k = 0; k < components.size() && !whole.empty(); ++k) part.push_back(whole[components[k]]);
+    return part;
+  };
+  const auto of_whole = [&](const std::vector<double>& part) {
+    std::vector<double> whole(left_.size() * per_disc_, 0.0);
+    for (std::size_t k = 0; k < components.size(); ++k) whole[components[k]] = part[k];
+    return whole;
+  };
   std::vector<RightHandSide> cases;
-  std::vector<State*> of;
-  for (std::size_t k = 0; k < states_.size(); ++k) {
-    states_[k].carried = !drives_mechanism(network_.cases[k], solver, rest.assembly);
-    if (!states_[k].carried) continue;
-    cases.push_back(network_.cases[k]);
-    of.push_back(&states_[k]);
+  std::vector<State*> states;
+  for (std::size_t p = 0; p < states_.size(); ++p) {
+    const RightHandSide& whole = network_.cases[p];
+    RightHandSide given{.force = of_rest(whole.force), .prescribed = of_rest(whole.prescribed)};
+    given.gradient = whole.gradient;
+    const std::vector<double> driven = driven_mechanism(given.force, solver);
+    states_[p].carried = driven.empty();
+    if (states_[p].carried) {
+      cases.push_back(std::move(given));
+      states.push_back(&states_[p]);
+    } else {
+      why_not_ = describe_driven(disc_motions(solver.unknowns(), of_whole(driven)));
+    }
   }
   if (cases.empty()) return;
   const std::vector<Solution> solutions = solver.solve(cases, times);
   double residual = 0;
-  for (std::size_t k = 0; k < cases.size(); ++k) {
-    take(rest, solver, held, cases[k], solutions[k], *of[k]);
-    residual = std::max(residual, solutions[k].relative_residual());
+  for (std::size_t p = 0; p < cases.size(); ++p) {
+    residual = std::max(residual, solutions[p].relative_residual());
+    State& state = *states[p];
+    std::vector<ContactForce> forces(rest.contacts.size());
+    for (std::size_t c = 0; c < forces.size(); ++c)
+      forces[c] = linear_spring_force(rest.springs[c], solver.deformation(cases[p], solutions[p].motion, c));
+    std::vector<double> reactions(components.size());
+    internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
+    keep_reactions(solver.unknowns(), cases[p].force, reactions);
+    for (const std::size_t component : held.components) {
+      const bool loaded = std::abs(reactions[component]) > negligible * solutions[p].scale;
+      if (!loaded) reactions[component] = 0;
+      if (!loaded || !state.carried) continue;
+      state.carried = false;
+      why_not_ = fmt::format("a load moves the part around {}, which nothing holds",
+                             describe_disc(network_.assembly, components[component] / per_disc_));
+    }
+    if (!state.carried) continue;
+    for (std::size_t c = 0; c < forces.size(); ++c)
+      state.forces[static_cast<std::size_t>(rest.contacts[c])] = forces[c];
+    state.motion = of_whole(solutions[p].motion.high);
+    state.reactions = of_whole(reactions);
   }
   measured(residual);
-}
-
-/// Where no spring is negative a mechanism deforms no contact, so that only loads can drive it.
-bool BreakableSystem::drives_mechanism(const RightHandSide& given, const StiffnessSolver& solver,
-                                       const Assembly& rest) {
-  for (std::int64_t m = 0; !given.force.empty() && m < solver.factor().report().zero_pivots; ++m) {
-    const std::vector<double> motion = solver.factor().null_motion(m);
-    if (!does_work(given.force, motion, solver.unknowns().per_disc)) continue;
-    why_not_ = "a load drives " + describe_motion(rest, disc_motions(solver.unknowns(), motion));
-    return true;
-  }
-  return false;
-}
-
-void BreakableSystem::take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,
-                           const RightHandSide& given, const Solution& solution, State& state) {
-  std::vector<ContactForce> forces(rest.contacts.size());
-  for (std::size_t c = 0; c < forces.size(); ++c)
-    forces[c] = linear_spring_force(rest.springs[c], solver.deformation(given, solution.motion, c));
-  std::vector<double> reactions(solution.motion.high.size());
-  internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
-  keep_reactions(solver.unknowns(), given.force, reactions);
-  for (const std::size_t component : held.components) {
-    if (std::abs(reactions[component]) <= negligible * solution.scale) {
-      reactions[component] = 0;
-      continue;
-    }
-    why_not_ = fmt::format("a load moves the part around {}, which nothing holds",
-                           describe_disc(network_.assembly, component / per_disc_));
-    state.carried = false;
-    return;
-  }
-  for (std::size_t c = 0; c < forces.size(); ++c) state.forces[rest.contacts[c]] = forces[c];
-  state.motion = solution.motion.high;
-  state.reactions = std::move(reactions);
 }
 
 }  // namespace equidem

@@ -18,13 +18,12 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/breaking/updated_network.hpp"
+#include "equidem/statics/load_bearing.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
-
-struct RestOfNetwork;
 
 /// The network before the first break, and what acts on it.
 struct BreakableNetwork {
@@ -126,13 +125,9 @@ class BreakableSystem {
   [[nodiscard]] const State& state(std::size_t of_case) const;
   void read_state(State& state, std::size_t of_case) const;
   void solve_anew();
-  void solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const RestOfNetwork& rest,
+  void solve_cases(const StiffnessSolver& solver, const HeldMotions& held, const LoadBearingNetwork::Part& rest,
                    StageTimes& times);
-  bool drives_mechanism(const RightHandSide& given, const StiffnessSolver& solver, const Assembly& rest);
-  void take(const RestOfNetwork& rest, const StiffnessSolver& solver, const HeldMotions& held,
-            const RightHandSide& given, const Solution& solution, State& state);
-  /// The contacts that are not broken between discs that have not left; those are held at 0.
-  [[nodiscard]] RestOfNetwork rest() const;
+  [[nodiscard]] std::string describe_driven(const std::vector<DiscMotion>& motions) const;
   void measured(double residual);
 
   BreakableNetwork network_;
