@@ -42,7 +42,7 @@ PARTS = [
     ("cholmod.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("umfpack.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("cblas.h", ["lib/equidem/linear/*", "lib/python/*"], 1),
-    ("Eigen/*", ["lib/equidem/waves/*", "tests/*"], 2),
+    ("Eigen/*", ["lib/equidem/breakage/*", "lib/equidem/waves/*", "tests/*"], 4),
     ("Spectra/*", ["lib/equidem/waves/*"], 1),
     ("boost/math/*", ["lib/equidem/homogenize/*"], 1),
     ("cairo*", ["lib/equidem/output/*"], 1),

@@ -16,7 +16,6 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/load_path.hpp"
-#include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/casefile/assembly/strength_tables.hpp"
 #include "equidem/casefile/assembly/viscoelastic_case.hpp"
