@@ -148,7 +148,7 @@ void RefactorizedSystem::take(const RestOfNetwork& rest, const StiffnessSolver& 
                               const RightHandSide& given, const Solution& solution, State& state) {
   std::vector<ContactForce> forces(rest.contacts.size());
   for (std::size_t c = 0; c < forces.size(); ++c)
-    forces[c] = linear_spring_force(rest.springs[c], solver.deformation(given, solution.motion, c));
+    forces[c] = linear_spring_force(rest.springs[c], solver.contact_motion(given, solution.motion, c).deformation);
   std::vector<double> reactions(solution.motion.high.size());
   internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
   for (std::size_t k = 0; k < reactions.size(); ++k) {
