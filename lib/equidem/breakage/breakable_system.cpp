@@ -402,7 +402,8 @@ void BreakableSystem::solve_cases(const StiffnessSolver& solver, const HeldMotio
     State& state = *states[p];
     std::vector<ContactForce> forces(rest.contacts.size());
     for (std::size_t c = 0; c < forces.size(); ++c)
-      forces[c] = linear_spring_force(rest.springs[c], solver.deformation(cases[p], solutions[p].motion, c));
+      forces[c] =
+          linear_spring_force(rest.springs[c], solver.contact_motion(cases[p], solutions[p].motion, c).deformation);
     std::vector<double> reactions(components.size());
     internal_force(rest.assembly, solver.graph(), solver.unknowns(), forces, reactions);
     keep_reactions(solver.unknowns(), cases[p].force, reactions);

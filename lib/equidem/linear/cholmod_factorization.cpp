@@ -175,14 +175,12 @@ class CholmodCholesky final : public Factorization {
 }  // namespace
 
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                                CholmodOrdering ordering, std::span<const std::int32_t> order,
-                                                FactorReport* report) {
+                                                CholmodOrdering ordering, std::span<const std::int32_t> order) {
   assert(ordering != CholmodOrdering::equidem || order.size() == matrix.graph.size());
   if (ordering != CholmodOrdering::equidem) order = {};
   auto factor = std::make_unique<CholmodCholesky>(held_stiffness(matrix.matrix, unknowns), ordering);
   const bool positive =
       factor->factorize(compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns, order), ordering);
-  if (report != nullptr) *report = factor->report();
   if (!positive) return nullptr;
   return factor;
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Equilibrium of an assembly that the ranks share, under supports and loads, and Abe's tension test on it.
+/// What the ranks solve together: equilibrium under supports and loads, Abe's tension test, the effective stiffness of
+/// a periodic cell.
 #pragma once
 
-#include <array>
-#include <memory>
-#include <optional>
+#include <cstdint>
 #include <vector>
 
 #include "equidem/assembly/lattices/row_lattice.hpp"
+#include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/tension_test.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
@@ -24,26 +24,8 @@ struct PartEquilibrium {
   double largest_deformation = 0;  ///< of a contact, over the sum of its radii
 };
 
-class PartSolver {
- public:
-  /// All arguments must outlive this object and not move.
-  /// \param known_to_be_held no motion without energy is left: check_rigidity has seen the whole
-  /// \throws Error on all ranks, as EquilibriumSolver where it does not need the whole assembly for it
-  PartSolver(const Ranks& ranks, const Part& part, const Whole& whole, const ContactSprings& springs,
-             const Effects& effects, std::span<const Support> supports, SolverMethod method, bool known_to_be_held);
-
-  [[nodiscard]] PartEquilibrium solve(const LoadCase& loads);
-  [[nodiscard]] const Network& network() const { return network_; }
-
- private:
-  [[nodiscard]] std::vector<double> assemble(const LoadCase& loads) const;
-  void describe(const LoadCase& loads, std::span<const double> f, const Refined& refined, PartEquilibrium& result);
-
-  StageTimes times_;
-  const Effects& effects_;
-  Network network_;
-  std::optional<PetscSolver> solver_;
-};
+/// \throws Error on all ranks, as EquilibriumSolver::solve where it does not need the whole assembly for it
+PartEquilibrium solve_loads(const Network& network, PetscSolver& solver, const LoadCase& loads);
 
 /// Loads, supports and gauges; the discs of the gauges by their names.
 /// \param lattice of the assembly; null: the gauges are the discs nearest to the points wanted
@@ -53,5 +35,14 @@ TensionSetup tension_setup(const Ranks& ranks, const Part& part, const Whole& wh
 
 TensionResult evaluate_tension(const Network& network, const TensionTest& test, const TensionSetup& setup,
                                const PartEquilibrium& equilibrium);
+
+/// The components to hold of a lattice or a triangulation: the translations of the first disc, and its rotation where
+/// all discs of a square lattice can turn like gears.
+std::vector<std::int64_t> free_components(const Part& part, const Effects& effects);
+
+/// Unit strains xx, yy, xy, and the unit rotation where rotation is restrained. `fluctuations` are those of the part.
+/// \param network without supports; it holds what no mean strain drives, see free_components
+/// \throws Error on all ranks: the assembly is not periodic, has a mean strain without energy, passes do not converge
+EffectiveStiffness cell_stiffness(const Network& network, PetscSolver& solver);
 
 }  // namespace equidem::petsc
