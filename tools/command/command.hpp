@@ -20,9 +20,8 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/files/json.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
 #include "equidem/output/results.hpp"
+#include "equidem/output/page/page.hpp"
 
 namespace CLI {
 class App;

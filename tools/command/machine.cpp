@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "command.hpp"
 

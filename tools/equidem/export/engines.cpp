@@ -11,7 +11,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/time_step.hpp"
-#include "equidem/output/export/engine_files.hpp"
+#include "equidem/output/export/engine_model.hpp"
 
 #include "export/formats.hpp"
 #include "problem.hpp"

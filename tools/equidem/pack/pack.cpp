@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"

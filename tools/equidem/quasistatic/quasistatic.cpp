@@ -12,7 +12,7 @@
 #include "equidem/breakage/breakage_run.hpp"
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "equidem/core/text.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
-#include "equidem/output/pictures/grain_animation.hpp"
+#include "equidem/output/page/page.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/pictures/picture.hpp"
-#include "equidem/output/pictures/scene.hpp"
 
 namespace equidem {
 namespace {

@@ -10,7 +10,7 @@
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
-#include "equidem/output/run/cell_history.hpp"
+#include "equidem/output/files/histories.hpp"
 
 #include "run/break_files.hpp"
 #include "run/run_grains.hpp"

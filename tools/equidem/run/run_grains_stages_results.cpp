@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

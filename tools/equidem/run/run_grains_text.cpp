@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/text.hpp"
 
 #include "run/run_case_text.hpp"
