@@ -12,7 +12,6 @@
 #include "equidem/grains/grain_simulation.hpp"
 
 #include "bench.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {

@@ -16,10 +16,10 @@
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/output/files/vtk.hpp"
 
-#include "homogenize/homogenize_results.hpp"
+#include "homogenize/homogenize.hpp"
 #include "part_problem.hpp"
 #include "rank_program.hpp"
-#include "solve/solve_results.hpp"
+#include "solve/solve.hpp"
 
 namespace equidem {
 namespace {
@@ -116,7 +116,7 @@ void deliver_of_ranks(const petsc::Ranks& ranks, const CommonOptions& options, c
                       const std::string& status, Results all, StageTimes times) {
   if (!ranks.first()) return;
   deliver(options, status, std::move(all), std::move(times),
-          {{"case.toml", [&] { write_case(options, p.problem.resolved); }}});
+          {{"case.toml", [&](const CommonOptions& into) { write_case(into, p.problem.resolved); }}});
 }
 
 void solve(const petsc::Ranks& ranks, const CommonOptions& options) {

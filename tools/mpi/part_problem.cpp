@@ -237,8 +237,7 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
                 "See data/petsc.md, or leave it out");
     Case resolved = read_case(options);
     check_viscoelastic(resolved, "equidem-mpi");
-    check_prestress(resolved, "equidem-mpi");
-    check_bending(resolved, "equidem-mpi");
+    check_taken(resolved, "equidem-mpi");
     made = std::make_unique<PartProblem>(std::move(resolved));
     check_case(made->problem.resolved, homogenize);
   });

@@ -15,7 +15,6 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include "bench.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -245,7 +244,7 @@ int main(int argc, char** argv) {
       [&](Report& report) {
         report.begin("Breaking contacts");
         if (request.part > 0) return report_parts(request, report);
-        equidem::TextTable table(
+        equidem::bench::TextTable table(
             "assembly & discs & threads & breaks & a break, ms & anew, ms & anew over a break & refined & factorized & "
             "loosened & residual");
         for (const std::string& kind : request.kinds)

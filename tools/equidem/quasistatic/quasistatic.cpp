@@ -336,15 +336,17 @@ int quasistatic(const QuasistaticOptions& given) {
                                                            : "none is written: what is left does not carry its loads");
   }
   const OutputCase& wanted = sequence.problem.resolved.output;
-  std::vector<OutputPart> parts;
-  if (options.out) {
-    parts.push_back({"the state",
-                     [&] { write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state); }});
-    parts.push_back({"the figures", [&] {
-                       write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut,
-                                     sequence.problem.resolved.title);
-                     }});
-  }
+  const auto write_state_at_end = [&](const CommonOptions& into) {
+    write_end_state(into, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
+  };
+  const auto write_case_and_figures = [shared_sequence](const CommonOptions& into) {
+    const Case& kept = shared_sequence->problem.resolved;
+    write_case(into, kept);
+    write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
+                  kept.title);
+  };
+  const std::vector<OutputPart> parts{{"the state", write_state_at_end},
+                                      {"the figures", write_case_and_figures, OutputPart::page}};
   deliver(options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, parts);
   const std::int64_t events = std::ssize(sequence.run().events());
   if (stop.failure && events == 0) throw *stop.failure;  // nothing of the path is known
@@ -353,12 +355,6 @@ int quasistatic(const QuasistaticOptions& given) {
                   "Run the same command with --resume to go on");
   }
   hand_over(std::shared_ptr<const Assembly>(shared_sequence, &sequence.problem.assembly));
-  hand_over([shared_sequence](const CommonOptions& into) {
-    const Case& kept = shared_sequence->problem.resolved;
-    write_case(into, kept);
-    write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
-                  kept.title);
-  });
   return 0;
 }
 

@@ -17,7 +17,7 @@
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "run/run_case_text.hpp"
+#include "run/case_text.hpp"
 #include "state_files.hpp"
 
 namespace equidem {

@@ -42,6 +42,9 @@ struct Series {
   std::string column = {};  ///< its name in the data file; empty: made of the label
   /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
   std::vector<double> low = {}, high = {};
+
+  /// A point behind the others, without an error bar.
+  void add(double x_of_point, double y_of_point) { x.push_back(x_of_point), y.push_back(y_of_point); }
 };
 
 /// A vertical line across the plot with its label written along its upper end.

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "verb_run.hpp"
+#include "verbs.hpp"
 
 #include <algorithm>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
-
-#include "option_checks.hpp"
-#include "verbs.hpp"
 
 namespace equidem {
 namespace {
