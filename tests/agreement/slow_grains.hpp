@@ -17,7 +17,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
 namespace equidem::test {

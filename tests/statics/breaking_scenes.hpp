@@ -196,7 +196,8 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
   std::vector<std::vector<ContactForce>> forces(scene.cases.size());
   for (std::size_t p = 0; p < scene.cases.size(); ++p) {
     for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
-      forces[p].push_back(linear_spring_force(springs[c], solver.deformation(scene.cases[p], solutions[p].motion, c)));
+      forces[p].push_back(
+          linear_spring_force(springs[c], solver.contact_motion(scene.cases[p], solutions[p].motion, c).deformation));
     }
   }
   return forces;

@@ -23,7 +23,6 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/page/answers.hpp"
 #include "equidem/output/page/page.hpp"
 #include "equidem/output/quantities.hpp"
 

@@ -24,8 +24,7 @@
 #include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/table_file.hpp"
-#include "equidem/output/files/json.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/output/results.hpp"
 
 namespace CLI {

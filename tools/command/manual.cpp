@@ -13,7 +13,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 namespace {

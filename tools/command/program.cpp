@@ -24,7 +24,7 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "command.hpp"
 #include "manual.hpp"

@@ -16,8 +16,8 @@
 
 #include "equidem/assembly/files.hpp"
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/casefile/springs_table.hpp"
-#include "equidem/contact/bending.hpp"
+#include "equidem/casefile/contact_tables.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

@@ -11,7 +11,7 @@
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"

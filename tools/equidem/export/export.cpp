@@ -11,8 +11,8 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/keys.hpp"
-#include "equidem/casefile/engine/value.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
@@ -20,7 +20,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
-#include "equidem/output/export/engine_files.hpp"
 #include "equidem/output/export/engine_model.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/matrix_market.hpp"

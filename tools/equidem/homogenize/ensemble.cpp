@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

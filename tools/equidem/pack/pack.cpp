@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
@@ -20,7 +20,6 @@
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 
 #include "command.hpp"
 #include "problem.hpp"
@@ -214,7 +213,7 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
     out.line("packed", fmt::format("all radii scaled by {:.6g}: {:.6g} to {:.6g} m",
                                    packing.radii[0] / options.radii[0], smallest, largest));
   }
-  const Region& region = measures.region;
+  const Rectangle& region = measures.region;
   out.line("solid fraction")
       .add("solid_fraction", "", measures.solid_fraction)
       .add("porosity", "porosity", measures.porosity)

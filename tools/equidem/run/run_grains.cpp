@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -26,7 +26,7 @@ constexpr std::int64_t energy_samples = 200,
 
 void check_events(const GrainCase& resolved, double step) {
   const auto length_of = [&](const StageCase& stage) {
-    return stage.duration ? *stage.duration : static_cast<double>(*stage.steps) * step;
+    return stage.duration ? *stage.duration : static_cast<double>(*stage.given_steps) * step;
   };
   const auto check_all = [&](const GrainScene& scene, double length, const auto& place_of_wall,
                              const std::string& place_of_cell) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
@@ -14,7 +14,6 @@
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/histories.hpp"
 #include "equidem/output/plots/plot.hpp"
-#include "equidem/output/run/cell_history.hpp"
 
 #include "run/run_grains.hpp"
 

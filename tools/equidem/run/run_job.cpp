@@ -17,10 +17,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/histories.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
-#include "equidem/output/pictures/grain_animation.hpp"
+#include "equidem/output/page/page.hpp"
+#include "equidem/output/pictures/grain_picture.hpp"
 #include "equidem/output/pictures/picture.hpp"
-#include "equidem/output/pictures/scene.hpp"
 
 #include "state_files.hpp"
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "equidem/breakage/event_path.hpp"
 #include "equidem/breakage/network_response.hpp"
 #include "equidem/core/threads.hpp"
 
@@ -36,15 +36,6 @@ double work_of(const ContactForce& from, const ContactForce& to, const PreciseDe
 }
 
 }  // namespace
-
-void ContactLedger::take(double elastic_now) {
-  elastic = elastic_now;
-  largest = std::max({largest, std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
-}
-
-double ContactLedger::error() const {
-  return largest > negligible ? std::abs(missing()) / largest : 0;
-}
 
 UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
                              const DegreesOfFreedom& unknowns, const ContactOperator& contacts,
@@ -116,13 +107,8 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   constexpr double good = 4e-15;
   constexpr int most = 40;
   constexpr double slowest = 0.8;  // the ground leaves as much of a residual where motions are four times as soft
-  const std::vector<double>& load = path_.pattern.force;
-  std::vector<double> residual(contacts_.components()), along;
-  const auto dot = [&](std::span<const double> x) {
-    double sum = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
-    return sum;
-  };
+  std::vector<double> residual(contacts_.components());
+  std::optional<MotionControl> control;
   evaluate();
   measure_residual(residual);
   // Contacts that slip without a force may have changed sides behind the rates.
@@ -131,16 +117,8 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
     const double before = residual_;
     const auto kept = std::pair(motion_, lambda_);
     solver.solve(residual);
-    if (by_motion) {
-      if (along.empty()) {
-        along = load;
-        for (std::size_t m = 0; m < along.size(); ++m) along[m] = unknowns_.held[m] != 0 ? 0 : along[m];
-        solver.solve(along);
-      }
-      const double by = -dot(residual) / dot(along);
-      for (std::size_t m = 0; m < along.size(); ++m) residual[m] += by * along[m];
-      lambda_ += by;
-    }
+    if (by_motion && !control) control.emplace(contacts_, solver, path_.pattern.force);
+    if (control) lambda_ += control->hold(residual, 0);
     motion_.add(residual);
     evaluate();
     measure_residual(residual);

@@ -30,7 +30,7 @@ struct EquilibriumSums {
   std::array<std::array<double, 2>, 2> load_work{};  ///< of the loads of one right-hand side on the motions of another
   /// Under each right-hand side, of what the prescribed motions and the mean strain of the first one need, on these.
   std::array<double, 2> imposed{};
-  std::array<Tensor2, 2> moment{};  ///< sum F_i l_j, per right-hand side; 0 where it is not told
+  std::array<Tensor2, 2> moment{};  ///< sum F_i l_j, per right-hand side; 0 where it is not computed
 };
 
 struct UpdateCounters {
@@ -69,10 +69,7 @@ class UpdatedNetwork {
 
   /// Takes a contact out. \return mechanisms that this leaves
   std::vector<HeldMechanism> remove(std::size_t contact);
-  /// Refines the motions by one step at least, and factorizes anew where that does not serve.
-  /// \return mechanisms that a new factorization came across
-  std::vector<HeldMechanism> refine() { return refine(1); }
-  /// Tells 0 for the forces of contacts from here on, as of those whose discs have left the network.
+  /// Forces of these contacts are 0 from here on, as of those whose discs have left the network.
   void spare(std::span<const std::size_t> contacts);
 
   /// Per contact, N/m.
@@ -85,15 +82,12 @@ class UpdatedNetwork {
   [[nodiscard]] double residual() const;
   /// A motion that deforms no contact, to round-off, and on which the loads of every right-hand side do work: the
   /// network carries none of them.
-  /// \param component held in place of a mechanism that is to be told; -1: the softest motion that the loads find
+  /// \param component held in place of a mechanism; -1: the softest motion that the loads find
   /// \return per disc; empty where there is no such motion
   [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component) const;
 
   [[nodiscard]] const ContactSprings& springs() const { return springs_; }
   [[nodiscard]] const UpdateCounters& counters() const { return counters_; }
-  [[nodiscard]] double factor_bytes() const { return factor_.report().bytes; }
-  /// Bytes of everything that the object keeps, the factor included.
-  [[nodiscard]] double bytes() const;
 
  private:
   using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
@@ -122,6 +116,8 @@ class UpdatedNetwork {
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
   [[nodiscard]] std::array<Extended, 3> pull_on(std::size_t disc, std::size_t of_case) const;
   [[nodiscard]] HeldMechanism mechanism_at(const Held& held);
+  /// Refines the motions, and factorizes anew where that does not serve.
+  /// \return mechanisms that a new factorization came across
   std::vector<HeldMechanism> refine(int least_steps);
   bool improve(int least_steps);
   bool factorize();
@@ -154,10 +150,11 @@ class UpdatedNetwork {
   LargeVector<double> unbalanced_;                     // N/m, loads that forces leave, in the order of elimination
   LargeVector<double> change_;                         // right-hand sides and solutions
   double residual_ = 0;
-  bool carried_ = true;  // no load drives a mechanism
-  int altered_ = 0;      // contacts since the factor was made
-  double softness_ = 0;  // error in energy over the residual, as it was measured last
-  int unmeasured_ = 0;   // removals since then
+  bool carried_ = true;         // no load drives a mechanism
+  int altered_ = 0;             // contacts since the factor was made
+  double softness_ = 0;         // error in energy over the residual, as it was measured last
+  double measured_energy_ = 0;  // N, twice that under the first right-hand side, then
+  int unmeasured_ = 0;          // removals since then
 };
 
 }  // namespace equidem
