@@ -20,6 +20,8 @@
 #include "equidem/packing/network.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
+#include "breakage/scenes.hpp"
+
 namespace equidem::test {
 
 inline constexpr SpringConstants rubbing_springs{1e8, 5e7};
