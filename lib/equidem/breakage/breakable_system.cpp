@@ -244,8 +244,7 @@ void BreakableSystem::take_out(std::size_t contact) {
   std::int64_t driven = -1;  // component held in place of a mechanism on which a load seems to work
   for (const HeldMechanism& mechanism : equilibrium.remove(contact)) {
     loose = true;
-    if (std::ranges::any_of(mechanism.driven, [](std::uint8_t by_load) { return by_load != 0; }))
-      driven = mechanism.component;
+    if (mechanism.driven) driven = mechanism.component;
   }
   if (driven < 0 && loose) leave();
   const double residual = equilibrium.residual();

@@ -48,8 +48,8 @@ struct SolverReport {
   double largest_residual = 0;      ///< relative, of all states so far
 };
 
-/// With elimination where the method is left to the library: its factor can be updated and tells the stability of each
-/// network.
+/// With elimination where the method is left to the library: its factor can be updated, and its pivots give the
+/// stability of each network.
 inline SolverOptions factor_to_update(SolverOptions options) {
   if (options.method == SolverMethod::automatic) options.method = SolverMethod::multifrontal;
   return options;

@@ -39,7 +39,7 @@ struct BreakEvent {
   double motion = 0;      ///< LoadPath, likewise
   Tensor2 stress;         ///< Pa, likewise
   double energy_before = 0, energy_after = 0;  ///< N, elastic, at this lambda with and without the contact
-  /// N, what the crack takes: energy_before - energy_after and the work of the loads while the contact lets go.
+  /// N, what the crack takes: energy_before - energy_after and the work of the loads while it is released.
   double energy_released = 0;
   double work = 0;  ///< N, of everything from outside, from the unloaded state to behind this event
   double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The events of `equidem quasistatic` as events.csv, from which --resume goes on.
-/// The part of a case that decides a path, by which a resumed one is told to be the same.
+/// The part of a case that decides a path, by which a resumed one is recognized as the same.
 /// Files of `equidem quasistatic`: the curve, the crack picture, the state at the end, frames.
 #pragma once
 

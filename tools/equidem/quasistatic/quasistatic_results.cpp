@@ -130,7 +130,7 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
   out.set("idle_discs", std::ssize(run.idle())).set("loosened_discs", loosened);
 }
 
-/// Discs that rubbing contacts have let go: they may be met again.
+/// Rattlers between frictional contacts: these may close again.
 void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
   const std::vector<std::int32_t>& at_first = run.idle();
   const auto without = [](const std::vector<std::int32_t>& discs, const std::vector<std::int32_t>& others) {

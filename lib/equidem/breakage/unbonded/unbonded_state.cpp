@@ -202,7 +202,7 @@ void UnbondedState::set_status(std::size_t c, ContactStatus status) {
   const ContactStatus was = std::exchange(status_[c], status);
   const UnbondedLaw& law = laws_[c];
   const PreciseDeformation& d = deformation_[c];
-  // A contact that closes has no tangential force; where it lets go of a limit it keeps that of the limit.
+  // A contact that closes has no tangential force; where it leaves a limit it keeps that of the limit.
   if (was == ContactStatus::open) slip_[c] = law.slip_at(d, 0);
   const ContactForce after = law_force(c);
   const double jump = std::max(std::abs(after.normal - before.normal), std::abs(after.tangential - before.tangential));
@@ -218,7 +218,7 @@ void UnbondedState::settle(const Rates& rates, bool dead, bool by_motion, Tangen
 
 void UnbondedState::break_bond(std::size_t c, ContactStatus status) {
   const UnbondedLaw& law = laws_[c];
-  // Bonds that are already letting go begin anew with what they have kept.
+  // Bonds that are already being released begin anew with what they have kept.
   for (const std::size_t other : releasing_) kept_[other] = scaled(kept_[other], share_);
   const double bond = linear_spring_energy_of(law.k, forces_[c]);
   const ContactForce force = forces_[c];

@@ -161,7 +161,7 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   std::vector<HeldMechanism> mechanisms;
   for (const std::int64_t component : path.held) {
     hold(component);
-    mechanisms.push_back(mechanism_at(holds_.back()));
+    mechanisms.push_back(mechanism_at(component));
   }
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
   const bool lost_digits = path.share < delicate || !path.held.empty();
@@ -171,9 +171,8 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   const double fallen = std::max(1.0, measured_energy_ / twice_energy_[0]);
   const bool measure = residual_ * softness_ * fallen > most_wrong || ++unmeasured_ >= most_unmeasured;
   if (carried_ && (too_much || measure)) {
-    for (HeldMechanism& found : refine(too_much ? 1 : 0)) mechanisms.push_back(std::move(found));
+    for (const HeldMechanism& found : refine(too_much ? 1 : 0)) mechanisms.push_back(found);
   }
-  if (carried_) counters_.largest_residual = std::max(counters_.largest_residual, residual());
   return mechanisms;
 }
 
@@ -220,7 +219,7 @@ std::vector<HeldMechanism> UpdatedNetwork::refine(int least_steps) {
                        "Stop before the network falls apart");
   }
   improve(1);
-  for (std::size_t k = held; k < holds_.size(); ++k) found.push_back(mechanism_at(holds_[k]));
+  for (std::size_t k = held; k < holds_.size(); ++k) found.push_back(mechanism_at(holds_[k].component));
   return found;
 }
 
@@ -241,17 +240,16 @@ bool UpdatedNetwork::factorize() {
 
 void UpdatedNetwork::hold(std::int64_t component) {
   holds_.push_back({component, factor_.stiffness_of(component)});
-  ++counters_.held;
 }
 
 /// With K + s e e^T in the factor, what the force of the support takes of the loads is left by the contacts.
-HeldMechanism UpdatedNetwork::mechanism_at(const Held& held) {
-  HeldMechanism mechanism{held.component, held.stiffness, {}, {}};
+HeldMechanism UpdatedNetwork::mechanism_at(std::int64_t component) {
+  HeldMechanism mechanism{component};
   for (std::size_t p = 0; p < cases_.size(); ++p) {
-    mechanism.reaction.push_back(column(unbalanced_, p)[place_of(held.component)]);
-    mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > left_of_reactions * scales_[p] ? 1 : 0);
-    if (mechanism.driven[p] != 0) carried_ = false;
+    const double reaction = column(unbalanced_, p)[place_of(component)];
+    if (std::abs(reaction) > left_of_reactions * scales_[p]) mechanism.driven = true;
   }
+  carried_ = carried_ && !mechanism.driven;
   return mechanism;
 }
 

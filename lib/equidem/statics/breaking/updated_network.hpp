@@ -38,18 +38,14 @@ struct UpdateCounters {
   std::int64_t factorizations = 0;  ///< of the whole matrix, the first included
   std::int64_t mended = 0;          ///< of these, because round-off of updates had grown
   std::int64_t refinements = 0;     ///< times that the motions were refined
-  std::int64_t held = 0;            ///< components held because a removal left a mechanism
-  double largest_residual = 0;      ///< relative, of the states behind removals
 };
 
-/// A mechanism that a removal left, and the component that is held instead.
+/// A mechanism that a removal left. A component is held instead.
 struct HeldMechanism {
   std::int64_t component = -1;  ///< disc * per_disc + k
-  double stiffness = 0;         ///< of its support, Pa
-  /// Per right-hand side, N/m: force of the support. Not zero beyond round-off where the load works on the mechanism:
-  /// the network does not carry it.
-  std::vector<double> reaction;
-  std::vector<std::uint8_t> driven;  ///< per right-hand side, 1: the reaction is more than round-off
+  /// Whether the support of the component takes a force beyond round-off: a load works on the mechanism, and the
+  /// network does not carry it.
+  bool driven = false;
 };
 
 /// At most two right-hand sides, the first in proportion to lambda, the second, where there is one, dead. A removal
@@ -115,7 +111,7 @@ class UpdatedNetwork {
   [[nodiscard]] std::size_t place_of(std::int64_t component) const;
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
   [[nodiscard]] std::array<Extended, 3> pull_on(std::size_t disc, std::size_t of_case) const;
-  [[nodiscard]] HeldMechanism mechanism_at(const Held& held);
+  [[nodiscard]] HeldMechanism mechanism_at(std::int64_t component);
   /// Refines the motions, and factorizes anew where that does not serve.
   /// \return mechanisms that a new factorization came across
   std::vector<HeldMechanism> refine(int least_steps);
