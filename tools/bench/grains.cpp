@@ -67,8 +67,7 @@ std::vector<Grain> measure(TextTable& table, const char* state, GrainScene scene
   packed.advance(before);
   scene.grains = packed.grains();
   GrainSimulation single(one_by_one(scene), options);
-  const Entry entries[] = {{"packed", [&](std::int64_t n) { packed.advance(n); }},
-                           {"one by one", [&](std::int64_t n) { single.advance(n); }}};
+  const Entry entries[] = {entry_of("packed", packed), entry_of("one by one", single)};
   const GrainCounters start = packed.counters();
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
   const GrainCounters end = packed.counters();
@@ -97,7 +96,7 @@ int main(int argc, char** argv) {
       "bench_grains", "Speed of the loop of colliding discs", argc, argv,
       [&](CLI::App& app) {
         app.add_option("--discs", sizes, "numbers of discs");
-        app.add_option("--rounds", rounds, "measurements; the median is reported");
+        declare_rounds(app, rounds);
         app.add_option("--work", work, "discs times steps in each measurement");
         app.add_option("--settle", settle, "time for 3000 discs to fall and come to rest, s");
       },
