@@ -63,12 +63,6 @@ std::string TextTable::markdown() const {
   return text;
 }
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) bad_input(fmt::format("'{}' cannot be written", path), "", "Choose another path");
-}
-
 /// The command without --markdown and its value: where a page is written does not change it.
 static std::string command_line(const char* name, int argc, char** argv) {
   std::string text = name;
@@ -91,7 +85,10 @@ int run_benchmark(const char* name, const char* purpose, int argc, char** argv,
   try {
     Report report(command_line(name, argc, argv));
     run(report);
-    if (!file.empty()) write(file, report.text());
+    if (file.empty()) return 0;
+    std::ofstream page(file);
+    page << report.text();
+    if (!page.flush()) bad_input(fmt::format("'{}' cannot be written", file), "", "Choose another path");
     return 0;
   } catch (const Error& error) {
     std::fprintf(stderr, "%s: %s\n", name, error.what());
@@ -143,6 +140,23 @@ Range ratio_of(const Seconds& a, const Seconds& b) {
 
 std::vector<std::string> assembly_kinds() {
   return {"hexagonal", "delaunay"};
+}
+
+void Sizes::declare(CLI::App& app) {
+  app.add_option("--discs", discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
+  app.add_option("--kinds", kinds, "assemblies")->delimiter(',')->check(CLI::IsMember(assembly_kinds()));
+  app.add_option("--threads", threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
+  declare_rounds(app, rounds);
+}
+
+void Sizes::for_each(const std::function<void(const std::string&, double, int)>& work) const {
+  for (const std::string& kind : kinds)
+    for (const double count : discs)
+      for (const int each : threads) work(kind, count, each);
+}
+
+void declare_rounds(CLI::App& app, int& rounds) {
+  app.add_option("--rounds", rounds, "in which all take turns; medians are reported")->check(CLI::PositiveNumber);
 }
 
 Assembly build_assembly(const std::string& kind, std::int64_t discs, double radius) {

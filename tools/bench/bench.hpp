@@ -54,9 +54,6 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// \throws Error (bad_input) where the file cannot be written
-void write(const std::string& path, const std::string& text);
-
 /// The main function of a benchmark: options, --markdown, errors on stderr.
 /// \param declare adds the options of this benchmark
 /// \return exit code
@@ -71,6 +68,12 @@ struct Entry {
   std::function<void(std::int64_t steps)> advance;
   int threads = 1;
 };
+
+/// Of a loop or simulation that outlives the entry.
+template <typename Advanced>
+Entry entry_of(std::string label, Advanced& advanced, int threads = 1) {
+  return {std::move(label), [&advanced](std::int64_t steps) { advanced.advance(steps); }, threads};
+}
 
 /// Seconds per round: processor time with one thread, wall time with more.
 using Seconds = std::vector<double>;
@@ -92,6 +95,17 @@ Range ratio_of(const Seconds& a, const Seconds& b);
 
 /// hexagonal, delaunay.
 std::vector<std::string> assembly_kinds();
+/// Options of a benchmark of assemblies of discs.
+struct Sizes {
+  std::vector<double> discs;
+  std::vector<std::string> kinds = assembly_kinds();
+  std::vector<int> threads = {1, 2};
+  int rounds = 1;
+
+  void declare(CLI::App& app);
+  void for_each(const std::function<void(const std::string& kind, double discs, int threads)>& work) const;
+};
+void declare_rounds(CLI::App& app, int& rounds);
 /// A free assembly about as wide as high. \param kind one of assembly_kinds()
 Assembly build_assembly(const std::string& kind, std::int64_t discs, double radius);
 

@@ -53,7 +53,7 @@ std::vector<Grain> measure(TextTable& table, const char* state, const GrainScene
   const GrainOptions options{.law = NormalLaw::linear_dashpot, .time_step = step};
   GrainSimulation simulation(scene, options);
   simulation.advance(before);
-  const Entry entries[] = {{"steps", [&](std::int64_t n) { simulation.advance(n); }}};
+  const Entry entries[] = {entry_of("steps", simulation)};
   const GrainCounters start = simulation.counters();
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
   const GrainCounters end = simulation.counters();
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
       "bench_grains", "Speed of the loop of colliding discs", argc, argv,
       [&](CLI::App& app) {
         app.add_option("--discs", sizes, "numbers of discs");
-        app.add_option("--rounds", rounds, "measurements; the median is reported");
+        declare_rounds(app, rounds);
         app.add_option("--work", work, "discs times steps in each measurement");
         app.add_option("--settle", settle, "time for 3000 discs to fall and come to rest, s");
       },

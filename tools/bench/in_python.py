@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tools/bench/in_python.py PAGE --build FOLDER [--markdown FILE] [options]
 
-Pages of measured times that the Python module of a build makes: assemblies (making them, and their files), shapes (a contact
-of ellipses or clumps beside one of discs), grain_threads (settled boxes on one thread and on several)."""
+Pages of measured times that the Python module of a build makes: assemblies (making them, and their files), homogenize (the
+effective stiffness of a cell beside one solution), shapes (a contact of ellipses or clumps beside one of discs), grain_threads
+(settled boxes on one thread and on several)."""
 import argparse
 import math
 import random
@@ -80,6 +81,27 @@ def file_row(eq, assembly, name, rounds):
     write, plainly, read, plain_read = times
     return [name, str(len(assembly)), f"{megabytes:.0f}", spread(write), spread(plainly), f"{megabytes / statistics.median(write):.0f}",
             spread(read), spread(plain_read), f"{megabytes / statistics.median(read):.0f}"]
+
+
+def homogenize(eq, request):
+    rows = []
+    for discs in request.discs:
+        cell = eq.delaunay(discs=int(discs), radius=0.005, periodic=True)
+        for threads in request.threads:
+            eq.set_threads(threads)
+            one, whole = [], []
+            for k in range(-1, request.rounds):  # the first use of memory is slow
+                result = eq.homogenize(cell, (1e9, 0.5e9))
+                solved = sum(result.times.get(stage, 0) for stage in ("solve", "refine")) / 3
+                before = sum(result.times[stage] for stage in ("order", "analyze", "assemble", "factorize"))
+                one.extend([before + solved] * (k >= 0))
+                stages = sum(seconds for stage, seconds in result.times.items() if stage not in ("assembly", "bounds"))
+                whole.extend([stages] * (k >= 0))
+            rows.append([str(len(cell)), str(threads), spread(one), spread(whole), spread(ratios(whole, one), "{:.2f}")])
+    return ("# Effective stiffness", "A periodic Delaunay cell, kT/kN = 0.5. One solution: order, analyze, assemble, factorize, and a third of the "
+            "solution and refinement for three\nmean strains. Effective stiffness: all stages but the bounds beside it, error bound and rigidity included. Seconds, medians "
+            "(smallest .. largest).\n\n" +
+            table(["discs", "threads", "one solution, s", "effective stiffness, s", "ratio"], rows))
 
 
 def contact_count(simulation):
@@ -215,7 +237,7 @@ def numbers(kind):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     pages = parser.add_subparsers(dest="page", required=True)
-    for make in (assemblies, shapes, grain_threads):
+    for make in (assemblies, homogenize, shapes, grain_threads):
         page = pages.add_parser(make.__name__)
         page.set_defaults(make=make)
         page.add_argument("--build", type=Path, required=True, help="build folder of the module")
@@ -224,6 +246,9 @@ def main():
         if make is assemblies:
             page.add_argument("--discs", type=numbers(int), default=[100_000, 1_000_000], help="sizes, ascending")
             page.add_argument("--most-json", type=float, default=1e6, help="largest size that is written as JSON")
+        elif make is homogenize:
+            page.add_argument("--discs", type=numbers(int), default=[10_000, 100_000])
+            page.add_argument("--threads", type=numbers(int), default=[1, 2])
         elif make is shapes:
             page.add_argument("--side", type=int, default=32, help="grains in a row, and rows")
         else:

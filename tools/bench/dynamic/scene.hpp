@@ -23,23 +23,11 @@ inline constexpr double time_step = 0.2;
 /// A wave as long as the assembly, of one hundredth of a radius.
 std::vector<DiscMotion> start_motions(const Assembly& assembly);
 
-/// Options beyond springs, for the table of the cost of effects.
-struct Variant {
-  std::string name;
-  SimulationOptions options = {.time_step = time_step};
-  SpringConstants springs = scene_springs;
-  Vec2 gravity = {};          ///< m/s²
-  bool own_springs = false;   ///< a pair for every contact
-  bool own_masses = false;    ///< for every disc
-  bool driven_sides = false;  ///< left side held, right side pulled
-};
-/// "springs, rotation", "normal springs only", "rotation restrained", and one effect each.
-const std::vector<Variant>& variants();
-
-/// A simulation of a variant with the springs that it refers to.
+/// A simulation of springs kN and kT with the springs that it refers to: "normal" has no kT, "tangential" restrains
+/// rotation.
 class Scenery {
  public:
-  Scenery(const Assembly& assembly, const Variant& variant);
+  explicit Scenery(const Assembly& assembly, LoopKind::Springs springs = LoopKind::Springs::rotation);
   [[nodiscard]] Simulation& simulation() { return simulation_; }
 
  private:
@@ -59,11 +47,9 @@ class Contender {
   [[nodiscard]] virtual double activity() const = 0;
 };
 
-/// The usual loops: springs with rotation, leapfrog, small motions. Over neighbours each disc sums the forces of its
-/// own contacts, so that each contact is computed twice.
-std::unique_ptr<Contender> plain_loop_over_neighbours(const Assembly& assembly);
-/// The force of each contact is added to both discs; then all discs move.
-std::unique_ptr<Contender> plain_loop_over_pairs(const Assembly& assembly);
+/// The usual loop: springs with rotation, leapfrog, small motions. The force of each contact is added to both discs;
+/// then all discs move.
+std::unique_ptr<Contender> plain_loop(const Assembly& assembly);
 
 /// The loop of the library for small motions, equal springs and discs, leapfrog, with its layout of memory and its
 /// vectors, but without anything that a scene may switch on.

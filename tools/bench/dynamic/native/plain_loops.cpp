@@ -39,10 +39,10 @@ inline void move(const Body& force, Body& velocity, Body& motion) {
   motion.theta += time_step * velocity.theta;
 }
 
-/// Discs row by row, as lattices come; neighbours then are near in memory for both loops.
+/// Discs row by row, as lattices come; neighbours then are near in memory.
 class PlainLoop : public Contender {
  public:
-  explicit PlainLoop(const Assembly& assembly) : velocity_(assembly.size()) {
+  explicit PlainLoop(const Assembly& assembly) : velocity_(assembly.size()), force_(assembly.size()) {
     std::vector<std::int32_t> order(assembly.size()), place(assembly.size());
     std::iota(order.begin(), order.end(), 0);
     const auto row = [&](std::int32_t d) { return static_cast<std::int64_t>(assembly.centres[d].y / 1.7); };
@@ -55,76 +55,15 @@ class PlainLoop : public Contender {
       motion_.push_back({start[order[k]].u.x, start[order[k]].u.y, start[order[k]].theta});
     }
     for (const Contact& contact : assembly.contacts) {
-      const Vec2 branch = assembly.branch(contact);
-      const double length = norm(branch);
-      bonds_.push_back({place[contact.i], place[contact.j], branch.x / length, branch.y / length, length / 2});
-      if (bonds_.back().i > bonds_.back().j) bonds_.back() = turned(bonds_.back());
+      Vec2 normal = assembly.branch(contact);
+      const double length = norm(normal);
+      std::int32_t i = place[contact.i], j = place[contact.j];
+      if (i > j) std::swap(i, j), normal = -normal;
+      bonds_.push_back({i, j, normal.x / length, normal.y / length, length / 2});
     }
     std::sort(bonds_.begin(), bonds_.end(),
               [](const Bond& a, const Bond& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
   }
-
-  [[nodiscard]] double activity() const override {
-    double sum = 0;
-    for (const Body& v : velocity_) sum += v.x * v.x + v.y * v.y + v.theta * v.theta;
-    return sum;
-  }
-
- protected:
-  static Bond turned(const Bond& bond) { return {bond.j, bond.i, -bond.nx, -bond.ny, bond.lever}; }
-
-  std::vector<Bond> bonds_;  // i < j, ascending
-  std::vector<Body> motion_, velocity_;
-};
-
-class NeighbourLoop : public PlainLoop {
- public:
-  explicit NeighbourLoop(const Assembly& assembly) : PlainLoop(assembly), after_(motion_) {
-    const std::size_t once = bonds_.size();
-    for (std::size_t k = 0; k < once; ++k) bonds_.push_back(turned(bonds_[k]));
-    std::sort(bonds_.begin(), bonds_.end(),
-              [](const Bond& a, const Bond& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
-    first_.assign(motion_.size() + 1, 0);
-    for (const Bond& bond : bonds_) {
-      ++first_[static_cast<std::size_t>(bond.i) + 1];
-      slots_.push_back({bond.j, bond.nx, bond.ny, bond.lever});
-    }
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    bonds_ = {};
-  }
-
-  void advance(std::int64_t steps) override {
-    for (std::int64_t step = 0; step < steps; ++step) {
-      for (std::size_t d = 0; d < motion_.size(); ++d) {
-        const Body own = motion_[d];
-        Body sum;
-        for (std::int32_t k = first_[d]; k < first_[d + 1]; ++k) {
-          const Slot& slot = slots_[k];
-          const Body force = force_of({0, 0, slot.nx, slot.ny, slot.lever}, own, motion_[slot.other]);
-          sum.x += force.x;
-          sum.y += force.y;
-          sum.theta += force.theta;
-        }
-        after_[d] = own;
-        move(sum, velocity_[d], after_[d]);
-      }
-      std::swap(motion_, after_);
-    }
-  }
-
- private:
-  struct Slot {
-    std::int32_t other;
-    double nx, ny, lever;
-  };
-  std::vector<std::int32_t> first_;
-  std::vector<Slot> slots_;
-  std::vector<Body> after_;
-};
-
-class PairLoop : public PlainLoop {
- public:
-  explicit PairLoop(const Assembly& assembly) : PlainLoop(assembly), force_(motion_.size()) {}
 
   void advance(std::int64_t steps) override {
     for (std::int64_t step = 0; step < steps; ++step) {
@@ -144,8 +83,15 @@ class PairLoop : public PlainLoop {
     }
   }
 
+  [[nodiscard]] double activity() const override {
+    double sum = 0;
+    for (const Body& v : velocity_) sum += v.x * v.x + v.y * v.y + v.theta * v.theta;
+    return sum;
+  }
+
  private:
-  std::vector<Body> force_;
+  std::vector<Bond> bonds_;  // i < j, ascending
+  std::vector<Body> motion_, velocity_, force_;
 };
 
 double triad_bandwidth() {
@@ -180,12 +126,8 @@ double peak_arithmetic() {
 
 }  // namespace
 
-std::unique_ptr<Contender> plain_loop_over_neighbours(const Assembly& assembly) {
-  return std::make_unique<NeighbourLoop>(assembly);
-}
-
-std::unique_ptr<Contender> plain_loop_over_pairs(const Assembly& assembly) {
-  return std::make_unique<PairLoop>(assembly);
+std::unique_ptr<Contender> plain_loop(const Assembly& assembly) {
+  return std::make_unique<PlainLoop>(assembly);
 }
 
 Limits machine_limits() {

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/breakage/breakage_run.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/stopwatch.hpp"
@@ -19,24 +20,29 @@
 namespace equidem::bench {
 namespace {
 
+constexpr const char* introduction = R"(
+A notched sample (a line of contacts cut from the left side in half of the height) is held at its bottom and pulled at
+its top; kT/kN = 0.4, 3 unknowns per disc, Weibull strengths, friction 0.3. A break, as quasistatic reports it: take the
+contact out of the factor, solve for the motions, evaluate all forces and the residual of the loads, find the next
+contact; load, motion, stress, energies and the discs that leave the network. Anew: assemble, factorize in the order at
+hand, solve once, evaluate the forces; both take turns in every round. Refined, factorized: times that motions were, and
+that the factor was made anew; rattlers: discs that left the network; softness: motion over load behind the last break,
+over that of the unbroken sample; residual: the largest, relative. Processor time with one thread, wall time with more;
+medians (smallest .. largest).
+
+)";
+
 struct Request {
-  std::vector<double> discs = {1e4, 1e5};
-  std::vector<std::string> kinds = assembly_kinds();
-  std::vector<int> threads = {1, 2};
+  Sizes sizes = {.discs = {1e4, 1e5}, .rounds = 3};
   int breaks = 5000;
-  int rounds = 3;
-  int part = 0;  // breaks of one line of the table of parts; 0: no such table
+  int part = 0;  // breaks of a line of the table; 0: the whole path
   double weibull_modulus = 2;
   double notch = 0.2;
 };
 
 /// Without contacts across a horizontal line of this share of the width, from the left side in half of the height.
 Assembly notched(Assembly assembly, double share) {
-  Vec2 low = assembly.centres[0], high = low;
-  for (const Vec2 x : assembly.centres) {
-    low = {std::min(low.x, x.x), std::min(low.y, x.y)};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y)};
-  }
+  const auto [low, high] = upright_rectangle(assembly.centres);
   const double height = 0.5 * (low.y + high.y) + 1e-3 * assembly.mean_radius();
   const double tip = low.x + share * (high.x - low.x);
   std::vector<Contact> kept;
@@ -98,12 +104,12 @@ class Clock {
   double last_ = now();
 };
 
-/// A part of a path, with all that quasistatic tells of a break: load, motion, stress, energies, what comes loose.
+/// A part of a path, with all that quasistatic reports of a break: load, motion, stress, energies, rattlers.
 struct PathPart {
   std::int64_t first = 0, end = 0;  // breaks
   double seconds = 0;
   SolverReport counters;      // of this part
-  std::int64_t loosened = 0;  // discs
+  std::int64_t rattlers = 0;  // discs that left the network
   double softness = 1;        // motion over load behind it, over that at first
 };
 
@@ -128,7 +134,7 @@ std::vector<PathPart> follow_path(const Scene& scene, int breaks, int part) {
     now.counters.largest_residual = counters.largest_residual;
     before = counters;
     for (std::int64_t k = first; k < now.end; ++k)
-      now.loosened += std::ssize(run.events()[static_cast<std::size_t>(k)].loosened);
+      now.rattlers += std::ssize(run.events()[static_cast<std::size_t>(k)].loosened);
     now.softness = run.response().motion[1] / stiff;
     if (now.end > first) parts.push_back(now);
   }
@@ -153,73 +159,46 @@ double factorize_anew(const Scene& scene, const ContactGraph& graph, std::shared
   return watch.lap();
 }
 
-std::shared_ptr<const SymbolicFactor> order_of(const Scene& scene, const ContactGraph& graph) {
-  return std::make_shared<const SymbolicFactor>(
-      analyze(dissect(scene.assembly, graph), graph, scene.unknowns.per_disc));
+PathPart whole_path(const std::vector<PathPart>& parts) {
+  PathPart whole = parts.back();
+  whole.first = 0, whole.seconds = 0, whole.rattlers = 0;
+  whole.counters.refinements = whole.counters.factorizations = 0;
+  for (const PathPart& part : parts) {
+    whole.seconds += part.seconds;
+    whole.rattlers += part.rattlers;
+    whole.counters.refinements += part.counters.refinements;
+    whole.counters.factorizations += part.counters.factorizations;
+  }
+  return whole;
 }
 
+/// A path part by part, its whole in the last line; in every round it takes turns with factorizing anew.
 void compare(const Request& request, const std::string& kind, double discs, int threads, TextTable& table) {
   set_thread_count(threads);
   const Scene scene = build(request, kind, discs);
   const ContactGraph graph(scene.assembly);
-  const auto symbolic = order_of(scene, graph);
+  const auto symbolic =
+      std::make_shared<const SymbolicFactor>(analyze(dissect(scene.assembly, graph), graph, scene.unknowns.per_disc));
   static_cast<void>(factorize_anew(scene, graph, symbolic));  // the first use of memory is slow
-  Seconds anew, updated;
-  PathPart path;
-  for (int round = 0; round < request.rounds; ++round) {
+  Seconds anew;
+  std::vector<PathPart> parts;
+  std::vector<Seconds> each;  // of a break, by part
+  for (int round = 0; round < request.sizes.rounds; ++round) {
     anew.push_back(factorize_anew(scene, graph, symbolic));
-    const std::vector<PathPart> parts = follow_path(scene, request.breaks, request.breaks);
+    parts = follow_path(scene, request.breaks, request.part > 0 ? request.part : request.breaks);
     if (parts.empty()) return;  // nothing broke
-    path = parts.front();
-    updated.push_back(path.seconds / static_cast<double>(path.end));
+    if (parts.size() > 1) parts.push_back(whole_path(parts));
+    each.resize(parts.size());
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      each[k].push_back(parts[k].seconds / static_cast<double>(parts[k].end - parts[k].first));
   }
-  table.add("{} & {} & {} & {} & {} & {:.3g} & {} & {} & {} & {} & {:.1e}", kind, scene.assembly.size(), threads,
-            path.end, (range_of(updated) * 1e3).text("{:.3g}"), 1e3 * range_of(anew).median,
-            ratio_of(anew, updated).text("{:.0f}"), path.counters.refinements, path.counters.factorizations,
-            path.loosened, path.counters.largest_residual);
-}
-
-/// A path part by part, beside factorizing anew before it and behind it.
-void follow_in_parts(const Request& request, const std::string& kind, double discs, int threads, TextTable& table) {
-  set_thread_count(threads);
-  const Scene scene = build(request, kind, discs);
-  const ContactGraph graph(scene.assembly);
-  const auto symbolic = order_of(scene, graph);
-  static_cast<void>(factorize_anew(scene, graph, symbolic));  // the first use of memory is slow
-  Seconds anew{factorize_anew(scene, graph, symbolic)};
-  std::vector<PathPart> parts = follow_path(scene, request.breaks, request.part);
-  anew.push_back(factorize_anew(scene, graph, symbolic));
-  if (parts.empty()) return;  // nothing broke
-  PathPart whole = parts.front();
-  whole.counters = {}, whole.seconds = 0, whole.loosened = 0;
-  for (const PathPart& part : parts) {
-    whole.end = part.end, whole.seconds += part.seconds, whole.softness = part.softness;
-    whole.loosened += part.loosened;
-    whole.counters.refinements += part.counters.refinements;
-    whole.counters.factorizations += part.counters.factorizations;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const PathPart& part = parts[k];
+    table.add("{} & {} & {} & {} .. {} & {} & {:.3g} & {} & {} & {} & {} & {:.4g} & {:.1e}", kind,
+              scene.assembly.size(), threads, part.first + 1, part.end, (range_of(each[k]) * 1e3).text("{:.3g}"),
+              1e3 * range_of(anew).median, ratio_of(anew, each[k]).text("{:.0f}"), part.counters.refinements,
+              part.counters.factorizations, part.rattlers, part.softness, part.counters.largest_residual);
   }
-  parts.push_back(whole);
-  for (const PathPart& part : parts) {
-    const double each = part.seconds / static_cast<double>(part.end - part.first);
-    table.add("{} & {} & {} & {} .. {} & {:.3g} & {:.3g} & {:.0f} & {} & {} & {} & {:.4g}", kind, scene.assembly.size(),
-              threads, part.first + 1, part.end, 1e3 * each, 1e3 * range_of(anew).median, range_of(anew).median / each,
-              part.counters.refinements, part.counters.factorizations, part.loosened, part.softness);
-  }
-}
-
-void report_parts(const Request& request, Report& report) {
-  TextTable table(
-      "assembly & discs & threads & breaks & a break, ms & anew, ms & anew over a break & refined & factorized & "
-      "loosened & softness");
-  for (const std::string& kind : request.kinds)
-    for (const double count : request.discs)
-      for (const int threads : request.threads) follow_in_parts(request, kind, count, threads, table);
-  report.add(
-      "\nPaths as quasistatic follows them, part by part, with the whole path in the last line of each. Anew: before "
-      "and behind the path. Refined, factorized: times that motions were, and that the factor was made anew, in the "
-      "part; loosened: discs that left the network; softness: motion over load behind the part, over that of the "
-      "unbroken sample.\n\n" +
-      table.markdown());
 }
 
 }  // namespace
@@ -231,36 +210,20 @@ int main(int argc, char** argv) {
   return run_benchmark(
       "bench_breakage", "Contacts that break one after another, beside factorizing anew", argc, argv,
       [&](CLI::App& app) {
-        app.add_option("--discs", request.discs, "numbers of discs")->delimiter(',')->check(CLI::PositiveNumber);
-        app.add_option("--kinds", request.kinds, "assemblies")->delimiter(',');
-        app.add_option("--threads", request.threads, "numbers of threads")->delimiter(',')->check(CLI::PositiveNumber);
+        request.sizes.declare(app);
         app.add_option("--breaks", request.breaks, "of each assembly")->check(CLI::PositiveNumber);
-        app.add_option("--rounds", request.rounds, "of both, one after the other")->check(CLI::PositiveNumber);
-        app.add_option("--part", request.part, "breaks of a line of the table of parts, which is made in place of all")
+        app.add_option("--part", request.part, "breaks of a line; else a line is a whole path")
             ->check(CLI::PositiveNumber);
         app.add_option("--weibull-modulus", request.weibull_modulus, "of the strengths")->check(CLI::PositiveNumber);
         app.add_option("--notch", request.notch, "length over the width")->check(CLI::Range(0.0, 0.9));
       },
       [&](Report& report) {
         report.begin("Breaking contacts");
-        if (request.part > 0) return report_parts(request, report);
-        equidem::bench::TextTable table(
+        TextTable table(
             "assembly & discs & threads & breaks & a break, ms & anew, ms & anew over a break & refined & factorized & "
-            "loosened & residual");
-        for (const std::string& kind : request.kinds)
-          for (const double count : request.discs)
-            for (const int each : request.threads) compare(request, kind, count, each, table);
-        report.add(
-            "\nA notched sample (a line of contacts cut from the left side in half of the height) is held at its "
-            "bottom and pulled at its top; kT/kN = 0.4, 3 unknowns per disc, Weibull strengths, friction 0.3. A break, "
-            "as quasistatic tells it: take the contact out of the factor, solve for the motions, evaluate all forces "
-            "and "
-            "what they leave of the loads, find the next contact; load, motion, stress, energies and what comes loose. "
-            "Anew: assemble, factorize in the order at hand, solve once, evaluate the forces; both take turns in every "
-            "round. Refined, factorized: times that motions were, and that the factor was made anew; loosened: discs "
-            "that "
-            "left the network; residual: the largest, relative. Processor time with one thread, wall time with more; "
-            "medians (smallest .. largest).\n\n" +
-            table.markdown());
+            "rattlers & softness & residual");
+        request.sizes.for_each(
+            [&](const std::string& kind, double discs, int threads) { compare(request, kind, discs, threads, table); });
+        report.add(introduction + table.markdown());
       });
 }
