@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -34,8 +35,10 @@ class DiscValues {
 
 }  // namespace
 
-Halo::Halo(const Ranks& ranks, const Part& part, std::span<const std::int64_t> begin)
+Halo::Halo(const Ranks& ranks, const Part& part)
     : owned_(part.owned), ghosts_(static_cast<std::int64_t>(part.assembly.size()) - part.owned) {
+  std::vector<std::int64_t> begin{0};  // the first place of each rank, and that behind the last one
+  for (const std::int64_t discs : ranks.joined({&owned_, 1})) begin.push_back(begin.back() + discs);
   std::vector<PetscSFNode> owners(static_cast<std::size_t>(ghosts_));
   for (std::size_t g = 0; g < owners.size(); ++g) {
     const std::int64_t place = part.places[static_cast<std::size_t>(part.owned) + g];
@@ -81,7 +84,6 @@ void Halo::add(std::span<double> values, int per_disc) const {
 
 Whole whole_of(const Ranks& ranks, const Part& part) {
   const Assembly& assembly = part.assembly;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto owned = static_cast<std::size_t>(part.owned);
   Whole whole;
   whole.discs = ranks.sum(part.owned);
@@ -89,11 +91,7 @@ Whole whole_of(const Ranks& ranks, const Part& part) {
   whole.owned = static_cast<std::int64_t>(ranks.largest(static_cast<double>(part.owned)));
   whole.ghosts = static_cast<std::int64_t>(ranks.largest(static_cast<double>(assembly.size() - owned)));
   double sums[5] = {0, 0, 0, 0, 0}, largest = 0;  // radii, their squares, cells, branches, sections
-  Vec2 low{infinity, infinity}, high{-infinity, -infinity};
   for (std::size_t d = 0; d < owned; ++d) {
-    const Vec2 x = assembly.centres[d];
-    low = {std::min(low.x, x.x), std::min(low.y, x.y)};
-    high = {std::max(high.x, x.x), std::max(high.y, x.y)};
     sums[0] += assembly.radii[d];
     sums[1] += assembly.radii[d] * assembly.radii[d];
     largest = std::max(largest, assembly.radii[d]);
@@ -102,6 +100,7 @@ Whole whole_of(const Ranks& ranks, const Part& part) {
   }
   for (const Contact& contact : assembly.contacts) sums[3] += norm(assembly.branch(contact));
   ranks.sum(sums);
+  const auto [low, high] = upright_rectangle({assembly.centres.data(), owned});
   whole.extents = {{ranks.smallest(low.x), ranks.smallest(low.y)}, {ranks.largest(high.x), ranks.largest(high.y)}};
   whole.mean_radius = sums[0] / static_cast<double>(whole.discs);
   whole.largest_radius = ranks.largest(largest);
@@ -117,12 +116,6 @@ Whole whole_of(const Ranks& ranks, const Part& part) {
               "Use fewer discs, or build with a PETSc of 64-bit indices (petsc64-dev)");
   }
   return whole;
-}
-
-std::vector<std::int64_t> beginnings(const Ranks& ranks, std::int64_t owned) {
-  std::vector<std::int64_t> begin{0};
-  for (const std::int64_t one : ranks.joined({&owned, 1})) begin.push_back(begin.back() + one);
-  return begin;
 }
 
 }  // namespace equidem::petsc

@@ -3,7 +3,6 @@
 /// The part of an assembly that one rank holds, and how it comes to it.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -35,8 +34,7 @@ struct Part {
 /// Sends values of discs between the ranks that own and that mirror them.
 class Halo {
  public:
-  /// \param begin the place of the first disc that each rank owns, and their count: ranks + 1 numbers
-  Halo(const Ranks& ranks, const Part& part, std::span<const std::int64_t> begin);
+  Halo(const Ranks& ranks, const Part& part);
   ~Halo();
   Halo(const Halo&) = delete;
   Halo& operator=(const Halo&) = delete;
@@ -71,38 +69,6 @@ struct Whole {
   std::map<std::string, std::int64_t> groups;  ///< discs of each group
 };
 Whole whole_of(const Ranks& ranks, const Part& part);
-
-/// The places where the discs of each rank begin, from the number that each one owns, and their count.
-std::vector<std::int64_t> beginnings(const Ranks& ranks, std::int64_t owned);
-
-/// A grid of ranks over the columns and rows of a lattice; blocks are numbered row by row.
-class BlockGrid {
- public:
-  /// The grid with the shortest cuts.
-  /// \throws Error (bad_input) where some rank would have no disc
-  BlockGrid(const RowLattice& lattice, int ranks);
-
-  struct Block {
-    int first_row, end_row, first_column, end_column;
-    /// Columns of the block in a row of the lattice.
-    [[nodiscard]] int width(const RowLattice& lattice, int row) const {
-      return std::max(0, std::min(end_column, lattice.count(row)) - first_column);
-    }
-  };
-  [[nodiscard]] Block block(int rank) const;
-  [[nodiscard]] int rank_of(int row, int column) const;
-  /// Discs of a block in the rows from its first one up to `row`.
-  [[nodiscard]] std::int64_t discs_below(const Block& block, int row) const;
-
- private:
-  [[nodiscard]] int cut(int count, int parts, int part) const {
-    return static_cast<int>(std::int64_t{count} * part / parts);
-  }
-
-  const RowLattice& lattice_;
-  int across_ = 1;  ///< blocks side by side
-  int along_ = 1;   ///< blocks one above the other
-};
 
 /// The block of a rank with its ghosts; no rank holds more than that and the sides. Names are the numbers of
 /// row_lattice. \throws Error (bad_input) as row_lattice; where there are more ranks than discs

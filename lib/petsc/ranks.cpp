@@ -34,10 +34,6 @@ double Ranks::largest(double number) const {
   return number;
 }
 
-void Ranks::smallest(std::span<int> numbers) const {
-  MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_INT, MPI_MIN, communicator_);
-}
-
 std::vector<std::int64_t> Ranks::joined(std::span<const std::int64_t> numbers) const {
   const int size = static_cast<int>(numbers.size());
   std::vector<int> sizes(static_cast<std::size_t>(count_)), places(sizes.size(), 0);

@@ -28,8 +28,6 @@ class Ranks {
   [[nodiscard]] std::int64_t sum(std::int64_t number) const;
   [[nodiscard]] double largest(double number) const;
   [[nodiscard]] double smallest(double number) const { return -largest(-number); }
-  /// Each number becomes the smallest of all ranks.
-  void smallest(std::span<int> numbers) const;
   [[nodiscard]] bool any(bool holds) const { return largest(holds ? 1 : 0) > 0; }
   /// The numbers of all ranks, one after another.
   [[nodiscard]] std::vector<std::int64_t> joined(std::span<const std::int64_t> numbers) const;

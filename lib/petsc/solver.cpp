@@ -5,7 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <string_view>
+#include <utility>
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
@@ -15,124 +15,84 @@
 namespace equidem::petsc {
 namespace {
 
-/// Blocks in the order: on the diagonal of each owned disc; for every contact those of (i, j) and (j, i) and, where j
-/// is a ghost, of (j, j). Entries of rows of other ranks are sent there by PETSc and added. Rows and columns of held
-/// components are those of the unit matrix times the stiffest spring.
-struct Coordinates {
-  std::vector<PetscInt> rows, columns;
-  std::vector<double> values;
-
-  /// Rows and columns alone.
-  explicit Coordinates(const Network& network);
-  /// The values.
-  void fill(const Network& network);
-};
-
-/// Calls put(p, q) for every block in the order of Coordinates, p and q the discs of its rows and columns.
-template <typename Put>
-void for_each_block(const Network& network, const Put& put) {
-  const auto owned = static_cast<std::int32_t>(network.part().owned);
-  for (std::int32_t d = 0; d < owned; ++d) put(d, d);
-  for (const Contact& contact : network.assembly().contacts) {
-    if (contact.i == contact.j) continue;
-    put(contact.i, contact.j);
-    put(contact.j, contact.i);
-    if (contact.j >= owned) put(contact.j, contact.j);
-  }
-}
-
-/// Adds the tangent of a contact between two of its ends to a block.
-template <int B>
-class Tangent {
+/// The matrix of a rank by coordinates. Blocks in the order: on the diagonal of each owned disc; for every contact
+/// those of (i, j) and (j, i) and, where j is a ghost, of (j, j). Entries of rows of other ranks are sent there by
+/// PETSc and added. Rows and columns of held components are those of the unit matrix times the stiffest spring.
+class Coordinates {
  public:
-  Tangent(const Network& network, std::size_t contact)
-      : springs_(network.springs()[contact]),
-        gradient_(deformation_gradient(frame_of(network.assembly(), contact), network.unknowns().rotation_scale)) {}
+  explicit Coordinates(const Network& network) : network_(network), b_(network.block()) {
+    const auto owned = static_cast<std::int32_t>(network.part.owned);
+    for (std::int32_t d = 0; d < owned; ++d) blocks_.emplace_back(d, d);
+    for (const Contact& contact : network.assembly.contacts) {
+      if (contact.i == contact.j) continue;
+      blocks_.emplace_back(contact.i, contact.j);
+      blocks_.emplace_back(contact.j, contact.i);
+      if (contact.j >= owned) blocks_.emplace_back(contact.j, contact.j);
+    }
+  }
 
-  /// \param p, q 0: the end at disc i, 1: at j
-  void add(int p, int q, double* block) const {
-    const auto& n = std::array{&gradient_.normal_i, &gradient_.normal_j};
-    const auto& t = std::array{&gradient_.tangential_i, &gradient_.tangential_j};
-    add_linear_spring_tangent<B>(springs_, *n[static_cast<std::size_t>(p)], *n[static_cast<std::size_t>(q)],
-                                 *t[static_cast<std::size_t>(p)], *t[static_cast<std::size_t>(q)], block);
+  /// Calls visit(p, q, r, c) for every entry: row r of disc p, column c of disc q.
+  template <typename Visit>
+  void for_each_entry(const Visit& visit) const {
+    for (const auto& [p, q] : blocks_)
+      for (std::size_t r = 0; r < b_; ++r)
+        for (std::size_t c = 0; c < b_; ++c) visit(static_cast<std::size_t>(p), static_cast<std::size_t>(q), r, c);
+  }
+  void preallocate(Mat matrix) const {
+    std::vector<PetscInt> rows, columns;
+    rows.reserve(blocks_.size() * b_ * b_);
+    columns.reserve(rows.capacity());
+    const auto& places = network_.part.places;
+    const auto b = static_cast<PetscInt>(b_);
+    for_each_entry([&](std::size_t p, std::size_t q, std::size_t r, std::size_t c) {
+      rows.push_back(b * places[p] + static_cast<PetscInt>(r));
+      columns.push_back(b * places[q] + static_cast<PetscInt>(c));
+    });
+    check(MatSetPreallocationCOO(matrix, static_cast<PetscCount>(rows.size()), rows.data(), columns.data()));
+  }
+  [[nodiscard]] std::vector<double> values() const {
+    std::vector<double> values = b_ == 3 ? tangents<3>() : tangents<2>();
+    const auto& held = network_.unknowns.held;
+    std::size_t entry = 0;
+    const std::size_t diagonal = network_.owned() * b_;  // entries of the blocks on it
+    for_each_entry([&](std::size_t p, std::size_t q, std::size_t r, std::size_t c) {
+      double& value = values[entry];
+      if (held[p * b_ + r] != 0 || held[q * b_ + c] != 0) value = entry < diagonal && r == c ? network_.stiffest : 0.0;
+      ++entry;
+    });
+    return values;
   }
 
  private:
-  SpringConstants springs_;
-  DeformationGradient gradient_;
+  template <int B>
+  [[nodiscard]] std::vector<double> tangents() const {
+    constexpr std::size_t entries = std::size_t{B} * B;
+    const auto owned = static_cast<std::int32_t>(network_.part.owned);
+    std::vector<double> values(blocks_.size() * entries, 0.0);
+    auto next = static_cast<std::size_t>(owned);
+    for (std::size_t c = 0; c < network_.assembly.contacts.size(); ++c) {
+      const Contact& contact = network_.assembly.contacts[c];
+      const DeformationGradient g =
+          deformation_gradient(frame_of(network_.assembly, c), network_.unknowns.rotation_scale);
+      const std::array normal{&g.normal_i, &g.normal_j}, tangential{&g.tangential_i, &g.tangential_j};
+      // Ends 0: at disc i, 1: at j.
+      const auto add = [&](std::size_t p, std::size_t q, std::size_t block) {
+        add_linear_spring_tangent<B>(network_.springs[c], *normal[p], *normal[q], *tangential[p], *tangential[q],
+                                     &values[block * entries]);
+      };
+      const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+      add(0, 0, i);
+      add(0, 1, i == j ? i : next++);
+      add(1, 0, i == j ? i : next++);
+      add(1, 1, i != j && contact.j >= owned ? next++ : j);
+    }
+    return values;
+  }
+
+  const Network& network_;
+  std::size_t b_;
+  std::vector<std::pair<std::int32_t, std::int32_t>> blocks_;  // discs of its rows and columns
 };
-
-template <int B>
-void fill_blocks(const Network& network, std::vector<double>& values) {
-  constexpr std::size_t entries = std::size_t{B} * B;
-  const auto owned = static_cast<std::int32_t>(network.part().owned);
-  const auto block_at = [&](std::size_t block) { return &values[block * entries]; };
-  auto next = static_cast<std::size_t>(owned);
-  for (std::size_t c = 0; c < network.assembly().contacts.size(); ++c) {
-    const Contact& contact = network.assembly().contacts[c];
-    const Tangent<B> tangent(network, c);
-    double* const diagonal = block_at(static_cast<std::size_t>(contact.i));
-    tangent.add(0, 0, diagonal);
-    if (contact.i == contact.j) {
-      tangent.add(0, 1, diagonal);
-      tangent.add(1, 0, diagonal);
-      tangent.add(1, 1, diagonal);
-      continue;
-    }
-    tangent.add(0, 1, block_at(next++));
-    tangent.add(1, 0, block_at(next++));
-    tangent.add(1, 1, block_at(contact.j >= owned ? next++ : static_cast<std::size_t>(contact.j)));
-  }
-}
-
-Coordinates::Coordinates(const Network& network) {
-  const std::size_t b = network.block();
-  std::size_t blocks = 0;
-  for_each_block(network, [&](std::int32_t, std::int32_t) { ++blocks; });
-  rows.reserve(blocks * b * b);
-  columns.reserve(blocks * b * b);
-  const auto& places = network.part().places;
-  for_each_block(network, [&](std::int32_t p, std::int32_t q) {
-    const auto row = static_cast<PetscInt>(b) * places[static_cast<std::size_t>(p)];
-    const auto column = static_cast<PetscInt>(b) * places[static_cast<std::size_t>(q)];
-    for (std::size_t r = 0; r < b; ++r) {
-      for (std::size_t c = 0; c < b; ++c) {
-        rows.push_back(row + static_cast<PetscInt>(r));
-        columns.push_back(column + static_cast<PetscInt>(c));
-      }
-    }
-  });
-}
-
-void Coordinates::fill(const Network& network) {
-  const std::size_t b = network.block();
-  std::size_t blocks = 0;
-  for_each_block(network, [&](std::int32_t, std::int32_t) { ++blocks; });
-  values.assign(blocks * b * b, 0.0);
-  if (b == 3) {
-    fill_blocks<3>(network, values);
-  } else {
-    fill_blocks<2>(network, values);
-  }
-  const auto& held = network.unknowns().held;
-  const auto owned = static_cast<std::int32_t>(network.part().owned);
-  double* block = values.data();
-  std::int32_t diagonal = 0;  // blocks that have been visited
-  for_each_block(network, [&](std::int32_t p, std::int32_t q) {
-    const bool on_diagonal = diagonal++ < owned;
-    for (std::size_t r = 0; r < b; ++r) {
-      const bool row = held[static_cast<std::size_t>(p) * b + r] != 0;
-      for (std::size_t c = 0; c < b; ++c, ++block) {
-        if (!row && held[static_cast<std::size_t>(q) * b + c] == 0) continue;
-        *block = on_diagonal && r == c ? network.stiffest() : 0.0;
-      }
-    }
-  });
-}
-
-}  // namespace
-
-namespace {
 
 constexpr const char* prefix = "equidem_";
 /// Each pass of refinement gains so many digits; the last digits cost fewer iterations this way.
@@ -140,25 +100,6 @@ constexpr double tolerance_of_a_pass = 1e-8;
 constexpr int most_iterations_of_a_pass = 1000;
 
 std::atomic<bool> options_were_read{false};
-
-bool is_type(KSP solver, PC pc, const char* ksp_type, const char* pc_type) {
-  PetscBool first = PETSC_FALSE, second = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver), ksp_type, &first));
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), pc_type, &second));
-  return first == PETSC_TRUE && second == PETSC_TRUE;
-}
-
-/// A matrix of blocks or of all entries takes no coordinates in parallel, or has no multigrid.
-void check_format(Mat matrix) {
-  MatType type = nullptr;
-  check(MatGetType(matrix, &type));
-  std::string_view format = type;
-  for (const std::string_view start : {"seq", "mpi"})
-    if (format.starts_with(start)) format.remove_prefix(start.size());
-  if (format.starts_with("aij")) return;
-  bad_input(fmt::format("the format {} of -equidem_mat_type is not one that equidem-mpi fills", format),
-            "it fills aij and the formats that begin with it", "Leave -equidem_mat_type out");
-}
 
 /// PETSc passes over such an option without its value, and counts it as used.
 void check_values_of_options() {
@@ -235,20 +176,15 @@ void PetscSolver::assemble() {
   const Network& n = network_;
   const auto b = static_cast<PetscInt>(n.block());
   const auto rows = static_cast<PetscInt>(n.owned());
-  check(MatCreate(n.ranks().communicator(), &matrix_));
+  check(MatCreate(n.ranks.communicator(), &matrix_));
   check(MatSetSizes(matrix_, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
   check(MatSetBlockSize(matrix_, b));
   check(MatSetType(matrix_, MATAIJ));
   check(MatSetOptionsPrefix(matrix_, prefix));
-  check_options(MatSetFromOptions(matrix_));
-  check_format(matrix_);
   {
-    Coordinates coordinates(n);
-    check(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(coordinates.rows.size()), coordinates.rows.data(),
-                                 coordinates.columns.data()));
-    coordinates.rows = coordinates.columns = {};
-    coordinates.fill(n);
-    check(MatSetValuesCOO(matrix_, coordinates.values.data(), INSERT_VALUES));
+    const Coordinates coordinates(n);
+    coordinates.preallocate(matrix_);
+    check(MatSetValuesCOO(matrix_, coordinates.values().data(), INSERT_VALUES));
   }
   // A copy does not keep the places of the coordinates, which take more memory than the matrix.
   Mat copy = nullptr;
@@ -257,14 +193,14 @@ void PetscSolver::assemble() {
   matrix_ = copy;
   set_block_size_of_own_rows(matrix_, b);
   check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE));
-  if (!n.any_negative()) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
+  if (!n.any_negative) check(MatSetOption(matrix_, MAT_SPD, PETSC_TRUE));
   check(MatCreateVecs(matrix_, &solution_, &load_));
 }
 
 /// Two translations and the rotation about the middle, in which discs turn too, orthonormal.
 void PetscSolver::set_near_null_space() {
   const Network& n = network_;
-  const Vec2 middle = 0.5 * (n.whole().extents.low + n.whole().extents.high);
+  const Vec2 middle = 0.5 * (n.whole.extents.low + n.whole.extents.high);
   std::array<Vec, 3> motions{};
   for (std::size_t m = 0; m < motions.size(); ++m) {
     check(VecDuplicate(solution_, &motions[m]));
@@ -272,8 +208,8 @@ void PetscSolver::set_near_null_space() {
     check(VecGetArray(motions[m], &values));
     for (std::size_t k = 0; k < n.owned(); ++k) {
       const std::size_t component = k % n.block();
-      const Vec2 at = n.assembly().centres[k / n.block()] - middle;
-      const double turn = component == 0 ? -at.y : component == 1 ? at.x : n.unknowns().rotation_scale;
+      const Vec2 at = n.assembly.centres[k / n.block()] - middle;
+      const double turn = component == 0 ? -at.y : component == 1 ? at.x : n.unknowns.rotation_scale;
       values[k] = m < 2 ? static_cast<double>(component == m) : turn;
     }
     check(VecRestoreArray(motions[m], &values));
@@ -285,7 +221,7 @@ void PetscSolver::set_near_null_space() {
     check(VecNormalize(motions[m], nullptr));
   }
   MatNullSpace space = nullptr;
-  check(MatNullSpaceCreate(n.ranks().communicator(), PETSC_FALSE, 3, motions.data(), &space));
+  check(MatNullSpaceCreate(n.ranks.communicator(), PETSC_FALSE, 3, motions.data(), &space));
   check(MatSetNearNullSpace(matrix_, space));
   check(MatNullSpaceDestroy(&space));
   for (Vec& motion : motions) check(VecDestroy(&motion));
@@ -293,8 +229,8 @@ void PetscSolver::set_near_null_space() {
 
 void PetscSolver::set_up(SolverMethod method) {
   const Network& n = network_;
-  const bool eliminates = method == SolverMethod::automatic ? n.any_negative() : !entry_of(method).back_end.iterative;
-  check(KSPCreate(n.ranks().communicator(), &solver_));
+  const bool eliminates = method == SolverMethod::automatic ? n.any_negative : !entry_of(method).back_end.iterative;
+  check(KSPCreate(n.ranks.communicator(), &solver_));
   check(KSPSetOptionsPrefix(solver_, prefix));
   check(KSPSetOperators(solver_, matrix_, matrix_));
   PC pc = nullptr;
@@ -312,16 +248,16 @@ void PetscSolver::set_up(SolverMethod method) {
   check_values_of_options();
   options_were_read = true;
   check_options(KSPSetFromOptions(solver_));
-  interruption_ = new Interruption{n.ranks()};
+  interruption_ = new Interruption{n.ranks};
   check(KSPConvergedDefaultCreate(&interruption_->by_tolerance));
   PetscBool elimination = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(solver_), KSPPREONLY, &elimination));
   if (elimination == PETSC_FALSE) check(KSPSetConvergenceTest(solver_, Interruption::test, interruption_, nullptr));
-  n.ranks().stop_if_interrupted();
+  n.ranks.stop_if_interrupted();
   const PetscErrorCode made = KSPSetUp(solver_);
   if (is_choice(made)) check_options(made);
   check(made);
-  n.ranks().stop_if_interrupted();
+  n.ranks.stop_if_interrupted();
 }
 
 std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) {
@@ -343,23 +279,23 @@ std::int64_t PetscSolver::solve(std::span<const double> r, std::span<double> d) 
                        "the matrix is singular: the assembly has a mechanism", "'equidem solve' names it");
   }
   if (reason < 0) {
-    computation_failed(
-        fmt::format("the solver of PETSc did not converge: {} after {}", KSPConvergedReasons[reason],
-                    counted(iterations, "iteration")),
-        n.any_negative() ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
-                         : "the assembly may have a mechanism, or be close to one",
-        n.any_negative() ? "Take MUMPS: --set solver.method=auto, without -equidem_ksp_type and -equidem_pc_type"
-                         : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
-                           "--set solver.method=multifrontal takes MUMPS");
+    computation_failed(fmt::format("the solver of PETSc did not converge: {} after {}", KSPConvergedReasons[reason],
+                                   counted(iterations, "iteration")),
+                       n.any_negative ? "kT < 0: the matrix is not positive definite, and conjugate gradients need that"
+                                      : "the assembly may have a mechanism, or be close to one",
+                       n.any_negative
+                           ? "Take MUMPS: --set solver.method=auto, without -equidem_ksp_type and -equidem_pc_type"
+                           : "'equidem solve' names a mechanism; -equidem_ksp_max_it N allows more iterations, "
+                             "--set solver.method=multifrontal takes MUMPS");
   }
   const double* found = nullptr;
   check(VecGetArrayRead(solution_, &found));
   std::copy_n(found, n.owned(), d.begin());
   check(VecRestoreArrayRead(solution_, &found));
   for (std::size_t k = 0; k < n.owned(); ++k) {
-    if (n.unknowns().held[k] != 0) d[k] = 0;
+    if (n.unknowns.held[k] != 0) d[k] = 0;
   }
-  n.halo().mirror(d, n.unknowns().per_disc);
+  n.halo.mirror(d, n.unknowns.per_disc);
   return iterations;
 }
 
@@ -373,27 +309,22 @@ std::string PetscSolver::name() const {
   std::string name = fmt::format("PETSc {}.{}.{}: {}, {}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
                                  PETSC_VERSION_SUBMINOR, method, preconditioner);
   MatSolverType package = nullptr;
-  const bool factors = is_type(solver_, pc, method, PCCHOLESKY) || is_type(solver_, pc, method, PCLU);
-  if (factors) check(PCFactorGetMatSolverType(pc, &package));
+  check(PCFactorGetMatSolverType(pc, &package));  // null where it does not factorize
   if (package != nullptr) name += fmt::format(" by {}", package);
-  return fmt::format("{}, on {}", name, counted(network_.ranks().count(), "rank"));
-}
-
-double PetscSolver::entries() const {
-  MatInfo info;
-  check(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
-  return info.nz_used;
+  return fmt::format("{}, on {}", name, counted(network_.ranks.count(), "rank"));
 }
 
 double PetscSolver::grid_bytes() const {
   PC pc = nullptr;
-  check(KSPGetPC(solver_, &pc));
   PetscBool gamg = PETSC_FALSE;
+  check(KSPGetPC(solver_, &pc));
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCGAMG, &gamg));
   if (gamg == PETSC_FALSE) return 0;
   PetscReal grids = 0, operators = 0;
+  MatInfo info;
   check(PCMGGetGridComplexity(pc, &grids, &operators));
-  return operators * entries() * (sizeof(double) + sizeof(PetscInt));
+  check(MatGetInfo(matrix_, MAT_GLOBAL_SUM, &info));
+  return operators * info.nz_used * (sizeof(double) + sizeof(PetscInt));
 }
 
 Counted counted_messages() {
@@ -419,7 +350,7 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
   constexpr double small_enough = 1e-12, rounding = 4e-16;  // of the motion
   Refined result;
   result.motion = PreciseMotion(network.size());
-  result.motion.high = network.unknowns().prescribed;
+  result.motion.high = network.unknowns.prescribed;
   std::vector<double> residual(network.size()), change(network.size());
   const auto evaluate = [&](const PreciseMotion& motion) {
     network.residual(motion, gradient, f, residual);
@@ -431,8 +362,8 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
   }
   double before = 0;
   // Lattices are at rest under a mean strain but for rounding.
-  const double at_rest = gradient ? 1e-13 * network.stiffest() * network.whole().mean_branch *
-                                        std::sqrt(static_cast<double>(network.whole().discs))
+  const double at_rest = gradient ? 1e-13 * network.stiffest * network.whole.mean_branch *
+                                        std::sqrt(static_cast<double>(network.whole.discs))
                                   : 0;
   // A first pass may reach the rest at once; only a second one shows how far the motion is from it.
   for (int pass = 0; pass < most_passes && (pass == 1 || result.residual > at_rest); ++pass) {
@@ -449,7 +380,7 @@ Refined refine(const Network& network, PetscSolver& solver, std::span<const doub
     if (pass > 0 && result.residual > 0.5 * last && result.residual > 1e-12 * result.scale) {
       computation_failed(
           fmt::format("the residual stays at {:.1e} of the forces", result.residual / result.scale),
-          network.any_negative()
+          network.any_negative
               ? "kT < 0: an iteration or preconditioner needs a positive definite matrix; MUMPS meets one "
                 "that is singular or nearly so"
               : "the stiffness matrix is singular or nearly so: the assembly may have a mechanism",

@@ -40,8 +40,7 @@ class PetscSolver {
 
   /// "PETSc 3.18.5: cg, gamg on 2 ranks".
   [[nodiscard]] std::string name() const;
-  /// Sums over all ranks: entries of K, bytes of grids or factor as PETSc tells them (0: not known).
-  [[nodiscard]] double entries() const;
+  /// Of all ranks; 0: not known.
   [[nodiscard]] double grid_bytes() const;
 
  private:

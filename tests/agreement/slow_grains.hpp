@@ -19,6 +19,8 @@
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
+#include "breakage/scenes.hpp"
+
 namespace equidem::test {
 
 inline constexpr SpringConstants rubbing_springs{1e8, 5e7};

@@ -57,6 +57,19 @@ inline std::vector<ContactForce> random_forces(const Assembly& assembly, std::ui
   return forces;
 }
 
+/// The average of the stresses of the discs that are inside, weighted by their cells.
+template <typename Inside>
+Tensor2 average_stress(const Assembly& assembly, const std::vector<Tensor2>& stresses, const Inside& inside) {
+  Tensor2 sum;
+  double area = 0;
+  for (std::size_t disc = 0; disc < stresses.size(); ++disc) {
+    if (!inside(disc)) continue;
+    sum += assembly.cell_areas[disc] * stresses[disc];
+    area += assembly.cell_areas[disc];
+  }
+  return (1 / area) * sum;
+}
+
 /// Largest component by magnitude.
 inline double largest(const Tensor2& t) {
   return std::max({std::abs(t.xx), std::abs(t.xy), std::abs(t.yx), std::abs(t.yy)});

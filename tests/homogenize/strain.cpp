@@ -58,7 +58,6 @@ TEST_CASE("fit_and_gauges_find_a_uniform_gradient_under_any_rigid_motion") {
     const Vec2 l = moved.centres[gauge.second] - moved.centres[gauge.first];
     const Vec2 n = l / norm(l);
     const double expected = gradient.xx * n.x * n.x + (gradient.xy + gradient.yx) * n.x * n.y + gradient.yy * n.y * n.y;
-    CHECK(gauge_length(moved, gauge) == Approx(norm(l)));
     CHECK(std::abs(gauge_strain(moved, motions, gauge) - expected) < tolerance);
     CHECK(std::abs(gauge_strain(moved, motions, {.first = gauge.second, .second = gauge.first}) - expected) <
           tolerance);

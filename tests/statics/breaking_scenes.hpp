@@ -3,6 +3,7 @@
 /// Networks that break contact by contact, and their forces by factorizing anew.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -196,19 +197,15 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
   std::vector<std::vector<ContactForce>> forces(scene.cases.size());
   for (std::size_t p = 0; p < scene.cases.size(); ++p) {
     for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c) {
-      forces[p].push_back(linear_spring_force(springs[c], solver.deformation(scene.cases[p], solutions[p].motion, c)));
+      forces[p].push_back(
+          linear_spring_force(springs[c], solver.contact_motion(scene.cases[p], solutions[p].motion, c).deformation));
     }
   }
   return forces;
 }
 
 inline bool is_carried(const std::vector<HeldMechanism>& mechanisms) {
-  for (const HeldMechanism& m : mechanisms) {
-    for (const double r : m.reaction) {
-      if (std::abs(r) > 1e-6) return false;
-    }
-  }
-  return true;
+  return std::ranges::none_of(mechanisms, &HeldMechanism::driven);
 }
 
 }  // namespace equidem::test

@@ -12,7 +12,6 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include "bench.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -69,7 +68,7 @@ int main(int argc, char** argv) {
       },
       [&](Report& report) {
         report.begin("Effective stiffness");
-        equidem::TextTable table("discs & threads & rounds & one solution, s & effective stiffness, s & ratio");
+        equidem::bench::TextTable table("discs & threads & rounds & one solution, s & effective stiffness, s & ratio");
         for (const double count : discs)
           for (const int each : threads) compare(table, static_cast<std::int64_t>(count), each, rounds);
         report.add(

@@ -89,15 +89,7 @@ int main(int argc, char** argv) {
       .verbs = parallel_verbs,
       .topics = {{"case", "the keys of case files of equidem", describe_case_file, case_file_page, describe_case_table},
                  {"result", "the numbers of result.json of equidem, their units and meanings", describe_result}},
-      .refusals = {{"calibrate", "equidem-mpi has no verb 'calibrate'", "it solves and homogenizes", "Use 'equidem'"},
-                   {"stability", "equidem-mpi has no verb 'stability'", "it solves and homogenizes", "Use 'equidem'"},
-                   {"run", "equidem-mpi has no verb 'run'", "it has statics alone",
-                    "Use 'equidem run'; 'equidem-mpi --help' lists its verbs"},
-                   {"sweep", "equidem-mpi has no verb 'sweep'", "it solves one case", "Use 'equidem sweep'"},
-                   {"study", "equidem-mpi has no verb 'study'", "it solves one case", "Use 'equidem study'"},
-                   {"pack", "equidem-mpi has no verb 'pack'", "it has statics alone",
-                    "Use 'equidem pack', and solve the assembly that it writes"},
-                   {"--accuracy", "equidem-mpi takes no --accuracy", "each solution has the digits of a double",
+      .refusals = {{"--accuracy", "equidem-mpi takes no --accuracy", "each solution has the digits of a double",
                     "Leave it out"}}};
   int result = run_program(program, static_cast<int>(words.own.size()) - 1, words.own.data());
   if (parallel) {

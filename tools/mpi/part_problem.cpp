@@ -2,31 +2,25 @@
 #include "part_problem.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include <sys/resource.h>
-
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/vtk.hpp"
-
-#include "petsc/stiffness.hpp"
+#include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/mechanisms.hpp"
+#include "equidem/statics/number_unknowns.hpp"
+#include "equidem/statics/rigidity.hpp"
 
 namespace equidem {
 namespace {
 
 using petsc::Part;
 using petsc::Ranks;
-
-/// Memory of this process at its peak.
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
 
 void check_case(const Case& resolved, bool homogenize) {
   if (homogenize && resolved.ensemble) {
@@ -99,17 +93,107 @@ BuiltSprings springs_of(const PartProblem& p) {
   const double z = 2 * static_cast<double>(p.whole.contacts) / static_cast<double>(p.whole.discs);
   const IsotropicMeasures measures =
       voronoi ? IsotropicMeasures{0.5, 1.0} : IsotropicMeasures{p.whole.solid_fraction, z / (2 * std::numbers::pi)};
-  try {
-    resolved.springs = springs_for(material.moduli, isotropic_relation, measures,
-                                   material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
-  } catch (const Error& error) {
-    throw error.at(resolved.where("material"));
-  }
+  resolved.springs = casefile::with_place(resolved.where("material"), [&] {
+    return springs_for(material.moduli, isotropic_relation, measures,
+                       material.static_only ? NegativeTangential::static_only : NegativeTangential::refuse);
+  });
   resolved.material.reset();
   BuiltSprings built = build_springs(resolved, p.part.assembly);
   built.report = fmt::format("G = {:.6g} Pa, nu = {:.6g} (plane {}) gives {}", material.moduli.shear_modulus,
                              material.moduli.poisson_ratio, to_string(material.moduli.plane), built.report);
   return built;
+}
+
+/// The whole assembly on rank 0, until it is given out.
+struct WholeProblem {
+  std::optional<Problem> problem;
+  Effects effects;
+  LoadBearingNetwork bearing;
+
+  [[nodiscard]] const Assembly& assembly() const { return bearing.part ? bearing.part->assembly : problem->assembly; }
+  [[nodiscard]] const ContactSprings& springs() const {
+    return bearing.part ? bearing.part->springs : problem->springs.springs;
+  }
+};
+
+void check_whole(WholeProblem& whole) {
+  const Problem& problem = *whole.problem;
+  const Assembly& assembly = problem.assembly;
+  const DegreesOfFreedom unknowns = number_unknowns(assembly, problem.springs.springs, whole.effects, problem.supports);
+  check_rigidity(assembly, ContactGraph(assembly), problem.springs.springs, unknowns);
+}
+
+/// Leaves out what carries no load, and finds the motions to hold.
+void prune_whole(WholeProblem& whole, PartProblem& p) {
+  const Problem& problem = *whole.problem;
+  if (!problem.assembly.periodic()) {
+    bad_input("the assembly is not periodic", "equidem-mpi homogenizes periodic cells",
+              "Use 'equidem homogenize' for free samples");
+  }
+  whole.bearing = load_bearing_network(problem.assembly, problem.springs.springs, whole.effects, {});
+  const LoadBearingNetwork& bearing = whole.bearing;
+  if (bearing.spanned != 2 || bearing.pieces == 0) {
+    bad_input("the network does not span the cell in both directions",
+              bearing.sentences.empty() ? "some mean strain costs it no energy" : joined(bearing.sentences, "; "),
+              "It has no modulus. Add contacts, or pack the discs more densely");
+  }
+  DegreesOfFreedom unknowns = number_unknowns(whole.assembly(), whole.springs(), whole.effects, {});
+  const HeldMotions held =
+      hold_free_motions(whole.assembly(), ContactGraph(whole.assembly()), whole.springs(), unknowns);
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  for (const std::size_t component : held.components)
+    p.held.push_back(static_cast<std::int64_t>(3 * (component / b) + component % b));
+  p.gears = std::ssize(held.gears);
+  p.removed = bearing.removed();
+  p.rattlers = bearing.rattlers;
+  p.left_out = bearing.sentences;
+}
+
+/// An assembly that rank 0 reads or packs, with the checks of the serial verb on the whole of it.
+/// \throws Error on all ranks
+void scatter_problem(const Ranks& ranks, PartProblem& p, bool homogenize) {
+  WholeProblem whole;
+  p.scattered = true;
+  ranks.together([&] {
+    if (!ranks.first()) return;
+    Case resolved = p.problem.resolved;
+    whole.problem.emplace(homogenize ? problem_of(std::move(resolved)) : build_problem(std::move(resolved)));
+    const Problem& problem = *whole.problem;
+    refuse_prestress(problem, "equidem-mpi");
+    whole.effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
+    p.of_problem = problem_results(problem, whole.effects);
+    p.problem.tension = problem.tension;
+    if (homogenize) {
+      prune_whole(whole, p);
+    } else {
+      check_whole(whole);
+    }
+    p.problem.springs.constants = problem.springs.constants;
+    p.problem.springs.report = problem.springs.report;
+  });
+  p.held = ranks.joined(p.held);
+  petsc::ScatteredPart scattered = petsc::scattered_part(ranks, ranks.first() ? &whole.assembly() : nullptr,
+                                                         ranks.first() ? &whole.springs() : nullptr);
+  p.part = std::move(scattered.part);
+  p.problem.springs.springs = std::move(*scattered.springs);
+  // The gauges that rank 0 has placed.
+  if (!p.problem.resolved.test || homogenize) return;
+  std::vector<std::int64_t> gauges;
+  std::array<double, 2> heights{};
+  if (ranks.first()) {
+    const TensionSetup& setup = *p.problem.tension;
+    gauges = {setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second};
+    heights[0] = setup.height;
+  }
+  gauges = ranks.joined(gauges);
+  ranks.sum(heights);
+  TensionSetup setup = tension_loads(*p.problem.resolved.test, heights[0], heights[0]);
+  const auto gauge = [&](std::size_t k) {
+    return StrainGauge{static_cast<std::int32_t>(gauges[k]), static_cast<std::int32_t>(gauges[k + 1])};
+  };
+  setup.horizontal = gauge(0);
+  setup.vertical = gauge(2);
+  p.problem.tension = setup;
 }
 
 Problem empty_problem(Case resolved) {
@@ -127,20 +211,12 @@ void make_part(const Ranks& ranks, PartProblem& p, bool homogenize) {
                        fmt::format("equidem-mpi does not make the lattice \"{}\" in parts", wanted.arrangement->name),
                        "its file gives no rows", "Write the assembly into a file, and solve that");
         }
-        try {
-          p.lattice.emplace(wanted.lattice, wanted.arrangement->rows(wanted.lattice.radius));
-          p.part = petsc::lattice_part(ranks, *p.lattice);
-        } catch (const Error& error) {
-          throw error.at(where);
-        }
+        p.lattice.emplace(wanted.lattice, wanted.arrangement->rows(wanted.lattice.radius));
+        p.part = casefile::with_place(where, [&] { return petsc::lattice_part(ranks, *p.lattice); });
       });
       break;
     case AssemblyKind::delaunay:
-      try {
-        p.part = petsc::delaunay_part(ranks, wanted.delaunay);
-      } catch (const Error& error) {
-        throw error.at(where);
-      }
+      p.part = casefile::with_place(where, [&] { return petsc::delaunay_part(ranks, wanted.delaunay); });
       break;
     case AssemblyKind::packing:
     case AssemblyKind::file:
@@ -161,8 +237,7 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
                 "See data/petsc.md, or leave it out");
     Case resolved = read_case(options);
     check_viscoelastic(resolved, "equidem-mpi");
-    check_prestress(resolved, "equidem-mpi");
-    check_bending(resolved, "equidem-mpi");
+    check_taken(resolved, "equidem-mpi");
     made = std::make_unique<PartProblem>(std::move(resolved));
     check_case(made->problem.resolved, homogenize);
   });
@@ -185,13 +260,11 @@ std::unique_ptr<PartProblem> build_part_problem(const Ranks& ranks, const Common
   p.problem.supports = p.problem.resolved.supports;
   p.problem.load_cases = p.problem.resolved.load_cases;
   if (!homogenize && p.problem.resolved.test) {
-    try {
-      if (!p.scattered) {
-        p.problem.tension =
-            petsc::tension_setup(ranks, p.part, p.whole, *p.problem.resolved.test, p.lattice ? &*p.lattice : nullptr);
-      }
-    } catch (const Error& error) {
-      throw error.at(p.problem.resolved.where("test"));
+    const RowLattice* const lattice = p.lattice ? &*p.lattice : nullptr;
+    if (!p.scattered) {
+      p.problem.tension = casefile::with_place(p.problem.resolved.where("test"), [&] {
+        return petsc::tension_setup(ranks, p.part, p.whole, *p.problem.resolved.test, lattice);
+      });
     }
     p.problem.supports = p.problem.tension->supports;
     p.problem.load_cases = {{"", p.problem.tension->loads}};
@@ -214,54 +287,6 @@ Results part_problem_results(const Ranks& ranks, const PartProblem& p) {
                                 .gaps = {ranks.smallest(gaps.smallest), ranks.largest(gaps.largest)},
                                 .periodic = p.part.assembly.periodic()};
   return problem_results(p.problem, summary, {}, p.effects);
-}
-
-Results rank_results(const Ranks& ranks, const petsc::Network& network, const petsc::Counted& before,
-                     const petsc::Counted& after) {
-  const double peak = ranks.largest(peak_bytes());
-  const double messages = ranks.largest(after.messages - before.messages);
-  const double bytes = ranks.largest(after.bytes - before.bytes);
-  const double sums = ranks.largest(after.sums - before.sums);
-  const double exchanged = ranks.largest(network.halo().bytes()) * static_cast<double>(network.block());
-  const auto neighbours = static_cast<std::int64_t>(ranks.largest(network.halo().neighbours()));
-  Results out;
-  out.line("ranks")
-      .add("ranks", "", ranks.count(), "rank", {Shown::count})
-      .note("; on the one with most ")
-      .add("discs_of_a_rank", "", network.whole().owned, "disc", {Shown::count})
-      .add("ghosts_of_a_rank", "", network.whole().ghosts, "ghost", {Shown::count})
-      .add("peak_bytes", "", peak, "at the peak", {Shown::bytes});
-  out.line("messages")
-      .add("neighbours", "", neighbours, "neighbour", {Shown::count})
-      .add("exchange_bytes", "", exchanged, "to send for one value of each unknown", {Shown::bytes})
-      .note("; in all ")
-      .add("messages", "", static_cast<std::int64_t>(messages), "message", {Shown::count})
-      .add("message_bytes", "of", bytes, "", {Shown::bytes})
-      .add("sums_over_ranks", "", static_cast<std::int64_t>(sums), "sum", {Shown::count})
-      .note(" over all ranks");
-  return out;
-}
-
-bool cells_are_known(const petsc::Part& part) {
-  const auto& areas = part.assembly.cell_areas;
-  return static_cast<std::int64_t>(areas.size()) >= part.owned &&
-         std::all_of(areas.begin(), areas.begin() + part.owned, [](double area) { return area > 0; });
-}
-
-void expect_part_files(const OutputPlan& plan, const petsc::Ranks& ranks, const std::string& name) {
-  plan.expect(name + ".vtm");
-  for (int rank = 0; rank < ranks.count(); ++rank) {
-    for (const std::string& file : vtk_piece_names(name, rank)) plan.expect(file);
-  }
-}
-
-void write_part_files(const std::filesystem::path& folder, const std::string& name, const petsc::Ranks& ranks,
-                      const petsc::Part& part, std::span<const DiscMotion> motions,
-                      std::span<const ContactForce> forces, bool overwrite) {
-  const AssemblyState state{.assembly = part.assembly, .motions = motions, .contact_forces = forces};
-  const std::span<const std::int64_t> numbers(part.names.data(), static_cast<std::size_t>(part.owned));
-  write_vtk_piece(folder, name, ranks.rank(), state, numbers, overwrite);
-  if (ranks.first()) write_vtk_index(folder, name, ranks.count(), overwrite);
 }
 
 }  // namespace equidem

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A case made ready to be solved by several ranks, what their reports share, and the files of each.
+/// A case made ready to be solved by several ranks.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "command.hpp"
-#include "petsc/equilibrium.hpp"
+#include "petsc/statics.hpp"
 #include "problem.hpp"
 
 namespace equidem {
@@ -40,26 +38,7 @@ struct PartProblem {
 std::unique_ptr<PartProblem> build_part_problem(const petsc::Ranks& ranks, const CommonOptions& options,
                                                 bool homogenize);
 
-/// An assembly that rank 0 reads or packs, with the checks of the serial verb on the whole of it.
-/// \throws Error on all ranks
-void scatter_problem(const petsc::Ranks& ranks, PartProblem& problem, bool homogenize);
-
 /// Title, assembly, springs, effects; all ranks call it.
 Results part_problem_results(const petsc::Ranks& ranks, const PartProblem& problem);
-/// The ranks: their number, discs, memory, messages of an exchange and in all.
-Results rank_results(const petsc::Ranks& ranks, const petsc::Network& network, const petsc::Counted& before,
-                     const petsc::Counted& after);
-
-/// Whether every disc that the rank owns has a cell of some area.
-bool cells_are_known(const petsc::Part& part);
-
-/// \throws Error (bad_input) where a file of any rank could not be written
-void expect_part_files(const OutputPlan& plan, const petsc::Ranks& ranks, const std::string& name);
-
-/// NAME_discs_K.vtp and NAME_contacts_K.vtp of rank K, by rank 0 also NAME.vtm.
-/// \param motions per disc of the part
-void write_part_files(const std::filesystem::path& folder, const std::string& name, const petsc::Ranks& ranks,
-                      const petsc::Part& part, std::span<const DiscMotion> motions,
-                      std::span<const ContactForce> forces, bool overwrite);
 
 }  // namespace equidem

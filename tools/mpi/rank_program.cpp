@@ -54,16 +54,19 @@ void silence_other_ranks() {
 Run on_all_ranks(const std::function<void(const petsc::Ranks&)>& verb) {
   return [verb] {
     const petsc::Ranks ranks(PETSC_COMM_WORLD);
+    const auto unless_alone = [&](const std::string& sentence, int exit_code) {
+      if (!all_arrive()) end_all(sentence, exit_code);
+    };
     try {
       verb(ranks);
     } catch (const Error& error) {
-      if (!all_arrive()) end_all(error.what(), error.exit_code());
+      unless_alone(error.what(), error.exit_code());
       throw;
     } catch (const std::bad_alloc&) {
-      if (!all_arrive()) end_all(fmt::format("there is too little memory on rank {}.", ranks.rank()), 1);
+      unless_alone(fmt::format("there is too little memory on rank {}.", ranks.rank()), 1);
       throw;
     } catch (const std::exception& error) {
-      if (!all_arrive()) end_all(fmt::format("this is a defect of equidem: {}. Please report it.", error.what()), 1);
+      unless_alone(fmt::format("this is a defect of equidem: {}. Please report it.", error.what()), 1);
       throw;
     }
     // The others may have failed: they wait in the same barrier.

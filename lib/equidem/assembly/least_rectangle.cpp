@@ -202,7 +202,7 @@ Rectangle upright_rectangle(std::span<const Vec2> centres, std::span<const doubl
   Rectangle box{.low = {unlimited, unlimited}, .high = {-unlimited, -unlimited}};
   for (std::size_t disc = 0; disc < centres.size(); ++disc) {
     const Vec2 x = centres[disc];
-    const double r = radii[disc];
+    const double r = radii.empty() ? 0 : radii[disc];
     box.low = {std::min(box.low.x, x.x - r), std::min(box.low.y, x.y - r)};
     box.high = {std::max(box.high.x, x.x + r), std::max(box.high.y, x.y + r)};
   }

@@ -9,8 +9,8 @@
 
 namespace equidem {
 
-/// The smallest rectangle that holds all discs with its sides along x and y, m.
-Rectangle upright_rectangle(std::span<const Vec2> centres, std::span<const double> radii);
+/// The smallest rectangle that holds all discs with its sides along x and y, m. \param radii empty: points
+Rectangle upright_rectangle(std::span<const Vec2> centres, std::span<const double> radii = {});
 
 /// The rectangle of least area that holds all discs, in any direction. Between two directions in which other discs are
 /// outermost, width and height are sums of the form c cos(theta - a) + r, whose logarithms are concave: the least area

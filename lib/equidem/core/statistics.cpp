@@ -3,39 +3,15 @@
 
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include <boost/math/distributions/students_t.hpp>
+
 namespace equidem {
-namespace {
-
-/// P(|T| <= sqrt(nu) tan(angle)) for nu degrees of freedom.
-double student_probability(double angle, std::int64_t nu) {
-  const double c2 = std::cos(angle) * std::cos(angle);
-  const bool odd = nu % 2 != 0;
-  // odd:  2/pi {angle + sin (cos + 2/3 cos^3 + ... + 2 4 .. (nu-3) / (3 5 .. (nu-2)) cos^(nu-2))}
-  // even: sin {1 + 1/2 cos^2 + ... + 1 3 .. (nu-3) / (2 4 .. (nu-2)) cos^(nu-2)}
-  double term = nu == 1 ? 0 : odd ? std::cos(angle) : 1;
-  double sum = term;
-  for (std::int64_t power = odd ? 3 : 2; power <= nu - 2; power += 2) {
-    term *= c2 * static_cast<double>(power - 1) / static_cast<double>(power);
-    sum += term;
-  }
-  sum *= std::sin(angle);
-  return odd ? (angle + sum) * 2 / std::numbers::pi : sum;
-}
-
-}  // namespace
-
 double student_critical_value(double confidence, std::int64_t degrees_of_freedom) {
   assert(confidence > 0 && confidence < 1 && degrees_of_freedom >= 1);
-  double low = 0, high = std::numbers::pi / 2;
-  for (;;) {
-    const double middle = (low + high) / 2;
-    if (middle == low || middle == high) break;
-    (student_probability(middle, degrees_of_freedom) < confidence ? low : high) = middle;
-  }
-  return std::sqrt(static_cast<double>(degrees_of_freedom)) * std::tan(low);
+  const boost::math::students_t distribution(static_cast<double>(degrees_of_freedom));
+  return boost::math::quantile(boost::math::complement(distribution, 0.5 * (1 - confidence)));
 }
 
 MeanEstimate estimate_mean(std::span<const double> samples, double confidence) {

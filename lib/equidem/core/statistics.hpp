@@ -9,9 +9,7 @@
 
 namespace equidem {
 
-/// The number t for which |T| <= t with the probability `confidence`, T distributed as Student's t. From the finite
-/// series of the distribution for a whole number of degrees of freedom (Zelen & Severo 1964, in Abramowitz & Stegun,
-/// eqs. 26.7.3, 26.7.4), inverted by bisection.
+/// The number t for which |T| <= t with the probability `confidence`, T distributed as Student's t.
 /// \param confidence in (0, 1)
 /// \param degrees_of_freedom >= 1
 double student_critical_value(double confidence, std::int64_t degrees_of_freedom);

@@ -11,6 +11,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/linear/contact_graph.hpp"
 
 namespace equidem {
@@ -43,16 +44,12 @@ void satisfy_mean_strain(std::vector<Vec2>& a, const std::vector<Vec2>& x, doubl
     has += outer(a[k], x[k]);
     square += outer(x[k], x[k]);
   }
-  const double determinant = square.xx * square.yy - square.xy * square.yx;
   const double trace = square.xx + square.yy;
-  if (!(determinant > 1e-12 * trace * trace)) {
+  if (!(determinant(square) > 1e-12 * trace * trace)) {
     bad_input("no contact crosses the period one of the two ways", "the cell can be pulled along one direction only",
               "Use a network that is joined to its images both ways");
   }
-  const Tensor2 lacking = Tensor2{area, 0, 0, area} + (-1.0) * has;
-  const Tensor2 inverse = (1 / determinant) * Tensor2{square.yy, -square.xy, -square.yx, square.xx};
-  const Tensor2 m{lacking.xx * inverse.xx + lacking.xy * inverse.yx, lacking.xx * inverse.xy + lacking.xy * inverse.yy,
-                  lacking.yx * inverse.xx + lacking.yy * inverse.yx, lacking.yx * inverse.xy + lacking.yy * inverse.yy};
+  const Tensor2 m = (Tensor2{area, 0, 0, area} + (-1.0) * has) * inverse(square);
   for (std::size_t k = 0; k < a.size(); ++k) a[k] += m * x[k];
 }
 

@@ -27,18 +27,14 @@ struct StrainSums {
 /// Energies of pairs of mean strains in the prestress, N. \param motion_of of a contact by a case
 template <typename MotionOf>
 Matrix3 prestress_energies(const SampleSolver& solver, const MotionOf& motion_of) {
-  constexpr std::size_t entries = 6;
-  const auto sums = contact_sums<entries>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
+  const auto sums = contact_sums<6>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
     const ContactMotion m[] = {motion_of(c, 0), motion_of(c, 1), motion_of(c, 2)};
-    std::size_t entry = 0;
-    for (const auto& a : m) {
-      for (const ContactMotion* b = &a; b != std::end(m); ++b, ++entry) {
-        total[entry] += prestress_form(*solver.springs().prestress(c), a.deformation, a.theta_i, a.theta_j,
-                                       b->deformation, b->theta_i, b->theta_j);
-      }
-    }
+    add_triangle(total.data(), [&](std::size_t a, std::size_t b) {
+      return prestress_form(*solver.springs().prestress(c), m[a].deformation, m[a].theta_i, m[a].theta_j,
+                            m[b].deformation, m[b].theta_i, m[b].theta_j);
+    });
   });
-  return {{{sums[0], sums[1], sums[2]}, {sums[1], sums[3], sums[4]}, {sums[2], sums[4], sums[5]}}};
+  return symmetric(sums.data());
 }
 
 StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
@@ -59,9 +55,10 @@ StrainSums sum_up(const SampleSolver& solver, const std::vector<RightHandSide>& 
     std::array<ContactDeformation, most_cases> deformations;
     double largest_force = 0, distance = 0;
     for (std::size_t k = 0; k < cases.size(); ++k) {
-      deformations[k] = solver.solver().deformation(cases[k], solutions[k].motion, c);
-      ContactForce force = linear_spring_force(solver.springs()[c], deformations[k]);
-      if (prestressed) force = force_of(solver.springs(), c, motion_of_case(c, k));
+      const ContactMotion motion = motion_of_case(c, k);
+      deformations[k] = motion.deformation;
+      const ContactForce force = prestressed ? force_of(solver.springs(), c, motion)
+                                             : linear_spring_force(solver.springs()[c], deformations[k]);
       const Tensor2 work = force_by_branch(frame, force);
       const double entries[] = {work.xx, work.xy, work.yx, work.yy};
       for (std::size_t e = 0; e < 4; ++e) total[first_stress + 4 * k + e] += entries[e];
@@ -224,7 +221,7 @@ void solve_tractions(const Assembly& assembly, const ContactSprings& springs, co
                                                                      std::array<double, pair_sums>& sums) {
         std::array<ContactDeformation, 3> deformations;
         for (std::size_t k = 0; k < 3; ++k) {
-          deformations[k] = solver.solver().deformation(cases[k], solutions[k].motion, c);
+          deformations[k] = solver.solver().contact_motion(cases[k], solutions[k].motion, c).deformation;
         }
         add_pair_energies(solver.springs()[c], deformations.data(), sums.data());
       }).data());

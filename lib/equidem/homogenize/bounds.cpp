@@ -6,30 +6,21 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <numbers>
 
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
+#include "equidem/homogenize/stress.hpp"
 
 namespace equidem {
 namespace {
 
-/// Upper triangle of a symmetric 3x3 matrix: 11, 12, 13, 22, 23, 33.
-using Triangle = std::array<double, 6>;
-
-/// sum += k v v^T.
-template <typename Sums>
-void add_square(double k, const std::array<double, 3>& v, Sums& sum, std::size_t first = 0) {
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t s = r; s < 3; ++s) sum[first++] += k * v[r] * v[s];
-  }
-}
-
-Matrix3 symmetric(const Triangle& t) {
-  return {{{t[0], t[1], t[2]}, {t[1], t[3], t[4]}, {t[2], t[4], t[5]}}};
+/// sum += k v v^T, as an upper triangle.
+void add_square(double k, const std::array<double, 3>& v, double* sum) {
+  add_triangle(sum, [&](std::size_t r, std::size_t c) { return k * v[r] * v[c]; });
 }
 
 void refuse_negative_springs(const Assembly& assembly, const ContactSprings& springs) {
@@ -58,7 +49,7 @@ void refuse_absent_springs(const Assembly& assembly, const ContactSprings& sprin
 Tensor2 spanning_fabric(const Assembly& assembly) {
   const Tensor2 h = fabric(assembly).branch;
   const double trace = h.xx + h.yy;
-  if (!(h.xx * h.yy - h.xy * h.yx > 1e-13 * trace * trace)) {  // the ratio of the principal values, about
+  if (!(determinant(h) > 1e-13 * trace * trace)) {  // the ratio of the principal values, about
     bad_input("all branches are parallel", "a uniform stress across them is carried by no contact",
               "Give an assembly whose contacts span the plane");
   }
@@ -89,16 +80,16 @@ Symmetric2 inverse_in_the_limit(const Symmetric2& finite, const Symmetric2& infi
 
 Matrix3 voigt_stiffness(const Assembly& assembly, const ContactSprings& springs) {
   const bool off_line = !assembly.contact_arms.empty();
-  const Triangle sum = contact_sums<6>(assembly.contacts.size(), [&](std::size_t c, Triangle& sums) {
+  const auto sum = contact_sums<6>(assembly.contacts.size(), [&](std::size_t c, std::array<double, 6>& sums) {
     const Vec2 l = assembly.branch(assembly.contacts[c]);
     const ContactFrame frame = frame_of(assembly, c);
     const Vec2 n = frame.normal, s = frame.tangent();
     const auto [kN, kT] = springs[c];
     // n . e l and s . e l for unit strains e_xx, e_yy, gamma_xy.
-    add_square(kN, {n.x * l.x, n.y * l.y, off_line ? 0.5 * (n.x * l.y + n.y * l.x) : n.x * l.y}, sums);
-    add_square(kT, {s.x * l.x, s.y * l.y, 0.5 * (s.x * l.y + s.y * l.x)}, sums);
+    add_square(kN, {n.x * l.x, n.y * l.y, off_line ? 0.5 * (n.x * l.y + n.y * l.x) : n.x * l.y}, sums.data());
+    add_square(kT, {s.x * l.x, s.y * l.y, 0.5 * (s.x * l.y + s.y * l.x)}, sums.data());
   });
-  Matrix3 stiffness = symmetric(sum);
+  Matrix3 stiffness = symmetric(sum.data());
   const double area = assembly.area();
   for (auto& row : stiffness) {
     for (double& entry : row) entry /= area;
@@ -114,7 +105,7 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   const double unit = spring_unit(given);
   const ContactSprings springs = scaled_springs(given, 1 / unit);
   const double area = assembly.area();
-  const Tensor2 h_inverse = (1 / (h.xx * h.yy - h.xy * h.yx)) * Tensor2{h.yy, -h.xy, -h.yx, h.xx};
+  const Tensor2 h_inverse = inverse(h);
 
   // Stresses in the basis B/A, (1, -1, 0), (0, 0, 1). The first loads no tangential spring, F = l, so that however soft
   // they are its stiffness stays exact. Energies per area, doubled: of springs that there are, and of unit ones where
@@ -126,10 +117,10 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
     const Vec2 m = h_inverse * l;
     const Vec2 deviator{m.x, -m.y}, shear{m.y, m.x};
     const auto [kN, kT] = springs[c];
-    add_square(1 / (kN * area), {off_line ? dot(n, l) : norm(l), dot(n, deviator), dot(n, shear)}, sums);
+    add_square(1 / (kN * area), {off_line ? dot(n, l) : norm(l), dot(n, deviator), dot(n, shear)}, sums.data());
     const std::array<double, 3> tangential{off_line ? dot(s, l) : 0, dot(s, deviator), dot(s, shear)};
-    if (kT != 0) add_square(1 / (kT * area), tangential, sums);
-    if (kT == 0) add_square(1 / area, tangential, sums, 6);
+    if (kT != 0) add_square(1 / (kT * area), tangential, sums.data());
+    if (kT == 0) add_square(1 / area, tangential, sums.data() + 6);
   });
   const auto [s11, s12, s13, s22, s23, s33, t11, t12, t13, t22, t23, t33] = sum;
 
@@ -139,7 +130,7 @@ Matrix3 uniform_stress_estimate(const Assembly& assembly, const ContactSprings& 
   const double first = 1 / (s11 - (s12 * gb.x + s13 * gb.y));
   // C = sum of the squares of stresses: that of the first, p = B/A - g b, and those of the deviators.
   const std::array<double, 3> p{h.xx - gb.x, h.yy + gb.x, h.xy - gb.y};
-  Triangle stiffness{g.xx, -g.xx, g.xy, g.xx, -g.xy, g.yy};
+  double stiffness[]{g.xx, -g.xx, g.xy, g.xx, -g.xy, g.yy};
   add_square(first, p, stiffness);
   return unit * symmetric(stiffness);
 }
@@ -195,18 +186,6 @@ BoundedStiffness bounded_stiffness(const Assembly& assembly, const ContactSpring
   return all;
 }
 
-namespace {
-
-/// Direction of the largest value of a cos k theta + b sin k theta, in [0, 2 pi/k).
-double direction(double a, double b, int k) {
-  const double angle = std::atan2(b, a) / k;
-  const double period = 2 * std::numbers::pi / k;
-  const double positive = angle < 0 ? angle + period : angle;
-  return positive < period ? positive : 0;  // -1e-17 rounds up to the period
-}
-
-}  // namespace
-
 Fabric fabric(const Assembly& assembly) {
   const std::size_t count = assembly.contacts.size();
   if (count == 0) {
@@ -225,9 +204,9 @@ Fabric fabric(const Assembly& assembly) {
   return {.normal = {0.5 + h.a2 / 4, h.b2 / 4, h.b2 / 4, 0.5 - h.a2 / 4},
           .branch = (1 / assembly.area()) * Tensor2{ll_xx, ll_xy, ll_xy, ll_yy},
           .anisotropy_2 = std::hypot(h.a2, h.b2),
-          .direction_2 = direction(h.a2, h.b2, 2),
+          .direction_2 = harmonic_direction(h.a2, h.b2, 2),
           .anisotropy_4 = std::hypot(h.a4, h.b4),
-          .direction_4 = direction(h.a4, h.b4, 4),
+          .direction_4 = harmonic_direction(h.a4, h.b4, 4),
           .mean_branch = length / static_cast<double>(count)};
 }
 

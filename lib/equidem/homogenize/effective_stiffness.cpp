@@ -21,8 +21,6 @@
 namespace equidem {
 namespace {
 
-using WeakStrain = std::array<double, 3>;
-
 /// Error from levers that leave a gap or an overlap: a rigid rotation of all discs would make their contact slip.
 void check_levers(const Assembly& assembly, const ContactSprings& springs, const Effects& effects) {
   if (!effects.rotation || !assembly.contact_arms.empty()) return;  // check(Assembly) ensures that these meet
@@ -43,15 +41,6 @@ void check_levers(const Assembly& assembly, const ContactSprings& springs, const
   }
 }
 
-Tensor2 transposed(const Tensor2& t) {
-  return {t.xx, t.yx, t.xy, t.yy};
-}
-
-/// a b^T
-Tensor2 product_with_transposed(const Tensor2& a, const Tensor2& b) {
-  return {a.xx * b.xx + a.xy * b.xy, a.xx * b.yx + a.xy * b.yy, a.yx * b.xx + a.yy * b.xy, a.yx * b.yx + a.yy * b.yy};
-}
-
 /// From the change of the nominal stress P = J sigma F^-T to that of the Cauchy stress: at the strain h
 /// d sigma = dP + sigma_0 h^T - tr(h) sigma_0. A rotation h of the whole changes P by h sigma_0, which
 /// is known without a solution where discs turn along.
@@ -60,7 +49,7 @@ void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
   Matrix3 change{};
   for (int k = 0; k < 3; ++k) {
     const Tensor2& h = unit_gradients[k];
-    const Tensor2 sigma = product_with_transposed(at_rest, h) + (-(h.xx + h.yy)) * at_rest;
+    const Tensor2 sigma = at_rest * transposed(h) + (-(h.xx + h.yy)) * at_rest;
     const Voigt s = voigt_stress(sigma);
     change[0][k] = s.xx, change[1][k] = s.yy, change[2][k] = s.xy;
   }
@@ -73,15 +62,14 @@ void add_stress_at_rest(const Tensor2& at_rest, EffectiveStiffness& result) {
   }
   Matrix4& g = result.gradient_stiffness;
   if (!result.effects.restrained) {
-    const Tensor2 turned = product_with_transposed(unit_gradients[3], transposed(at_rest));
+    const Tensor2 turned = unit_gradients[3] * at_rest;
     const double column[] = {turned.xx, turned.yy, turned.xy, turned.yx};
     for (int r = 0; r < 4; ++r) g[r][2] -= 0.5 * column[r], g[r][3] += 0.5 * column[r];
   }
   const Tensor2 gradients[] = {{1, 0, 0, 0}, {0, 0, 0, 1}, {0, 1, 0, 0}, {0, 0, 1, 0}};
   double asymmetric = 0;
   for (int c = 0; c < 4; ++c) {
-    const Tensor2 kirchhoff =
-        Tensor2{g[0][c], g[2][c], g[3][c], g[1][c]} + product_with_transposed(at_rest, gradients[c]);
+    const Tensor2 kirchhoff = Tensor2{g[0][c], g[2][c], g[3][c], g[1][c]} + at_rest * transposed(gradients[c]);
     asymmetric = std::max(asymmetric, std::abs(asymmetry(kirchhoff)));
   }
   result.stress_asymmetry = asymmetric / largest_entry(g);
@@ -115,33 +103,20 @@ EffectiveStiffness solve(const Assembly& assembly, const ContactSprings& springs
   return result;
 }
 
-/// A mean strain whose energy is lost in its error; else counts those that release energy.
-std::optional<WeakStrain> judge(EffectiveStiffness& result) {
-  const StiffnessEigen eigen = eigenstrains(result.stiffness);
-  const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
-  constexpr double nothing = 1e-13;
-  for (int k = 0; k < 3; ++k) {
-    if (!(std::abs(eigen.values[k]) > nothing * largest + 2 * result.error_bound)) return eigen.strains[k];
-  }
-  result.count_unstable_strains();
-  return {};
-}
-
 /// The network resists every mean strain where all springs are alike: what fails with others is for their sizes.
 bool resists_with_equal_springs(const Assembly& assembly, const ContactSprings& springs,
                                 const HomogenizeOptions& options) {
   try {
     EffectiveStiffness equal = solve(assembly, equal_springs(springs, assembly.mean_radius()), options);
-    return !judge(equal);
+    return !equal.judge_strains();
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;
     return false;
   }
 }
 
-[[noreturn]] void refuse(const WeakStrain& e, const Assembly& assembly, const ContactSprings& springs,
+[[noreturn]] void refuse(const std::string& strain, const Assembly& assembly, const ContactSprings& springs,
                          const HomogenizeOptions& options) {
-  const std::string strain = fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", e[0], e[1], e[2]);
   if (!resists_with_equal_springs(assembly, springs, options)) {
     bad_input(
         "the network is floppy", strain + " costs no energy beyond rounding",
@@ -168,11 +143,18 @@ void EffectiveStiffness::scale(double factor) {
   error_bound *= factor;
 }
 
-void EffectiveStiffness::count_unstable_strains() {
+std::optional<std::string> EffectiveStiffness::judge_strains(double nothing) {
   const StiffnessEigen eigen = eigenstrains(stiffness);
+  const double largest = std::max(std::abs(eigen.values[0]), std::abs(eigen.values[2]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::abs(eigen.values[k]) > nothing * largest + 2 * error_bound) continue;
+    const auto& [xx, yy, xy] = eigen.strains[k];
+    return fmt::format("the mean strain (xx {:.3f}, yy {:.3f}, shear {:.3f})", xx, yy, xy);
+  }
   unstable_strains = std::count_if(eigen.values.begin(), eigen.values.end(), [](double v) { return v < 0; });
   // The inertia of motions and mean strain together is that of K and that of C, its Schur complement (Haynsworth 1968).
   if (unstable_strains > 0) unstable_modes = std::max<std::int64_t>(unstable_modes, 0) + unstable_strains;
+  return {};
 }
 
 void check_sample(const Assembly& assembly, const ContactSprings& springs, const HomogenizeOptions& options) {
@@ -197,7 +179,7 @@ EffectiveStiffness effective_stiffness(const Assembly& assembly, const ContactSp
                                        const HomogenizeOptions& options) {
   check_sample(assembly, springs, options);
   EffectiveStiffness result = solve(assembly, springs, options);
-  if (const auto weak = judge(result)) refuse(*weak, assembly, springs, options);
+  if (const auto weak = result.judge_strains()) refuse(*weak, assembly, springs, options);
   return result;
 }
 

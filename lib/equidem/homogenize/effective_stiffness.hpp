@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -91,7 +92,9 @@ struct EffectiveStiffness {
   /// All springs `factor` times as stiff: the motions stay.
   void scale(double factor);
   /// Counts the mean strains that release energy, as unstable modes too.
-  void count_unstable_strains();
+  /// \param nothing an energy below this share of the largest, or within the error bound, is none
+  /// \return "the mean strain (xx 0.707, yy -0.707, shear 0.000)" of one that costs none, where there is one
+  std::optional<std::string> judge_strains(double nothing = 1e-13);
 };
 
 /// Solve for unit strains xx, yy and xy (and the unit rotation where rotation is restrained) on one factorization.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/homogenize/elasticity_tensor.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -37,24 +38,6 @@ double tensor_norm(const Matrix3& c) {
 
 Matrix3 transposed(const Matrix3& a) {
   return {{{a[0][0], a[1][0], a[2][0]}, {a[0][1], a[1][1], a[2][1]}, {a[0][2], a[1][2], a[2][2]}}};
-}
-
-/// One Jacobi rotation: the entry (p, q) of k becomes zero; row p and row q of the vectors turn along.
-void annihilate(Matrix3& k, Matrix3& vectors, std::size_t p, std::size_t q) {
-  if (k[p][q] == 0) return;
-  const double half_cotangent = 0.5 * (k[q][q] - k[p][p]) / k[p][q];  // of twice the angle: cot(2 phi)
-  const double tangent =
-      std::copysign(1.0, half_cotangent) / (std::abs(half_cotangent) + std::hypot(1.0, half_cotangent));
-  const double cosine = 1 / std::hypot(1.0, tangent), sine = tangent * cosine;
-  const auto turn = [&](double& a, double& b) {
-    const double was = a;
-    a = cosine * was - sine * b;
-    b = sine * was + cosine * b;
-  };
-  for (std::size_t r = 0; r < 3; ++r) turn(k[r][p], k[r][q]);
-  for (std::size_t r = 0; r < 3; ++r) turn(k[p][r], k[q][r]);
-  for (std::size_t r = 0; r < 3; ++r) turn(vectors[p][r], vectors[q][r]);
-  k[p][q] = k[q][p] = 0;
 }
 
 }  // namespace
@@ -96,25 +79,12 @@ Matrix3 rotated(const Matrix3& stiffness, double angle) {
 }
 
 StiffnessEigen eigenstrains(const Matrix3& stiffness) {
-  // Cyclic Jacobi: eigenvectors orthogonal to round-off, and small eigenvalues of a graded positive definite matrix to
-  // their own relative accuracy (Demmel & Veselic 1992). It converges quadratically; six sweeps are usual.
-  Matrix3 k = kelvin(stiffness);
-  Matrix3 vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  const auto negligible = [&](std::size_t p, std::size_t q) {
-    constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    return std::abs(k[p][q]) <= 0.1 * epsilon * std::sqrt(std::abs(k[p][p])) * std::sqrt(std::abs(k[q][q]));
-  };
-  for (int sweep = 0; sweep < 50 && !(negligible(0, 1) && negligible(0, 2) && negligible(1, 2)); ++sweep) {
-    annihilate(k, vectors, 0, 1);
-    annihilate(k, vectors, 0, 2);
-    annihilate(k, vectors, 1, 2);
-  }
-  std::array<std::size_t, 3> order{0, 1, 2};
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return k[a][a] < k[b][b]; });
+  const Matrix3 k = kelvin(stiffness);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(Eigen::Map<const Eigen::Matrix3d>(k.front().data()));
   StiffnessEigen eigen;
-  for (std::size_t r = 0; r < 3; ++r) {
-    const auto& e = vectors[order[r]];
-    eigen.values[r] = k[order[r]][order[r]];
+  for (int r = 0; r < 3; ++r) {
+    const Eigen::Vector3d e = spectrum.eigenvectors().col(r);
+    eigen.values[r] = spectrum.eigenvalues()[r];
     eigen.strains[r] = {e[0], e[1], sqrt2 * e[2]};  // gamma = 2 e_xy = sqrt2 (sqrt2 e_xy)
   }
   return eigen;
@@ -139,20 +109,21 @@ Matrix3 inverse(const Matrix3& stiffness) {
   return compliance;
 }
 
+double harmonic_direction(double a, double b, int harmonic) {
+  constexpr double rounding = 1e-9;  // rad: an axis just below 0 is at 0, not at the end of its range
+  const double angle = std::atan2(b, a) / harmonic;
+  return angle < -rounding ? angle + 2 * std::numbers::pi / harmonic : std::max(angle, 0.0);
+}
+
 StiffnessAxes stiffness_axes(const Matrix3& c) {
   // C11 seen from turned axes is a polynomial of fourth degree in cos t and sin t: harmonics 0, 2 and 4.
   const double mean = (3 * (c[0][0] + c[1][1]) + 2 * c[0][1] + 4 * c[2][2]) / 8;
   const double a2 = (c[0][0] - c[1][1]) / 2, b2 = c[0][2] + c[1][2];
   const double a4 = (c[0][0] + c[1][1] - 2 * c[0][1] - 4 * c[2][2]) / 8, b4 = (c[0][2] - c[1][2]) / 2;
-  const auto direction = [](double a, double b, int harmonic) {
-    constexpr double rounding = 1e-9;  // rad: an axis just below 0 is at 0, not at the end of its range
-    const double angle = std::atan2(b, a) / harmonic;
-    return angle < -rounding ? angle + 2 * std::numbers::pi / harmonic : std::max(angle, 0.0);
-  };
   return {.one_axis = std::hypot(a2, b2) / mean,
-          .one_direction = direction(a2, b2, 2),
+          .one_direction = harmonic_direction(a2, b2, 2),
           .two_axes = std::hypot(a4, b4) / mean,
-          .two_directions = direction(a4, b4, 4)};
+          .two_directions = harmonic_direction(a4, b4, 4)};
 }
 
 double margin(const Matrix3& a, const Matrix3& b) {

@@ -5,12 +5,25 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "equidem/core/matrix.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
+
+/// Adds form(r, c) to the entries 11, 12, 13, 22, 23, 33 of a symmetric 3 x 3 matrix.
+template <typename Form>
+void add_triangle(double* sums, const Form& form) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = r; c < 3; ++c) *sums++ += form(r, c);
+  }
+}
+/// The matrix of these entries.
+constexpr Matrix3 symmetric(const double* t) {
+  return {{{t[0], t[1], t[2]}, {t[1], t[3], t[4]}, {t[2], t[4], t[5]}}};
+}
 
 /// The moduli of an effective stiffness. K, G, nu, E are those of the nearest isotropic tensor (the mean over
 /// all directions), so that they do not depend on how the sample is turned.
@@ -49,6 +62,8 @@ StiffnessEigen eigenstrains(const Matrix3& stiffness);
 /// C^-1, 1/Pa: strain with engineering shear by stress.
 /// \throws Error (computation_failed) where C is singular: an eigenvalue within round-off of zero
 Matrix3 inverse(const Matrix3& stiffness);
+/// Direction of the largest value of a cos k t + b sin k t, rad in [0, 2 pi/k), k the harmonic.
+double harmonic_direction(double a, double b, int harmonic);
 /// Variation of C11 with the direction of its axis, C11 + |two| cos 2(t - t2) + |four| cos 4(t - t4) about its mean.
 struct StiffnessAxes {
   double one_axis = 0;        ///< amplitude over the mean: one axis is stiffer than the one across it

@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/motion_description.hpp"
@@ -124,7 +125,7 @@ std::vector<DiscMotion> SampleSolver::motions_of_whole(const PreciseMotion& moti
   return all;
 }
 
-void SampleSolver::tear_off(std::size_t disc) const {
+void SampleSolver::report_unbalanced_disc(std::size_t disc) const {
   bad_input(fmt::format("the boundary tears {} off", describe_disc(assembly(), disc)),
             "its piece of the network cannot balance the tractions of a uniform stress",
             "Use boundary = \"periodic\" or \"displacement\", or a larger sample");
@@ -135,7 +136,7 @@ void SampleSolver::check_loads_on_mechanisms(const RightHandSide& given) const {
     const std::vector<double> motion = solver_->factor().null_motion(k);
     if (!does_work(given.force, motion, unknowns().per_disc)) continue;
     const auto most = std::ranges::max_element(motion, {}, [](double x) { return std::abs(x); });
-    tear_off(static_cast<std::size_t>(most - motion.begin()) / unknowns().per_disc);
+    report_unbalanced_disc(static_cast<std::size_t>(most - motion.begin()) / unknowns().per_disc);
   }
 }
 
@@ -171,7 +172,8 @@ void SampleSolver::check_reactions(const RightHandSide& given, const Solution& s
   if (held_motions_.components.empty()) return;
   double size = 0;
   for (std::size_t c = 0; c < assembly().contacts.size(); ++c) {
-    const ContactForce force = linear_spring_force(springs()[c], solver_->deformation(given, solution.motion, c));
+    const ContactForce force =
+        linear_spring_force(springs()[c], solver_->contact_motion(given, solution.motion, c).deformation);
     size = std::max({size, std::abs(force.normal), std::abs(force.tangential)});
   }
   std::vector<double> internal(unknowns().held.size());
@@ -180,49 +182,35 @@ void SampleSolver::check_reactions(const RightHandSide& given, const Solution& s
     const double load = given.force.empty() ? 0.0 : given.force[k];
     constexpr double negligible = 1e-8;  // what rounding leaves where loads balance
     if (std::abs(internal[k] - load) <= negligible * std::max(size, std::abs(load))) continue;
-    if (options_.boundary == Boundary::traction) tear_off(k / unknowns().per_disc);
+    if (options_.boundary == Boundary::traction) report_unbalanced_disc(k / unknowns().per_disc);
     computation_failed("a motion that nothing resists is driven by the mean strain",
                        "at this kT/kN the cell is at its limit of stability",
                        "Choose another kT/kN; 'equidem stability' finds the limit");
   }
 }
 
-void add_pair_energies(const SpringConstants& k, const ContactDeformation* deformations, double* sums) {
-  std::size_t entry = 0;
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a; b < 3; ++b, ++entry) {
-      sums[entry] += k.kN * deformations[a].normal * deformations[b].normal;
-      sums[pair_sums / 2 + entry] += k.kT * deformations[a].tangential * deformations[b].tangential;
-    }
-  }
+void add_pair_energies(const SpringConstants& k, const ContactDeformation* d, double* sums) {
+  add_triangle(sums, [&](std::size_t a, std::size_t b) { return k.kN * d[a].normal * d[b].normal; });
+  add_triangle(sums + pair_sums / 2,
+               [&](std::size_t a, std::size_t b) { return k.kT * d[a].tangential * d[b].tangential; });
+}
+
+PairEnergies pair_energies(const double* sums) {
+  return {symmetric(sums), symmetric(sums + pair_sums / 2)};
 }
 
 Matrix3 bending_energies(const SampleSolver& solver, const std::vector<RightHandSide>& cases,
                          const std::vector<Solution>& solutions) {
-  constexpr std::size_t entries = 6;
-  const auto sums = contact_sums<entries>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
+  const auto sums = contact_sums<6>(solver.assembly().contacts.size(), [&](std::size_t c, auto& total) {
     double turns[3];
     for (std::size_t k = 0; k < 3; ++k) {
       const ContactMotion motion = solver.solver().contact_motion(cases[k], solutions[k].motion, c);
       turns[k] = motion.theta_j - motion.theta_i;
     }
-    std::size_t entry = 0;
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = a; b < 3; ++b, ++entry) total[entry] += solver.springs().bending(c) * turns[a] * turns[b];
+    add_triangle(total.data(),
+                 [&](std::size_t a, std::size_t b) { return solver.springs().bending(c) * turns[a] * turns[b]; });
   });
-  return {{{sums[0], sums[1], sums[2]}, {sums[1], sums[3], sums[4]}, {sums[2], sums[4], sums[5]}}};
-}
-
-PairEnergies pair_energies(const double* sums) {
-  PairEnergies result;
-  std::size_t entry = 0;
-  for (int a = 0; a < 3; ++a) {
-    for (int b = a; b < 3; ++b, ++entry) {
-      result.normal[a][b] = result.normal[b][a] = sums[entry];
-      result.tangential[a][b] = result.tangential[b][a] = sums[pair_sums / 2 + entry];
-    }
-  }
-  return result;
+  return symmetric(sums.data());
 }
 
 LinearSystem strain_system(const Assembly& assembly, const ContactSprings& springs, Rotation rotation) {

@@ -7,8 +7,8 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
 
 namespace equidem {
 namespace {
@@ -56,22 +56,6 @@ std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const Con
   return stresses;
 }
 
-Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stresses,
-                       const std::function<bool(std::size_t disc)>& inside) {
-  assert(stresses.size() == assembly.size() && assembly.cell_areas.size() == assembly.size());
-  Tensor2 sum;
-  double area = 0;
-  for (std::size_t disc = 0; disc < stresses.size(); ++disc) {
-    if (!inside(disc)) continue;
-    sum += assembly.cell_areas[disc] * stresses[disc];
-    area += assembly.cell_areas[disc];
-  }
-  if (!(area > 0)) {
-    bad_input("the region holds no disc", "there is no stress to average", "Choose a region around some disc centres");
-  }
-  return (1 / area) * sum;
-}
-
 Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f) {
   const Vec2 force = force_on_i(frame, f);
   return frame.offset_i != 0 || frame.offset_j != 0 ? outer(force, arm_of_i(frame) + arm_to_j(frame))
@@ -80,18 +64,11 @@ Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f) {
 
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
   assert(forces.size() == assembly.contacts.size());
-  const double area = assembly.area();
-  // Partial sums of a fixed length, added in order: the same bits for every number of threads, and rounding
-  // errors that grow far slower than in one long sum.
-  constexpr std::size_t block = 4096;
-  std::vector<Tensor2> partial((forces.size() + block - 1) / block);
-  parallel_tasks(partial.size(), [&](std::size_t task, int) {
-    const std::size_t end = std::min(forces.size(), (task + 1) * block);
-    for (std::size_t c = task * block; c < end; ++c) {
-      partial[task] += force_by_branch(frame_of(assembly, c), forces[c]);
-    }
+  const auto [xx, xy, yx, yy] = contact_sums<4>(forces.size(), [&](std::size_t c, auto& sums) {
+    const Tensor2 work = force_by_branch(frame_of(assembly, c), forces[c]);
+    sums[0] += work.xx, sums[1] += work.xy, sums[2] += work.yx, sums[3] += work.yy;
   });
-  return (1 / area) * std::accumulate(partial.begin(), partial.end(), Tensor2{});
+  return (1 / assembly.area()) * Tensor2{xx, xy, yx, yy};
 }
 
 double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium) {
@@ -106,31 +83,14 @@ double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equil
   return sum;
 }
 
-StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const ContactForce> forces,
-                                 std::span<const double> moments) {
-  assert(moments.empty() || moments.size() == assembly.size());
-  return {.difference = asymmetry(macroscopic_stress(assembly, forces)),
-          .moment_density = std::accumulate(moments.begin(), moments.end(), 0.0) / assembly.area()};
-}
-
-std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, const Tensor2& gradient,
-                                                    double rotation) {
-  std::vector<ContactDeformation> result(assembly.contacts.size());
-  for (std::size_t c = 0; c < result.size(); ++c) {
-    const Contact& contact = assembly.contacts[c];
-    const DiscMotion i{.u = {}, .theta = rotation};
-    const DiscMotion j{.u = gradient * assembly.branch(contact), .theta = rotation};
-    result[c] = deformation(frame_of(assembly, c), i, j);
-  }
-  return result;
-}
-
 std::vector<ContactForce> affine_contact_forces(const Assembly& assembly, const ContactSprings& springs,
                                                 const Tensor2& gradient, double rotation) {
-  const std::vector<ContactDeformation> deformations = affine_deformations(assembly, gradient, rotation);
-  std::vector<ContactForce> forces(deformations.size());
-  for (std::size_t c = 0; c < forces.size(); ++c)
-    forces[c] = force_of(springs, c, {deformations[c], rotation, rotation});
+  std::vector<ContactForce> forces(assembly.contacts.size());
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const DiscMotion i{.u = {}, .theta = rotation};
+    const DiscMotion j{.u = gradient * assembly.branch(assembly.contacts[c]), .theta = rotation};
+    forces[c] = force_of(springs, c, {deformation(frame_of(assembly, c), i, j), rotation, rotation});
+  }
   return forces;
 }
 

@@ -15,6 +15,20 @@
 
 namespace equidem {
 
+/// a_ik b_kj.
+constexpr Tensor2 operator*(const Tensor2& a, const Tensor2& b) {
+  return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx, a.yx * b.xy + a.yy * b.yy};
+}
+constexpr Tensor2 transposed(const Tensor2& t) {
+  return {t.xx, t.yx, t.xy, t.yy};
+}
+constexpr double determinant(const Tensor2& t) {
+  return t.xx * t.yy - t.xy * t.yx;
+}
+constexpr Tensor2 inverse(const Tensor2& t) {
+  return (1 / determinant(t)) * Tensor2{t.yy, -t.xy, -t.yx, t.xx};
+}
+
 /// Whether disc_stresses is defined: every disc has a cell of some area.
 bool cells_hold_area(const Assembly& assembly);
 
@@ -24,11 +38,6 @@ bool cells_hold_area(const Assembly& assembly);
 /// \throws Error (bad_input) where the assembly has no cell areas, or a disc an empty cell
 std::vector<Tensor2> disc_stresses(const Assembly& assembly, std::span<const ContactForce> forces);
 
-/// Stress of a region, Pa: the average of disc stresses weighted by cell area over the discs that `inside` accepts.
-/// \throws Error (bad_input) where the region holds no disc
-Tensor2 average_stress(const Assembly& assembly, std::span<const Tensor2> stresses,
-                       const std::function<bool(std::size_t disc)>& inside);
-
 /// The force on i times the branch of a contact, N: its part of the stress times the area.
 Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f);
 
@@ -36,36 +45,17 @@ Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f);
 /// up to its branch it is also the stress of the outer forces f on the discs, (1/A) sum f_i x_j.
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces);
 
-/// Why a stress is not symmetric. The contact forces of a disc turn it with the moment sum l x F = V (s_yx - s_xy);
-/// at rest an outer moment balances it, so that
-///
-///   s_xy - s_yx = (outer moments, counter-clockwise) / (area).
-///
-/// Abe 1996, section 4.3, in numbers: uniform strain of the hexagonal lattice with rotation restrained gives s_xy -
-/// s_yx = -sqrt3 kT (u_2,1 - u_1,2).
-struct StressAsymmetry {
-  double difference = 0;      ///< s_xy - s_yx of the macroscopic stress, Pa
-  double moment_density = 0;  ///< sum of the outer moments over the area, N/m² = Pa; equal to it at rest
-};
-
 /// Sum of the moments, N, that act on discs other than through contacts: those of restrained rotations, of supports and
-/// of loads.
+/// of loads. The contact forces of a disc turn it with the moment sum l x F = V (s_yx - s_xy); at rest an outer moment
+/// balances it, so that s_xy - s_yx = (outer moments, counter-clockwise) / (area). Abe 1996, section 4.3, in numbers:
+/// uniform strain of the hexagonal lattice with rotation restrained gives s_xy - s_yx = -sqrt3 kT (u_2,1 - u_1,2).
 double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium);
-
-/// \param moments N, per disc, counter-clockwise: those that hold discs against rotation
-///         (Equilibrium::rotation_moments) and those applied by loads; empty: none act
-StressAsymmetry stress_asymmetry(const Assembly& assembly, std::span<const ContactForce> forces,
-                                 std::span<const double> moments);
 
 /// The rotation of a continuum with the displacement gradient h_ij = du_i/dx_j: (h_yx - h_xy)/2, rad. Discs of the
 /// hexagonal and of the square lattice that turn by it feel no moment: it is their free rotation.
 constexpr double mean_rotation(const Tensor2& gradient) {
   return 0.5 * (gradient.yx - gradient.xy);
 }
-
-/// Stretch and slip, m, of every contact under the affine motion u = h x, all discs turning by `rotation`
-/// (rad).
-std::vector<ContactDeformation> affine_deformations(const Assembly& assembly, const Tensor2& gradient, double rotation);
 
 /// Contact forces, N/m, under the affine motion u = h x, all discs turning by the same `rotation`
 /// (rad):

@@ -8,31 +8,16 @@
 #include <utility>
 
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 namespace {
 
 using Disc = std::int32_t;
-
-/// The rectangle around the centres of all discs.
-struct Extents {
-  Vec2 low;
-  Vec2 high;
-  [[nodiscard]] Vec2 middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] Vec2 size() const { return high - low; }
-};
-
-Extents extents_of(const Assembly& assembly) {
-  Extents e{assembly.centres.front(), assembly.centres.front()};
-  for (const Vec2 x : assembly.centres) {
-    e.low = {std::min(e.low.x, x.x), std::min(e.low.y, x.y)};
-    e.high = {std::max(e.high.x, x.x), std::max(e.high.y, x.y)};
-  }
-  return e;
-}
 
 double mean_branch_length(const Assembly& assembly) {
   double sum = 0;
@@ -161,7 +146,7 @@ double mean_normal_spring(const Assembly& assembly, const ContactSprings& spring
 
 void place_nearest_gauges(const Rectangle& extents, double spacing, GaugePlacement placement,
                           const std::function<std::int32_t(Vec2 point)>& nearest, TensionSetup& setup) {
-  const Extents block{extents.low, extents.high};
+  const Vec2 middle = 0.5 * (extents.low + extents.high), size = extents.high - extents.low;
   const auto half_length = [&](double extent) {
     switch (placement) {
       case GaugePlacement::centre:
@@ -173,17 +158,17 @@ void place_nearest_gauges(const Rectangle& extents, double spacing, GaugePlaceme
     }
     return extent / 2;
   };
-  const Vec2 half{half_length(block.size().x), half_length(block.size().y)};
+  const Vec2 half{half_length(size.x), half_length(size.y)};
   const auto pair_at = [&](Vec2 reach) {
-    const std::int32_t first = nearest(block.middle() - reach), second = nearest(block.middle() + reach);
+    const std::int32_t first = nearest(middle - reach), second = nearest(middle + reach);
     return StrainGauge{first, second};
   };
   setup.horizontal = pair_at({half.x, 0});
   setup.vertical = pair_at({0, half.y});
   const double slack = 1e-9 * spacing;
-  const bool inside = 2 * half.x <= block.size().x + slack && 2 * half.y <= block.size().y + slack;
+  const bool inside = 2 * half.x <= size.x + slack && 2 * half.y <= size.y + slack;
   if (!inside || setup.horizontal.first == setup.horizontal.second || setup.vertical.first == setup.vertical.second) {
-    refuse_size(placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", block.size().x, block.size().y),
+    refuse_size(placement, fmt::format("disc centres over {:.3g} m by {:.3g} m", size.x, size.y),
                 fmt::format("{0:.3g} m by {0:.3g} m, {1} mean spacings each way",
                             (placement == GaugePlacement::centre ? 4 : 2) * spacing,
                             placement == GaugePlacement::centre ? 4 : 2));
@@ -223,18 +208,17 @@ TensionSetup tension_setup(const Assembly& assembly, const TensionTest& test) {
     LatticeGauges(assembly, lattice->alignment, test.gauge).place(setup);
     return setup;
   }
-  const auto [low, high] = extents_of(assembly);
   const double spacing = mean_branch_length(assembly);
   const auto nearest = [&](Vec2 point) { return nearest_disc(assembly, point, spacing); };
-  place_nearest_gauges({low, high}, spacing, test.gauge, nearest, setup);
+  place_nearest_gauges(upright_rectangle(assembly.centres), spacing, test.gauge, nearest, setup);
   return setup;
 }
 
 Rectangle inner_half(const Rectangle& extents, double spacing) {
-  const Extents block{extents.low, extents.high};
+  const Vec2 middle = 0.5 * (extents.low + extents.high), size = extents.high - extents.low;
   const double slack = 1e-9 * spacing;  // rounding must not decide which discs on the rim of the region count
-  const Vec2 half{std::max(block.size().x / 4, spacing) + slack, std::max(block.size().y / 4, spacing) + slack};
-  return {block.middle() - half, block.middle() + half};
+  const Vec2 half{std::max(size.x / 4, spacing) + slack, std::max(size.y / 4, spacing) + slack};
+  return {middle - half, middle + half};
 }
 
 TensionResult tension_result(const TensionTest& test, double e11, double e22, double mean_kN,
@@ -253,8 +237,7 @@ TensionResult tension_result(const TensionTest& test, double e11, double e22, do
 TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& springs, const TensionTest& test,
                                const TensionSetup& setup, const Equilibrium& equilibrium) {
   const std::vector<DiscMotion>& motions = equilibrium.motions;
-  const auto [low, high] = extents_of(assembly);
-  const Rectangle inner = inner_half({low, high}, mean_branch_length(assembly));
+  const Rectangle inner = inner_half(upright_rectangle(assembly.centres), mean_branch_length(assembly));
   const Vec2 middle = 0.5 * (inner.low + inner.high), half = 0.5 * (inner.high - inner.low);
   const Tensor2 fitted = fitted_displacement_gradient(assembly, motions, [&](std::size_t disc) {
     const Vec2 d = assembly.centres[disc] - middle;
@@ -262,10 +245,6 @@ TensionResult evaluate_tension(const Assembly& assembly, const ContactSprings& s
   });
   return tension_result(test, gauge_strain(assembly, motions, setup.horizontal),
                         gauge_strain(assembly, motions, setup.vertical), mean_normal_spring(assembly, springs), fitted);
-}
-
-double gauge_length(const Assembly& assembly, const StrainGauge& gauge) {
-  return norm(assembly.centres[gauge.second] - assembly.centres[gauge.first]);
 }
 
 double gauge_strain(const Assembly& assembly, std::span<const DiscMotion> motions, const StrainGauge& gauge) {
@@ -319,18 +298,14 @@ Tensor2 fitted_displacement_gradient(const Assembly& assembly, std::span<const D
   const double trace = second_moment.xx + second_moment.yy;
   const Tensor2 s = (1 / trace) * second_moment;
   covariance = (1 / trace) * covariance;
-  const double determinant = s.xx * s.yy - s.xy * s.yx;
   // The ratio of the principal second moments, about determinant/trace²: rounding makes 1e-16 of it for discs
   // on a line, while two rows of 4e6 discs still have 1e-13.
-  if (!(determinant > 1e-13)) {
+  if (!(determinant(s) > 1e-13)) {
     bad_input(fmt::format("a displacement gradient cannot be fitted to {}",
                           counted(static_cast<std::int64_t>(first[5]), "disc")),
               "it takes three discs or more that are not on one line", "Choose a larger region");
   }
-  const Tensor2 inverse = (1 / determinant) * Tensor2{s.yy, -s.xy, -s.yx, s.xx};
-  return {
-      covariance.xx * inverse.xx + covariance.xy * inverse.yx, covariance.xx * inverse.xy + covariance.xy * inverse.yy,
-      covariance.yx * inverse.xx + covariance.yy * inverse.yx, covariance.yx * inverse.xy + covariance.yy * inverse.yy};
+  return covariance * inverse(s);
 }
 
 }  // namespace equidem

@@ -23,9 +23,6 @@ struct StrainGauge {
   std::int32_t second = 0;
 };
 
-/// Distance of the two centres, m.
-double gauge_length(const Assembly& assembly, const StrainGauge& gauge);
-
 /// Elongation of a gauge along its own direction over its length: (u_second - u_first) . l / l². The centres must
 /// differ. Across a period the motion of images is not known: on a periodic cell the branch is the one inside it.
 double gauge_strain(const Assembly& assembly, std::span<const DiscMotion> motions, const StrainGauge& gauge);

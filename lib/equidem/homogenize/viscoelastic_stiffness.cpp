@@ -253,23 +253,15 @@ void sum_harmonic(const SampleSolver& sample, const HarmonicSystem& system, cons
       d[a] = system.deformation(unit_gradients[a], motions[a], c);
       largest_force = std::max(largest_force, std::abs(k.kN * d[a].normal) + std::abs(k.kT * d[a].tangential));
     }
-    std::size_t entry = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t b = a; b < 3; ++b, ++entry) {
-        const Complex energy = k.kN * d[a].normal * d[b].normal + k.kT * d[a].tangential * d[b].tangential;
-        total[2 * entry] += energy.real();
-        total[2 * entry + 1] += energy.imag();
-      }
-    }
+    const auto energy = [&](std::size_t a, std::size_t b) {
+      return k.kN * d[a].normal * d[b].normal + k.kT * d[a].tangential * d[b].tangential;
+    };
+    add_triangle(total.data(), [&](std::size_t a, std::size_t b) { return energy(a, b).real(); });
+    add_triangle(total.data() + pairs, [&](std::size_t a, std::size_t b) { return energy(a, b).imag(); });
     total.back() += normal_rounding(assembly, contact) * largest_force * norm(assembly.branch(contact));
   });
-  std::size_t entry = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = a; b < 3; ++b, ++entry) {
-      result.storage[a][b] = result.storage[b][a] = sums[2 * entry];
-      result.loss[a][b] = result.loss[b][a] = sums[2 * entry + 1];
-    }
-  }
+  result.storage = symmetric(sums.data());
+  result.loss = symmetric(sums.data() + pairs);
   result.error_bound += 2 * std::numeric_limits<double>::epsilon() * sums.back();
 }
 

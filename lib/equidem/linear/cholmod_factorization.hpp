@@ -15,13 +15,11 @@
 namespace equidem {
 
 /// K = L L^T over the components that are not held. Returns a null pointer
-/// where K is not positive definite to working precision; `report`, where given, contains the place. Held components
-/// are solved as rows of a unit matrix times the largest spring. One factorization must not be used by two threads at
-/// once.
+/// where K is not positive definite to working precision. Held components are solved as rows of a unit matrix times the
+/// largest spring. One factorization must not be used by two threads at once.
 /// \param order discs in elimination order, for CholmodOrdering::equidem
 /// \throws Error (computation_failed) where memory does not suffice or CHOLMOD fails
 std::unique_ptr<Factorization> cholmod_cholesky(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                                CholmodOrdering ordering, std::span<const std::int32_t> order,
-                                                FactorReport* report = nullptr);
+                                                CholmodOrdering ordering, std::span<const std::int32_t> order);
 
 }  // namespace equidem

@@ -17,8 +17,7 @@ struct FactorReport {
   double bytes = 0;
   std::int64_t negative_pivots = -1;  ///< negative eigenvalues (Sylvester); -1 where the method does not determine it
   double growth = 0;                  ///< largest |L_ij|; 0 where not watched
-  /// Smallest pivot over the diagonal entry it started from: the share of a stiffness that is left when all others
-  /// have given way. Near round-off the matrix is singular.
+  /// Smallest ratio of a pivot to its diagonal entry of K. Near round-off the matrix is singular.
   double smallest_pivot = 1;
   std::int64_t smallest_component = -1;  ///< the component (disc * block + k) it belongs to
   std::int64_t delayed_pivots = 0;       ///< eliminated later than planned, for stability
@@ -49,8 +48,8 @@ class Factorization {
   }
   /// x := K^-1 x to a few per cent, where that is cheaper.
   virtual void solve_roughly(std::span<double> x) const { solve(x, 1); }
-  /// The motion of least resistance that the factorization came across, not normalized: L^-T e for the unit vector e
-  /// of the smallest pivot. Where K is singular it is a mechanism. Empty where the method does not determine it.
+  /// Approximate null vector, not normalized: L^-T e for the unit vector e of the smallest pivot. Where K is singular
+  /// it is a mechanism. Empty where the method does not determine it.
   [[nodiscard]] virtual std::vector<double> softest_motion() const { return {}; }
   /// The k-th of FactorReport::zero_pivots zero-energy modes, not normalized; they are independent. Solving
   /// holds one unknown for each of them. Empty where the method does not determine them.

@@ -44,7 +44,7 @@ struct UntouchedAllocator {
 template <typename T>
 using LargeVector = std::vector<T, UntouchedAllocator<T>>;
 
-/// Buffers that come and go, kept for reuse: fresh memory is slow to touch. Safe to use from several threads.
+/// Pool of reusable buffers: fresh memory is slow to touch. Safe to use from several threads.
 class BufferPool {
  public:
   using Buffer = LargeVector<double>;

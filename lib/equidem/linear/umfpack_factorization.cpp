@@ -170,15 +170,9 @@ class UmfpackLu final : public Factorization {
 
 }  // namespace
 
-std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                          FactorReport* report) {
-  auto factor = std::make_unique<UmfpackLu>(held_stiffness(matrix.matrix, unknowns));
-  CompressedColumns whole = compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns);
-  whole = with_upper_triangle(whole);
-  const bool regular = factor->factorize(std::move(whole));
-  if (report != nullptr) *report = factor->report();
-  if (!regular) return nullptr;
-  return factor;
+std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns) {
+  return umfpack_lu(with_upper_triangle(compress(matrix.matrix, matrix.assembly, matrix.graph, unknowns)),
+                    held_stiffness(matrix.matrix, unknowns));
 }
 
 std::unique_ptr<Factorization> umfpack_lu(CompressedColumns whole, double held_stiffness) {

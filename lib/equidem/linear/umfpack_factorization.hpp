@@ -21,8 +21,7 @@ namespace equidem {
 /// pivot is zero; a singular K may also end in one near round-off: the report's smallest_pivot, here over the largest
 /// entry of its column, shows it. Held components are solved as rows of a unit matrix times the largest spring.
 /// \throws Error (computation_failed) where memory does not suffice or UMFPACK fails
-std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns,
-                                          FactorReport* report = nullptr);
+std::unique_ptr<Factorization> umfpack_lu(const MatrixOnGraph& matrix, const DegreesOfFreedom& unknowns);
 
 /// All entries of a matrix that need not be symmetric, over the components of its columns. As above, but for the rows
 /// of components that are held, which are those of a unit matrix times `held_stiffness`.

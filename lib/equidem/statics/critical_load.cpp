@@ -28,23 +28,20 @@ void check(const CriticalLoadOptions& options) {
 }
 
 /// K + lambda K_g with the motions held that nothing resists.
-class LoadPencil {
+class LoadPencil final : public StiffnessPencil {
  public:
   LoadPencil(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
              const CriticalLoadOptions& options)
-      : assembly_(assembly),
+      : StiffnessPencil(
+            assembly, number_unknowns(assembly, springs, derive_effects(assembly, springs, options.rotation), supports),
+            &springs, 0.1),
         springs_(springs),
         unstressed_(springs.with_prestress({})),
         weightless_(springs.changed([](SpringConstants) {
                              return SpringConstants{0, 0};
                            })
-                        .with_bending({})),
-        graph_(assembly),
-        unknowns_(number_unknowns(assembly, springs, derive_effects(assembly, springs, options.rotation), supports)) {
-    hold_free_motions(assembly, graph_, springs, unknowns_);
-    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
+                        .with_bending({})) {
     check_memory(estimate(*symbolic_, unknowns_, true), options.memory_limit);
-    geometric_ = assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
   }
 
   struct Inertia {
@@ -59,26 +56,6 @@ class LoadPencil {
     return counted.negative == 0 && counted.zero == 0;
   }
 
-  /// The eigenvalue lambda of K x = -lambda K_g x nearest to `shift`, by inverse iteration from x; NaN where it does
-  /// not settle. Energies are summed over contacts: in x.K x of a slender assembly the digits of its stretch would be
-  /// lost.
-  double nearest(double shift, std::vector<double>& x) {
-    const auto factor = factorize(shift);
-    const InverseIteration iteration{
-        assembly_,
-        graph_,
-        unknowns_,
-        geometric_,
-        *factor,
-        [&](const auto& y) {
-          const std::vector<DiscMotion> motions = disc_motions(unknowns_, y);
-          return -elastic_energy(assembly_, unstressed_, motions) / elastic_energy(assembly_, weightless_, motions);
-        },
-        [](double value, double before) { return std::abs(value - before) <= 1e-12 * std::abs(value); }};
-    return iteration.run(x);
-  }
-
-  [[nodiscard]] std::vector<double> first_motion() const { return random_motion(unknowns_); }
   [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
     std::vector<DiscMotion> motions = disc_motions(unknowns_, x);
     double largest = 0;
@@ -87,27 +64,25 @@ class LoadPencil {
     for (DiscMotion& motion : motions) motion = {motion.u / largest, motion.theta / largest};
     return motions;
   }
-  [[nodiscard]] std::int64_t factorizations() const { return factorizations_; }
 
  private:
-  [[nodiscard]] StiffnessMatrix stiffness(double factor) const {
+  [[nodiscard]] StiffnessMatrix stiffness(double factor) const override {
     return assemble_stiffness(assembly_, graph_, springs_.with_prestress(springs_.scaled_prestress(factor)), unknowns_);
   }
-  std::unique_ptr<Factorization> factorize(double factor) {
-    stop_if_interrupted();
-    ++factorizations_;
-    const StiffnessMatrix matrix = stiffness(factor);
-    return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_}, {.threshold = 0.1});
+  [[nodiscard]] StiffnessMatrix slope() const override {
+    return assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
+  }
+  /// Energies are summed over contacts: in x.K x of a slender assembly the digits of its stretch would be lost.
+  [[nodiscard]] double quotient(const StiffnessMatrix&, const std::vector<double>& x) const override {
+    const std::vector<DiscMotion> motions = disc_motions(unknowns_, x);
+    return -elastic_energy(assembly_, unstressed_, motions) / elastic_energy(assembly_, weightless_, motions);
+  }
+  [[nodiscard]] bool settled(double value, double before) const override {
+    return std::abs(value - before) <= 1e-12 * std::abs(value);
   }
 
-  const Assembly& assembly_;
   const ContactSprings& springs_;
   ContactSprings unstressed_, weightless_;  ///< springs without forces at rest, and these without springs
-  ContactGraph graph_;
-  DegreesOfFreedom unknowns_;
-  std::shared_ptr<const SymbolicFactor> symbolic_;
-  StiffnessMatrix geometric_;
-  std::int64_t factorizations_ = 0;
 };
 
 /// True where factorizations on both sides of the value, as close as round-off allows, have it between them: sets
@@ -137,7 +112,7 @@ void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
   for (int attempts = 0; safe == 0 || unstable - safe > narrow * unstable;) {
     if (safe > 0 && unstable - safe < near * safe && attempts < 4) {
       ++attempts;
-      std::vector<double> x = pencil.first_motion();
+      std::vector<double> x = pencil.random_motion();
       const double value = pencil.nearest(safe, x);
       if (value > safe && value < unstable && prove(pencil, value, result)) {
         result.factor = value;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/linear_spring.hpp"
@@ -19,46 +20,53 @@
 #include "equidem/statics/solver_choice.hpp"
 
 namespace equidem {
-namespace {
-
-void clear_held(const DegreesOfFreedom& unknowns, std::vector<double>& x) {
-  for (std::size_t k = 0; k < x.size(); ++k)
-    if (unknowns.held[k] != 0) x[k] = 0;
+StiffnessPencil::StiffnessPencil(const Assembly& assembly, DegreesOfFreedom unknowns, const ContactSprings* held,
+                                 double threshold)
+    : assembly_(assembly), graph_(assembly), unknowns_(std::move(unknowns)), threshold_(threshold) {
+  if (held != nullptr) hold_free_motions(assembly, graph_, *held, unknowns_);
+  symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
 }
 
-}  // namespace
+void StiffnessPencil::clear_held(std::vector<double>& x) const {
+  for (std::size_t k = 0; k < x.size(); ++k)
+    if (unknowns_.held[k] != 0) x[k] = 0;
+}
 
-std::vector<double> random_motion(const DegreesOfFreedom& unknowns) {
+std::vector<double> StiffnessPencil::product(const StiffnessMatrix& m, const std::vector<double>& x) const {
+  std::vector<double> y(x.size());
+  multiply(m, assembly_, graph_, x, y);
+  clear_held(y);
+  return y;
+}
+
+std::vector<double> StiffnessPencil::random_motion() const {
   Random random(1);
-  std::vector<double> x(unknowns.held.size());
+  std::vector<double> x(unknowns_.held.size());
   for (double& value : x) value = random.uniform(-1, 1);
-  clear_held(unknowns, x);
+  clear_held(x);
   return x;
 }
 
-double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
-                         const StiffnessMatrix& a, const StiffnessMatrix& b, const std::vector<double>& x) {
-  std::vector<double> a_x(x.size()), b_x(x.size());
-  multiply(a, assembly, graph, x, a_x);
-  clear_held(unknowns, a_x);
-  multiply(b, assembly, graph, x, b_x);
-  clear_held(unknowns, b_x);
-  return -dot(x, a_x) / dot(x, b_x);
+std::unique_ptr<Factorization> StiffnessPencil::factorize(double s) {
+  stop_if_interrupted();
+  ++factorizations_;
+  const StiffnessMatrix matrix = stiffness(s);
+  return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_}, {.threshold = threshold_});
 }
 
-double InverseIteration::run(std::vector<double>& x) const {
-  std::vector<double> b_x(x.size());
+double StiffnessPencil::nearest(double shift, std::vector<double>& x) {
+  const auto factor = factorize(shift);
+  const StiffnessMatrix b = slope();
   double before = std::numeric_limits<double>::quiet_NaN();
   constexpr int most = 60;
   for (int k = 0; k < most; ++k) {
-    multiply(b, assembly, graph, x, b_x);
-    clear_held(unknowns, b_x);
-    shifted.solve(b_x, 1);
-    clear_held(unknowns, b_x);
+    std::vector<double> b_x = product(b, x);
+    factor->solve(b_x, 1);
+    clear_held(b_x);
     const double size = std::sqrt(dot(b_x, b_x));
     if (!is_positive(size)) break;
     for (std::size_t c = 0; c < x.size(); ++c) x[c] = b_x[c] / size;
-    const double value = quotient(x);
+    const double value = quotient(b, x);
     if (settled(value, before)) return value;
     before = value;
   }
@@ -80,54 +88,53 @@ ContactSprings with_ratio(const ContactSprings& springs, double ratio) {
   return springs.changed([&](SpringConstants k) { return SpringConstants{k.kN, all || k.kT != 0 ? ratio * k.kN : 0}; });
 }
 
-/// The stiffness matrix as a function of the ratio.
-class RatioPencil {
+/// K_N + r K_T.
+class RatioPencil final : public StiffnessPencil {
  public:
   RatioPencil(const Assembly& assembly, const ContactSprings& springs, std::span<const Support> supports,
               const CriticalRatioOptions& options)
-      : assembly_(assembly), springs_(springs), options_(options), graph_(assembly) {
-    const ContactSprings one = with_ratio(springs, 1);
-    unknowns_ = number_unknowns(assembly, one,
-                                derive_effects(assembly, one, options.rotation ? Rotation::free : Rotation::restrained),
-                                supports);
-    // A wave that changes sign from period to period is no rigid motion, but gears may still turn.
-    if (!options.antiperiodic_x && !options.antiperiodic_y) hold_free_motions(assembly, graph_, one, unknowns_);
-    symbolic_ = std::make_shared<const SymbolicFactor>(analyze(dissect(assembly, graph_), graph_, unknowns_.per_disc));
-    mechanisms_ = factorize(1)->report().zero_pivots;
-    count_rotations();
-  }
+      : RatioPencil(assembly, springs, with_ratio(springs, 1), supports, options) {}
 
   [[nodiscard]] std::int64_t mechanisms() const { return mechanisms_; }
-  [[nodiscard]] std::int64_t factorizations() const { return factorizations_; }
-
   bool stable(double ratio) {
     const FactorReport report = factorize(ratio)->report();
     return report.zero_pivots == mechanisms_ && report.negative_pivots == negative_rotations_;
   }
 
-  /// The eigenvalue r < 0 of K_N x = -r K_T x nearest to `shift`, by inverse iteration from x; NaN where it does not
-  /// settle.
-  double nearest(double shift, std::vector<double>& x) {
-    const auto factor = factorize(shift);
-    const StiffnessMatrix normal = stiffness(0), tangential = difference(stiffness(1), normal);
-    const InverseIteration iteration{
-        assembly_,
-        graph_,
-        unknowns_,
-        tangential,
-        *factor,
-        [&](const auto& y) { return rayleigh_quotient(assembly_, graph_, unknowns_, normal, tangential, y); },
-        [&](double value, double before) { return std::abs(value - before) <= 0.01 * options_.tolerance; }};
-    return iteration.run(x);
-  }
-
   [[nodiscard]] std::vector<DiscMotion> motions_of(const std::vector<double>& x) const {
     return disc_motions(unknowns_, x);
   }
-  [[nodiscard]] std::vector<double> first_motion() const { return random_motion(unknowns_); }
 
  private:
-  [[nodiscard]] StiffnessMatrix stiffness(double ratio) const {
+  /// A wave that changes sign from period to period is no rigid motion, but gears may still turn.
+  RatioPencil(const Assembly& assembly, const ContactSprings& springs, const ContactSprings& one,
+              std::span<const Support> supports, const CriticalRatioOptions& options)
+      : StiffnessPencil(
+            assembly,
+            number_unknowns(assembly, one,
+                            derive_effects(assembly, one, options.rotation ? Rotation::free : Rotation::restrained),
+                            supports),
+            options.antiperiodic_x || options.antiperiodic_y ? nullptr : &one, IndefiniteOptions().threshold),
+        springs_(springs),
+        options_(options) {
+    mechanisms_ = factorize(1)->report().zero_pivots;
+    count_rotations();
+  }
+
+  [[nodiscard]] StiffnessMatrix slope() const override {
+    StiffnessMatrix tangential = stiffness(1);
+    const StiffnessMatrix normal = stiffness(0);
+    for (std::size_t k = 0; k < normal.diagonal.size(); ++k) tangential.diagonal[k] -= normal.diagonal[k];
+    for (std::size_t k = 0; k < normal.coupling.size(); ++k) tangential.coupling[k] -= normal.coupling[k];
+    return tangential;
+  }
+  [[nodiscard]] double quotient(const StiffnessMatrix& tangential, const std::vector<double>& x) const override {
+    return -dot(x, product(stiffness(0), x)) / dot(x, product(tangential, x));
+  }
+  [[nodiscard]] bool settled(double value, double before) const override {
+    return std::abs(value - before) <= 0.01 * options_.tolerance;
+  }
+  [[nodiscard]] StiffnessMatrix stiffness(double ratio) const override {
     const ContactSprings springs = with_ratio(springs_, ratio);
     StiffnessMatrix matrix = assemble_stiffness(assembly_, graph_, springs, unknowns_);
     if (options_.antiperiodic_x || options_.antiperiodic_y) change_signs(springs, matrix);
@@ -164,19 +171,6 @@ class RatioPencil {
     }
   }
 
-  [[nodiscard]] static StiffnessMatrix difference(StiffnessMatrix a, const StiffnessMatrix& b) {
-    for (std::size_t k = 0; k < a.diagonal.size(); ++k) a.diagonal[k] -= b.diagonal[k];
-    for (std::size_t k = 0; k < a.coupling.size(); ++k) a.coupling[k] -= b.coupling[k];
-    return a;
-  }
-
-  std::unique_ptr<Factorization> factorize(double ratio) {
-    stop_if_interrupted();
-    ++factorizations_;
-    const StiffnessMatrix matrix = stiffness(ratio);
-    return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_});
-  }
-
   /// The rotational block is r times that at r = 1: one negative eigenvalue for each rotation that is resisted.
   void count_rotations() {
     const ContactSprings springs = with_ratio(springs_, -1);
@@ -189,15 +183,10 @@ class RatioPencil {
                        "Hold the rotation of one disc of each such group, or restrain rotation");
   }
 
-  const Assembly& assembly_;
   const ContactSprings& springs_;
   const CriticalRatioOptions& options_;
-  ContactGraph graph_;
-  DegreesOfFreedom unknowns_;
-  std::shared_ptr<const SymbolicFactor> symbolic_;
   std::int64_t mechanisms_ = 0;
   std::int64_t negative_rotations_ = 0;
-  std::int64_t factorizations_ = 0;
 };
 
 /// \param x the eigenvector that belongs to the value; empty where there is none
@@ -209,7 +198,7 @@ double search(RatioPencil& pencil, const CriticalRatioOptions& options, std::vec
     if (at <= unstable || at >= safe) return;
     (pencil.stable(at) ? safe : unstable) = at;
   };
-  x = pencil.first_motion();
+  x = pencil.random_motion();
   constexpr double try_below = 0.1;  // bracket over distance from 0: from here on inverse iteration may get there
   for (int attempts = 0; safe - unstable > options.tolerance;) {
     if (pencil.mechanisms() == 0 && attempts < 4 && safe - unstable < try_below * std::abs(safe)) {
@@ -254,11 +243,6 @@ CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings
   result.mechanisms = pencil.mechanisms();
   result.factorizations = pencil.factorizations();
   return result;
-}
-
-double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
-                      const CriticalRatioOptions& options) {
-  return find_critical_ratio(assembly, ContactSprings(SpringConstants{1, 1}), supports, options).ratio;
 }
 
 }  // namespace equidem

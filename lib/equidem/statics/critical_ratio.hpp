@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,32 +13,51 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/factorization.hpp"
+#include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
 
-/// A pseudo-random motion, 0 where held: the same for the same unknowns.
-std::vector<double> random_motion(const DegreesOfFreedom& unknowns);
+/// A stiffness matrix K(s) = A + s B on the unknowns of an assembly, factorized by L D L^T, which counts its negative
+/// eigenvalues.
+class StiffnessPencil {
+ public:
+  /// \param held springs by which motions that nothing resists are found, and held; null: none are
+  /// \param threshold of pivots (IndefiniteOptions)
+  StiffnessPencil(const Assembly& assembly, DegreesOfFreedom unknowns, const ContactSprings* held, double threshold);
+  virtual ~StiffnessPencil() = default;
+  StiffnessPencil(const StiffnessPencil&) = delete;
+  StiffnessPencil& operator=(const StiffnessPencil&) = delete;
 
-/// The eigenvalue of A x = -v B x nearest to a shift, by inverse iteration from x, which becomes its vector; NaN where
-/// it does not settle.
-struct InverseIteration {
-  const Assembly& assembly;
-  const ContactGraph& graph;
-  const DegreesOfFreedom& unknowns;
-  const StiffnessMatrix& b;
-  const Factorization& shifted;  ///< of A + shift B
-  std::function<double(const std::vector<double>& x)>
-      quotient;                                              ///< of Rayleigh: it errs by the square of the error of x
-  std::function<bool(double value, double before)> settled;  ///< whether a value and the one before are alike
+  [[nodiscard]] std::int64_t factorizations() const { return factorizations_; }
+  /// A pseudo-random motion, 0 where held: the same for the same unknowns.
+  [[nodiscard]] std::vector<double> random_motion() const;
+  /// The eigenvalue v of A x = -v B x nearest to a shift, by inverse iteration from x, which becomes its vector; NaN
+  /// where it does not settle.
+  double nearest(double shift, std::vector<double>& x);
 
-  double run(std::vector<double>& x) const;
+ protected:
+  [[nodiscard]] virtual StiffnessMatrix stiffness(double s) const = 0;
+  [[nodiscard]] virtual StiffnessMatrix slope() const = 0;  // B
+  /// v = -x.A x/x.B x (Rayleigh): it errs by the square of the error of x.
+  [[nodiscard]] virtual double quotient(const StiffnessMatrix& slope, const std::vector<double>& x) const = 0;
+  /// Whether a value and the one before are alike.
+  [[nodiscard]] virtual bool settled(double value, double before) const = 0;
+  std::unique_ptr<Factorization> factorize(double s);
+  void clear_held(std::vector<double>& x) const;
+  /// M x, 0 where held.
+  [[nodiscard]] std::vector<double> product(const StiffnessMatrix& m, const std::vector<double>& x) const;
+
+  const Assembly& assembly_;
+  ContactGraph graph_;
+  DegreesOfFreedom unknowns_;
+  std::shared_ptr<const SymbolicFactor> symbolic_;
+
+ private:
+  double threshold_;
+  std::int64_t factorizations_ = 0;
 };
-
-/// The value v = -x.A x/x.B x, over the components that are not held.
-double rayleigh_quotient(const Assembly& assembly, const ContactGraph& graph, const DegreesOfFreedom& unknowns,
-                         const StiffnessMatrix& a, const StiffnessMatrix& b, const std::vector<double>& x);
 
 struct CriticalRatioOptions {
   double lowest = -1;           ///< where the search ends, in [-1, 0)
@@ -68,9 +87,5 @@ struct CriticalRatio {
 ///         (computation_failed) where K cannot be factorized
 CriticalRatio find_critical_ratio(const Assembly& assembly, const ContactSprings& springs,
                                   std::span<const Support> supports, const CriticalRatioOptions& options = {});
-
-/// As above, for equal springs.
-double critical_ratio(const Assembly& assembly, std::span<const Support> supports,
-                      const CriticalRatioOptions& options = {});
 
 }  // namespace equidem

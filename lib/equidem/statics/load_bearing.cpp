@@ -100,48 +100,12 @@ class Pruning {
     }
   }
 
-  /// The equations of equilibrium of a disc admit no contact force but zero: with columns (n, 0) for the normal and
-  /// (s, lever) for the tangential force of each contact, where rotation is free, they have full column rank. Three
-  /// rows allow two contacts at most.
+  /// The equations of equilibrium of a disc admit no contact force but zero: with columns (n, -offset) for the normal
+  /// and (s, lever) for the tangential force of each contact, moments where rotation is free, they have full column
+  /// rank. Three rows allow two contacts at most.
   [[nodiscard]] bool carries_nothing(std::size_t disc) const {
     if (contacts_left_[disc] > 2 || is_held(disc)) return false;
     if (only_loose_) return contacts_left_[disc] < 2 && is_loosely_joined(disc);
-    if (!assembly_.contact_arms.empty()) return off_line_carries_nothing(disc);
-    Vec2 normals[2];
-    int count = 0;
-    int tangential = 0;
-    for (const auto& edge : graph_.of(disc)) {
-      if (!left(edge.other)) continue;
-      if (static_cast<std::size_t>(edge.other) == disc) return false;  // a column (0, 0)
-      const Contact& c = assembly_.contacts[edge.contact];
-      if (carries_moment(edge.contact) && contacts_left_[disc] == 2) return false;
-      const double lever = edge.other == c.j ? c.lever_i : c.lever_j;
-      normals[count++] = frame_of(assembly_, static_cast<std::size_t>(edge.contact)).normal;
-      if (springs_[edge.contact].kT != 0) tangential += rotation_ && lever > 0 ? 1 : 2;
-    }
-    return count < 2 || (tangential < 2 && std::abs(cross(normals[0], normals[1])) > round_off);
-  }
-
-  [[nodiscard]] bool carries_moment(std::int32_t contact) const {
-    return rotation_ && springs_.bending(static_cast<std::size_t>(contact)) > 0;
-  }
-
-  /// Whether a contact as the only one between two parts lets them turn or slide.
-  [[nodiscard]] bool is_loose(std::int32_t contact) const {
-    return (rotation_ && !carries_moment(contact)) || springs_[static_cast<std::size_t>(contact)].kT == 0;
-  }
-
-  /// A disc with one contact left, or none, is joined loosely unless that contact holds it in place.
-  [[nodiscard]] bool is_loosely_joined(std::size_t disc) const {
-    for (const auto& edge : graph_.of(disc)) {
-      if (!left(edge.other)) continue;
-      return static_cast<std::size_t>(edge.other) != disc && is_loose(edge.contact);
-    }
-    return true;
-  }
-
-  /// As above, with the columns (n, -offset) and (s, lever).
-  [[nodiscard]] bool off_line_carries_nothing(std::size_t disc) const {
     struct Column {
       Vec2 force;
       double moment = 0;  ///< of the unit force, over the radius
@@ -166,6 +130,24 @@ class Pruning {
     const Vec2 lever = b.moment * a.force - a.moment * b.force;
     if (count == 2) return std::abs(plane) > round_off || norm(lever) > round_off;
     return std::abs(plane * c.moment - cross(lever, c.force)) > round_off;
+  }
+
+  [[nodiscard]] bool carries_moment(std::int32_t contact) const {
+    return rotation_ && springs_.bending(static_cast<std::size_t>(contact)) > 0;
+  }
+
+  /// Whether a contact as the only one between two parts lets them turn or slide.
+  [[nodiscard]] bool is_loose(std::int32_t contact) const {
+    return (rotation_ && !carries_moment(contact)) || springs_[static_cast<std::size_t>(contact)].kT == 0;
+  }
+
+  /// A disc with one contact left, or none, is joined loosely unless that contact holds it in place.
+  [[nodiscard]] bool is_loosely_joined(std::size_t disc) const {
+    for (const auto& edge : graph_.of(disc)) {
+      if (!left(edge.other)) continue;
+      return static_cast<std::size_t>(edge.other) != disc && is_loose(edge.contact);
+    }
+    return true;
   }
 
   /// Whether there were any.

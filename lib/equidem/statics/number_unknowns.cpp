@@ -39,9 +39,9 @@ void apply(const Assembly& assembly, const Effects& effects, const Support& supp
   hold_group(discs, support, effects, unknowns);
 }
 
-/// Rotations that no contact resists: every contact of the disc lies on the line of centres, has kT = 0 or a lever arm
-/// of zero, and no bending spring, and its force at rest does not change as the disc turns.
-void hold_inert_rotations(const Assembly& assembly, const ContactSprings& springs, DegreesOfFreedom& unknowns) {
+}  // namespace
+
+std::vector<std::uint8_t> resisted_rotations(const Assembly& assembly, const ContactSprings& springs) {
   std::vector<std::uint8_t> resisted(assembly.size(), 0);
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
@@ -54,15 +54,8 @@ void hold_inert_rotations(const Assembly& assembly, const ContactSprings& spring
     if (turns_i(*prestress, frame)) resisted[contact.i] = 1;
     if (turns_j(*prestress, frame)) resisted[contact.j] = 1;
   }
-  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
-    std::uint8_t& held = unknowns.held[3 * disc + 2];
-    if (resisted[disc] != 0 || held != 0) continue;
-    held = DegreesOfFreedom::without_stiffness;
-    ++unknowns.rotations_without_stiffness;
-  }
+  return resisted;
 }
-
-}  // namespace
 
 void hold_group(const DiscGroup& discs, const Support& support, const Effects& effects, DegreesOfFreedom& unknowns) {
   check_value(support.ux, "ux", support.group);
@@ -90,7 +83,15 @@ DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings&
   unknowns.held.assign(assembly.size() * unknowns.per_disc, 0);
   unknowns.prescribed.assign(unknowns.held.size(), 0.0);
   for (const Support& support : supports) apply(assembly, effects, support, unknowns);
-  if (effects.rotation) hold_inert_rotations(assembly, springs, unknowns);
+  if (effects.rotation) {
+    const std::vector<std::uint8_t> resisted = resisted_rotations(assembly, springs);
+    for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+      std::uint8_t& held = unknowns.held[3 * disc + 2];
+      if (resisted[disc] != 0 || held != 0) continue;
+      held = DegreesOfFreedom::without_stiffness;
+      ++unknowns.rotations_without_stiffness;
+    }
+  }
   for (std::size_t component = 0; component < unknowns.held.size(); ++component) {
     if (unknowns.held[component] != 0) continue;
     ++unknowns.unknowns;

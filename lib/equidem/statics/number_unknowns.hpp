@@ -24,6 +24,10 @@ DegreesOfFreedom number_unknowns(const Assembly& assembly, const ContactSprings&
 /// \throws Error (bad_input) as number_unknowns, but for a group that is empty or missing
 void hold_group(const DiscGroup& discs, const Support& support, const Effects& effects, DegreesOfFreedom& unknowns);
 
+/// Per disc, 1 where some contact resists its rotation: one off the line of centres, with kT != 0 and a lever arm, with
+/// a bending spring, or with a force at rest that changes as the disc turns.
+std::vector<std::uint8_t> resisted_rotations(const Assembly& assembly, const ContactSprings& springs);
+
 /// Components (u_x, u_y[, a theta]) of all discs as their motions.
 std::vector<DiscMotion> disc_motions(const DegreesOfFreedom& unknowns, std::span<const double> components);
 

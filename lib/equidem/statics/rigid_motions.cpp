@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/rigid_motions.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -38,39 +39,16 @@ struct TriangularFactor {
   }
 };
 
-/// Orthonormal basis of the null space of a 3 x 3 matrix, by one-sided Jacobi rotations of its columns.
+/// Orthonormal basis of the null space.
 std::vector<RigidMotion> null_space(const TriangularFactor<3>& factor) {
-  std::array<std::array<double, 3>, 3> a{}, v{};  // columns
-  for (int c = 0; c < 3; ++c) {
-    for (int k = 0; k < 3; ++k) a[c][k] = factor.r[k][c];
-    v[c][c] = 1;
-  }
-  const auto product = [](const auto& p, const auto& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
-  for (int sweep = 0; sweep < 30; ++sweep) {
-    bool rotated = false;
-    for (const auto& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-      const double pp = product(a[p], a[p]);
-      const double qq = product(a[q], a[q]);
-      const double pq = product(a[p], a[q]);
-      if (std::abs(pq) <= 1e-16 * std::sqrt(pp * qq)) continue;
-      rotated = true;
-      const double zeta = (qq - pp) / (2 * pq);
-      const double tangent = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1 + zeta * zeta));
-      const double cosine = 1 / std::sqrt(1 + tangent * tangent);
-      for (auto* m : {&a, &v}) {
-        for (int k = 0; k < 3; ++k) {
-          const double x = (*m)[p][k];
-          const double y = (*m)[q][k];
-          (*m)[p][k] = cosine * (x - tangent * y);
-          (*m)[q][k] = cosine * (y + tangent * x);
-        }
-      }
-    }
-    if (!rotated) break;
-  }
+  Eigen::Matrix3d r;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) r(i, k) = factor.r[i][k];
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(r, Eigen::ComputeFullV);
   std::vector<RigidMotion> basis;
   for (int c = 0; c < 3; ++c) {
-    if (std::sqrt(product(a[c], a[c])) <= tolerance) basis.push_back({{v[c][0], v[c][1]}, v[c][2]});
+    const Eigen::Vector3d v = svd.matrixV().col(c);
+    if (svd.singularValues()[c] <= tolerance) basis.push_back({{v[0], v[1]}, v[2]});
   }
   return basis;
 }

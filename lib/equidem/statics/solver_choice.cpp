@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
@@ -22,33 +23,20 @@
 namespace equidem {
 namespace {
 
-constexpr double suspicious = 1e-9;  // share of a stiffness left when all others have given way
+constexpr double suspicious = 1e-9;  // ratio of a pivot to its diagonal entry of K
 
 constexpr double enough_digits = 1e11;  // springs further apart leave too few of the digits of a double
 
 /// Discs across the shorter side of a rectangle around the sample.
 double discs_across(const Assembly& assembly) {
-  Vec2 extent;
-  if (assembly.periodic()) {
-    extent = *assembly.period;
-  } else {
-    Vec2 low = assembly.centres.front(), high = low;
-    for (const Vec2 x : assembly.centres) {
-      low = {std::min(low.x, x.x), std::min(low.y, x.y)};
-      high = {std::max(high.x, x.x), std::max(high.y, x.y)};
-    }
-    extent = high - low;
-  }
+  const auto [low, high] = assembly.period ? Rectangle{{}, *assembly.period} : upright_rectangle(assembly.centres);
+  const Vec2 extent = high - low;
   const double longer = std::max(extent.x, extent.y), shorter = std::min(extent.x, extent.y);
   return std::max(2.0, std::sqrt(static_cast<double>(assembly.size()) * shorter / longer));
 }
 
 bool costs_no_energy(const System& system, const ContactSprings& springs, const std::vector<double>& motion) {
   return std::abs(softness(system.k.assembly, springs, disc_motions(system.unknowns, motion))) < softness_of_mechanisms;
-}
-
-bool costs_no_energy(const System& system, const std::vector<double>& motion) {
-  return costs_no_energy(system, system.springs, motion);
 }
 
 /// Whether the negative energy of springs with kT < 0 nearly cancels that of the others.
@@ -106,7 +94,7 @@ namespace {
 bool is_mechanism(const System& system, const Factorization& factor) {
   if (factor.report().smallest_pivot > suspicious) return false;
   const std::vector<double> softest = factor.softest_motion();
-  return !softest.empty() && costs_no_energy(system, softest);
+  return !softest.empty() && costs_no_energy(system, system.springs, softest);
 }
 
 /// Unknowns may be held only against true zero-energy modes, even where springs differ by many orders of magnitude.

@@ -411,11 +411,6 @@ ContactMotion StiffnessSolver::contact_motion(const RightHandSide& given, const 
   return motion_of({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, contact);
 }
 
-ContactDeformation StiffnessSolver::deformation(const RightHandSide& given, const PreciseMotion& motion,
-                                                std::size_t contact) const {
-  return deformation_of({assembly_, graph_, springs_, unknowns_}, motion, given.gradient, contact);
-}
-
 double StiffnessSolver::twice_energy(std::span<const double> x) const {
   return 2 * elastic_energy(assembly_, springs_, disc_motions(unknowns_, x));
 }

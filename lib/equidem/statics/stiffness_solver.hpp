@@ -75,9 +75,6 @@ class StiffnessSolver {
   /// Deformation of a contact, that by the mean strain included, and the rotations of its discs.
   [[nodiscard]] ContactMotion contact_motion(const RightHandSide& given, const PreciseMotion& motion,
                                              std::size_t contact) const;
-  /// Deformation of a contact, that by the mean strain included.
-  [[nodiscard]] ContactDeformation deformation(const RightHandSide& given, const PreciseMotion& motion,
-                                               std::size_t contact) const;
   /// By inverse iteration from `start` (empty: from a fixed rough vector), which finds the softest motion that
   /// `start` has a part in.
   [[nodiscard]] SoftestMotion softest_motion(std::span<const double> start = {}) const;

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <utility>
 
+#include <boost/math/tools/minima.hpp>
+
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
@@ -174,25 +176,17 @@ class LongWavePencil {
     const AcousticTensor tensor = at(ratio);
     const auto f = [&](double angle) { return smallest_eigenvalue(tensor.along(angle), ratio); };
     constexpr int grid = 180;  // A is a quadratic form in n
-    constexpr double step = std::numbers::pi / grid, golden = 0.6180339887498949;
+    constexpr double step = std::numbers::pi / grid;
     int best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < grid; ++k) {
       const double value = f(k * step);
       if (value < least) least = value, best = k;
     }
-    double low = (best - 1) * step, high = (best + 1) * step, angle = best * step;
-    double p = high - golden * (high - low), q = low + golden * (high - low), at_p = f(p), at_q = f(q);
-    while (high - low > 1e-9) {
-      if (at_p < at_q) {
-        high = q, q = p, at_q = at_p, p = high - golden * (high - low), at_p = f(p);
-      } else {
-        low = p, p = q, at_p = at_q, q = low + golden * (high - low), at_q = f(q);
-      }
-    }
-    const double middle = 0.5 * (low + high), there = f(middle);
-    if (there < least) least = there, angle = middle;
-    return {least / scale_, angle};
+    constexpr int bits = 26;  // half of the digits: more of the place of a minimum are not to be had
+    const auto [angle, there] = boost::math::tools::brent_find_minima(f, (best - 1) * step, (best + 1) * step, bits);
+    if (!(there < least)) return {least / scale_, best * step};
+    return {there / scale_, angle};
   }
 
   [[nodiscard]] bool empty() const { return translations_ == 0 || scale_ == 0; }

@@ -9,7 +9,6 @@
 #include <span>
 #include <utility>
 
-#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
@@ -26,13 +25,13 @@ constexpr std::size_t most_null = 60;  // zero-energy modes that are left out of
 /// A = M^-1/2 K M^-1/2 over discs x block components, with rows and columns of zeros where components are held.
 class VibrationOperator {
  public:
-  VibrationOperator(const SpringNetwork& network, const std::vector<Inertia>& inertia)
-      : network_(network), b_(static_cast<std::size_t>(network.unknowns.per_disc)) {
+  VibrationOperator(const SpringNetwork& network, const std::vector<Inertia>& inertia) : network_(network) {
+    const auto b = static_cast<std::size_t>(network.unknowns.per_disc);
     const double a = network.unknowns.rotation_scale;
     over_root_mass_.resize(network.unknowns.held.size());
     for (std::size_t k = 0; k < over_root_mass_.size(); ++k) {
-      const Inertia& body = inertia[k / b_];
-      const double mass = k % b_ == 2 ? body.moment / (a * a) : body.mass;
+      const Inertia& body = inertia[k / b];
+      const double mass = k % b == 2 ? body.moment / (a * a) : body.mass;
       over_root_mass_[k] = network.unknowns.held[k] != 0 ? 0 : 1 / std::sqrt(mass);
     }
   }
@@ -43,53 +42,16 @@ class VibrationOperator {
   /// Forces come from stretch and slip of contacts, whose differences of motions keep the digits of soft motions.
   /// \param x vectors, one after another
   void multiply(std::span<const double> x, std::span<double> y) const {
-    constexpr std::size_t discs_at_once = 1 << 10;
-    parallel_ranges(network_.assembly.size(), discs_at_once, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t d = begin; d < end; ++d) multiply_disc(d, x, y);
-    });
-  }
-
- private:
-  [[nodiscard]] double motion(std::span<const double> x, std::size_t component) const {
-    return over_root_mass_[component] * x[component];
-  }
-
-  void multiply_disc(std::size_t d, std::span<const double> x, std::span<double> y) const {
-    const auto& [assembly, graph, springs, unknowns] = network_;
-    const double over_scale = 1 / unknowns.rotation_scale;
-    for (std::size_t first = 0; first < x.size(); first += size()) std::fill_n(&y[first + d * b_], b_, 0.0);
-    for (const auto& edge : graph.of(d)) {
-      const auto contact = static_cast<std::size_t>(edge.contact);
-      const Contact& ends = assembly.contacts[contact];
-      const std::size_t i = static_cast<std::size_t>(ends.i) * b_, j = static_cast<std::size_t>(ends.j) * b_;
-      const ContactFrame frame = frame_of(assembly, contact);
-      for (std::size_t first = 0; first < x.size(); first += size()) {
-        const auto u = x.subspan(first, size());
-        double turn = 0, opening = 0, bending = 0;
-        if (b_ == 3) {
-          const double of_i = motion(u, i + 2) * over_scale, of_j = motion(u, j + 2) * over_scale;
-          turn = frame.lever_i * of_i + frame.lever_j * of_j;
-          opening = frame.offset_i * of_i + frame.offset_j * of_j;
-          if (springs.bends()) bending = bending_moment(springs.bending(contact), of_i, of_j);
-        }
-        const auto stretch =
-            deformation(frame, motion(u, j) - motion(u, i), motion(u, j + 1) - motion(u, i + 1), turn, opening);
-        const ContactForce force = linear_spring_force(springs[contact], stretch);
-        const Vec2 on_i = force_on_i(frame, force);
-        const auto add = [&](double sign, double moment) {
-          double* const row = &y[first + d * b_];
-          row[0] -= sign * on_i.x * over_root_mass_[d * b_];
-          row[1] -= sign * on_i.y * over_root_mass_[d * b_ + 1];
-          if (b_ == 3) row[2] -= moment * over_scale * over_root_mass_[d * b_ + 2];
-        };
-        if (i == d * b_) add(1, moment_on_i(frame, force) + bending);
-        if (j == d * b_) add(-1, moment_on_j(frame, force) - bending);
-      }
+    PreciseMotion motion(size());
+    for (std::size_t first = 0; first < x.size(); first += size()) {
+      for (std::size_t k = 0; k < size(); ++k) motion.high[k] = over_root_mass_[k] * x[first + k];
+      internal_force(network_, motion, {}, y.subspan(first, size()));
+      for (std::size_t k = 0; k < size(); ++k) y[first + k] *= over_root_mass_[k];
     }
   }
 
+ private:
   const SpringNetwork& network_;
-  std::size_t b_;
   std::vector<double> over_root_mass_;  // 0 where held
 };
 

@@ -84,33 +84,22 @@ double element_bound(const Assembly& assembly, const ContactSprings& springs, co
   for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
     const Contact& contact = assembly.contacts[c];
     const Inertia &i = inertia[contact.i], &j = inertia[contact.j];
-    const double translation = z[contact.i] / i.mass + z[contact.j] / j.mass;
-    double slip = translation;
-    if (rotation) {
-      slip += z[contact.i] * contact.lever_i * contact.lever_i / i.moment +
-              z[contact.j] * contact.lever_j * contact.lever_j / j.moment;
-    }
+    InverseInertia of_i{z[contact.i] / i.mass, z[contact.i] / i.moment};
+    InverseInertia of_j{z[contact.j] / j.mass, z[contact.j] / j.moment};
+    if (!rotation) of_i.moment = of_j.moment = 0;
     const ContactFrame frame = frame_of(assembly, c);
-    const double kM = rotation ? springs.bending(c) : 0;
-    if (rotation && (frame.offset_i != 0 || frame.offset_j != 0)) {
-      const double of_i = z[contact.i] / i.moment, of_j = z[contact.j] / j.moment;
-      const double stretch =
-          translation + of_i * frame.offset_i * frame.offset_i + of_j * frame.offset_j * frame.offset_j;
-      const double both = of_i * frame.offset_i * frame.lever_i + of_j * frame.offset_j * frame.lever_j;
-      const double kN = springs[c].kN, kT = std::max(springs[c].kT, 0.0);
-      const double middle = 0.5 * (kN * stretch + kT * slip);
-      bound = std::max(bound, middle +
-                                  std::sqrt(std::max(0.0, middle * middle - kN * kT * (stretch * slip - both * both))) +
-                                  kM * (of_i + of_j));
+    const double kN = springs[c].kN, kT = std::max(springs[c].kT, 0.0), kM = rotation ? springs.bending(c) : 0;
+    if (frame.offset_i == 0 && frame.offset_j == 0) {
+      bound = std::max(bound, largest_bond_rate({kN, kT, kM}, frame, of_i, of_j));
       continue;
     }
-    if (kM > 0) {
-      bound = std::max(bound, largest_bond_rate({springs[c].kN, springs[c].kT, kM}, frame,
-                                                {z[contact.i] / i.mass, z[contact.i] / i.moment},
-                                                {z[contact.j] / j.mass, z[contact.j] / j.moment}));
-      continue;
-    }
-    bound = std::max({bound, springs[c].kN * translation, springs[c].kT * slip});
+    const BondModes inverse = bond_inverse_masses(frame, of_i, of_j);
+    const double stretch =
+        inverse.normal + of_i.moment * frame.offset_i * frame.offset_i + of_j.moment * frame.offset_j * frame.offset_j;
+    const double both = of_i.moment * frame.offset_i * frame.lever_i + of_j.moment * frame.offset_j * frame.lever_j;
+    const double middle = 0.5 * (kN * stretch + kT * inverse.tangential);
+    const double coupled = middle * middle - kN * kT * (stretch * inverse.tangential - both * both);
+    bound = std::max(bound, middle + std::sqrt(std::max(0.0, coupled)) + kM * inverse.rolling);
   }
   return bound;
 }

@@ -17,9 +17,8 @@
 #include "equidem/output/results.hpp"
 
 #include "bench.hpp"
-#include "machine.hpp"
+#include "command.hpp"
 #include "measurement.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -205,10 +204,11 @@ void run(Report& report, const Request& request) {
     }
   }
   if (request.json_file.empty()) return;
-  const Machine machine = this_machine();
-  write(
-      request.json_file,
-      Results().set("version", machine.version).set("machine", machine.text()).set("comparisons", comparisons).json());
+  write(request.json_file, Results()
+                               .set("version", library_version())
+                               .set("machine", machine_text())
+                               .set("comparisons", comparisons)
+                               .json());
 }
 
 void touch_memory(double bytes) {

@@ -8,7 +8,7 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/motion_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"

@@ -21,17 +21,11 @@
 
 namespace equidem {
 
-/// One [[stage]].
-struct StageCase {
-  std::string name;
-  std::optional<double> duration;     ///< s; with an end its limit
-  std::optional<std::int64_t> steps;  ///< instead
-  StageEnd end;
-  StageBodies bodies;
-  std::vector<WallRenaming> renamed_walls;
-  std::optional<StageBonds> bonds;
-  /// As GrainStage::scene; `pairs` is not set. Its bodies are all that the run may have until then, with every group.
-  GrainScene scene;
+/// One [[stage]]. The scene has all bodies that the run may have until then, with every group; build_grain_stages sets
+/// its pairs and the number of steps.
+struct StageCase : GrainStage {
+  std::optional<double> duration;           ///< s; with an end its limit
+  std::optional<std::int64_t> given_steps;  ///< instead
   ContactTable contacts;
   std::optional<Shaking> shaking;  ///< from the start of the stage; also set in the walls
 };

@@ -16,13 +16,6 @@
 namespace equidem {
 namespace {
 
-double bulk_part(const Matrix3& c) {
-  return (c[0][0] + c[1][1] + 2 * c[0][1]) / 4;
-}
-double shear_part(const Matrix3& c) {
-  return (c[0][0] + c[1][1] - 2 * c[0][1] + 4 * c[2][2]) / 8;
-}
-
 /// Boundary::periodic is taken as displacement where the assembly is not periodic.
 HomogenizeOptions homogenize_options(const Assembly& assembly, const CalibrateOptions& options) {
   HomogenizeOptions result = options.homogenize;
@@ -71,8 +64,8 @@ class Homogenizer {
       return {.ratio = ratio, .stable = false};
     }
     times_.add(last_.times);
-    const double K = bulk_part(last_.stiffness), G = shear_part(last_.stiffness);
-    const double K_T = bulk_part(last_.tangential_part), G_T = shear_part(last_.tangential_part);
+    const auto [K, G] = isotropic_part(last_.stiffness);
+    const auto [K_T, G_T] = isotropic_part(last_.tangential_part);
     return {.ratio = ratio,
             .shear_to_bulk = G / K,
             .slope = (G_T * K - G * K_T) / (ratio * K * K),
@@ -202,7 +195,7 @@ Calibration search(const Assembly& assembly, const ElasticModuli& target, const 
       refuse_outside(target, range, below_zero && !options.static_only);
     });
   }
-  homogenizer.deliver(target.shear_modulus / shear_part(homogenizer.last().stiffness), result);
+  homogenizer.deliver(target.shear_modulus / isotropic_part(homogenizer.last().stiffness).shear, result);
   result.smallest_shear_to_bulk = range.least;
   result.largest_shear_to_bulk = range.greatest;
   result.method = "search on kT/kN";
@@ -303,7 +296,7 @@ std::optional<MeanFieldGuess> mean_field_guess(const Assembly& assembly, const E
     if (c.unstable_modes == 0) {
       guess.moduli = effective_moduli(c.stiffness);
     } else {
-      guess.missing = "with them this assembly gives way";
+      guess.missing = "the assembly is unstable with these springs";
     }
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::interrupted) throw;

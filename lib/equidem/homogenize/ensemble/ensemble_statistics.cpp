@@ -4,7 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 
 namespace equidem {
 namespace {
@@ -13,22 +15,14 @@ namespace {
 constexpr double round_off = 1e-11;
 
 /// Mean and variance of ln(s / sigma), s the standard deviation of nu + 1 normal samples: (psi(nu/2) - ln(nu/2))/2 and
-/// psi'(nu/2)/4, psi the digamma function, from psi(x + 1) = psi(x) + 1/x.
+/// psi'(nu/2)/4, psi the digamma function.
 struct LogScatter {
   double mean;
   double variance;
 };
 LogScatter log_scatter(std::int64_t nu) {
-  constexpr double pi = std::numbers::pi, gamma = std::numbers::egamma;
-  const bool odd = nu % 2 != 0;
-  double digamma = odd ? -gamma - 2 * std::numbers::ln2 : -gamma;
-  double trigamma = odd ? pi * pi / 2 : pi * pi / 6;
   const double half = static_cast<double>(nu) / 2;
-  for (double x = odd ? 0.5 : 1; x < half; x += 1) {
-    digamma += 1 / x;
-    trigamma -= 1 / (x * x);
-  }
-  return {(digamma - std::log(half)) / 2, trigamma / 4};
+  return {(boost::math::digamma(half) - std::log(half)) / 2, boost::math::trigamma(half) / 4};
 }
 
 /// Sizes at which one quantity scatters.

@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/linear/kernels/panel_change.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "equidem/linear/kernels/panel_solve.hpp"
 
 #define EQUIDEM_INLINE inline __attribute__((always_inline))
 
 namespace equidem {
 namespace {
 
-template <std::size_t Bytes>
-struct Wide {
-  typedef double Vector __attribute__((vector_size(Bytes)));  // NOLINT(modernize-use-using): attribute of a typedef
-  static constexpr std::size_t width = Bytes / sizeof(double);
-
-  static EQUIDEM_INLINE Vector load(const double* from) {
-    Vector v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
-  }
-  static EQUIDEM_INLINE void store(double* to, const Vector& v) { std::memcpy(to, &v, sizeof v); }
-};
+constexpr std::size_t width = sizeof(PanelLanes) / sizeof(double);
 
 /// A vector w of sign +-1 and a column l of L: l := shrink l + lift w, then w := grow w - part l.
 struct Turn {
@@ -45,9 +34,8 @@ EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffne
 }
 
 /// Pivots [p, p + N) with K vectors and C right-hand sides.
-template <std::size_t Bytes, std::size_t N, std::size_t K, std::size_t C>
+template <std::size_t N, std::size_t K, std::size_t C>
 EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, PanelChangeResult& result) {
-  using Lanes = Wide<Bytes>;
   const std::size_t ld = change.rows;
   double* a = change.values + p * ld;
   double* const w = change.vectors;
@@ -76,23 +64,23 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
     }
   }
   std::size_t r = p + N;
-  for (; r + Lanes::width <= ld; r += Lanes::width) {
-    typename Lanes::Vector v[K], right[C + 1];
-    for (std::size_t k = 0; k < K; ++k) v[k] = Lanes::load(w + k * ld + r);
-    for (std::size_t c = 0; c < C; ++c) right[c] = Lanes::load(b + c * ld + r);
+  for (; r + width <= ld; r += width) {
+    PanelLanes v[K], right[C + 1];
+    for (std::size_t k = 0; k < K; ++k) v[k] = load_lanes(w + k * ld + r);
+    for (std::size_t c = 0; c < C; ++c) right[c] = load_lanes(b + c * ld + r);
     for (std::size_t j = 0; j < N; ++j) {
-      typename Lanes::Vector l = Lanes::load(a + j * ld + r);
+      PanelLanes l = load_lanes(a + j * ld + r);
       __builtin_prefetch(a + (j + 2 * N) * ld + r, 1);
       for (std::size_t k = 0; k < K; ++k) {
         const Turn& turn = turns[j][k];
         l = turn.shrink * l + turn.lift * v[k];
         v[k] = turn.grow * v[k] - turn.part * l;
       }
-      Lanes::store(a + j * ld + r, l);
+      store_lanes(a + j * ld + r, l);
       for (std::size_t c = 0; c < C; ++c) right[c] -= l * y[j][c];
     }
-    for (std::size_t k = 0; k < K; ++k) Lanes::store(w + k * ld + r, v[k]);
-    for (std::size_t c = 0; c < C; ++c) Lanes::store(b + c * ld + r, right[c]);
+    for (std::size_t k = 0; k < K; ++k) store_lanes(w + k * ld + r, v[k]);
+    for (std::size_t c = 0; c < C; ++c) store_lanes(b + c * ld + r, right[c]);
   }
   for (; r < ld; ++r) {
     for (std::size_t j = 0; j < N; ++j) {
@@ -109,35 +97,34 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
   }
 }
 
-template <std::size_t Bytes, std::size_t K, std::size_t C>
+template <std::size_t K, std::size_t C>
 EQUIDEM_INLINE void change_all(const PanelChange& change, PanelChangeResult& result) {
   constexpr std::size_t at_once = 4;  // pivots
   std::size_t p = 0;
-  for (; p + at_once <= change.pivots; p += at_once) change_pivots<Bytes, at_once, K, C>(change, p, result);
-  for (; p < change.pivots; ++p) change_pivots<Bytes, 1, K, C>(change, p, result);
+  for (; p + at_once <= change.pivots; p += at_once) change_pivots<at_once, K, C>(change, p, result);
+  for (; p < change.pivots; ++p) change_pivots<1, K, C>(change, p, result);
 }
 
-template <std::size_t Bytes, std::size_t K>
+template <std::size_t K>
 EQUIDEM_INLINE void change_with(const PanelChange& change, PanelChangeResult& result) {
   switch (change.right_sides) {
     case 0:
-      return change_all<Bytes, K, 0>(change, result);
+      return change_all<K, 0>(change, result);
     case 1:
-      return change_all<Bytes, K, 1>(change, result);
+      return change_all<K, 1>(change, result);
     case 2:
-      return change_all<Bytes, K, 2>(change, result);
+      return change_all<K, 2>(change, result);
   }
 }
 
-template <std::size_t Bytes>
 EQUIDEM_INLINE void change_by(const PanelChange& change, PanelChangeResult& result) {
-  if (change.changes == 1) return change_with<Bytes, 1>(change, result);
-  change_with<Bytes, 2>(change, result);
+  if (change.changes == 1) return change_with<1>(change, result);
+  change_with<2>(change, result);
 }
 
 #if defined(__x86_64__)
 __attribute__((target("avx2,fma"))) void change_wide(const PanelChange& change, PanelChangeResult& result) {
-  change_by<32>(change, result);
+  change_by(change, result);
 }
 #endif
 
@@ -147,7 +134,7 @@ void change_panel(const PanelChange& change, PanelChangeResult& result) {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return change_wide(change, result);
 #endif
-  change_by<32>(change, result);
+  change_by(change, result);
 }
 
 }  // namespace equidem

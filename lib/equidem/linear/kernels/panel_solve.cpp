@@ -10,19 +10,8 @@
 namespace equidem {
 namespace {
 
-/// 32 bytes of numbers: two vectors where the processor has only those of 16.
-typedef double Vector __attribute__((vector_size(32)));  // NOLINT(modernize-use-using): attribute of a typedef
+using Vector = PanelLanes;
 constexpr std::size_t width = 4;
-
-EQUIDEM_INLINE Vector load(const double* from) {
-  Vector v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
-
-EQUIDEM_INLINE void store(double* to, const Vector& v) {
-  std::memcpy(to, &v, sizeof v);
-}
 
 /// Sums over the lanes of each of N vectors.
 template <std::size_t N>
@@ -71,13 +60,13 @@ EQUIDEM_INLINE void eliminate(const Panel& panel, std::size_t p, double* w) {
   for (; r + width <= ld; r += width) {
     Vector l[N];
     for (std::size_t j = 0; j < N; ++j) {
-      l[j] = load(a + j * ld + r);
+      l[j] = load_lanes(a + j * ld + r);
       __builtin_prefetch(a + (j + 2 * N) * ld + r);
     }
     for (std::size_t c = 0; c < C; ++c) {
-      Vector v = load(w + c * ld + r);
+      Vector v = load_lanes(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) v -= l[j] * y[c][j];
-      store(w + c * ld + r, v);
+      store_lanes(w + c * ld + r, v);
     }
   }
   for (; r < ld; ++r) {
@@ -104,11 +93,11 @@ EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, con
   for (; r + width <= ld; r += width) {
     Vector l[N];
     for (std::size_t j = 0; j < N; ++j) {
-      l[j] = load(a + j * ld + r);
+      l[j] = load_lanes(a + j * ld + r);
       __builtin_prefetch(a + j * ld + r - 2 * N * ld);
     }
     for (std::size_t c = 0; c < C; ++c) {
-      const Vector v = load(w + c * ld + r);
+      const Vector v = load_lanes(w + c * ld + r);
       for (std::size_t j = 0; j < N; ++j) sums[c][j] += l[j] * v;
     }
   }
@@ -121,7 +110,7 @@ EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, con
   }
   if (before != nullptr) {
     for (std::size_t j = 0; j < N; ++j) {
-      const Vector l = load(a + j * ld + first);
+      const Vector l = load_lanes(a + j * ld + first);
       for (std::size_t c = 0; c < C; ++c) sums[c][j] += l * before[c];
     }
   }
@@ -139,7 +128,7 @@ EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, con
     }
     if constexpr (N == width) {
       for (std::size_t j = 0; j < N; ++j) found[c][j] = x[j];
-      store(column + p, found[c]);
+      store_lanes(column + p, found[c]);
     } else {
       for (std::size_t j = 0; j < N; ++j) column[p + j] = x[j];
     }

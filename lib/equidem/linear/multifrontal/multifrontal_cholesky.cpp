@@ -187,11 +187,9 @@ void CholeskyFactor::backward(std::size_t t, const Columns& y) const {
 }
 
 std::unique_ptr<Factorization> multifrontal_cholesky(std::shared_ptr<const SymbolicFactor> symbolic,
-                                                     const MatrixOnGraph& matrix, FactorReport* report) {
+                                                     const MatrixOnGraph& matrix) {
   auto factor = std::make_unique<CholeskyFactor>(std::move(symbolic));
-  const bool positive = factor->factorize(matrix);
-  if (report != nullptr) *report = factor->report();
-  if (!positive) return nullptr;
+  if (!factor->factorize(matrix)) return nullptr;
   return factor;
 }
 

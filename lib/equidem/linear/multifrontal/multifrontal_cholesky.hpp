@@ -61,9 +61,8 @@ class CholeskyFactor final : public Factorization {
 };
 
 /// K = L L^T (Duff & Reid 1983), subtrees on separate threads, large fronts in tiles; the same bits for every number
-/// of threads. Returns a null pointer where K is not positive definite to working precision; `report`, where given,
-/// contains the place.
+/// of threads. Returns a null pointer where K is not positive definite to working precision.
 std::unique_ptr<Factorization> multifrontal_cholesky(std::shared_ptr<const SymbolicFactor> symbolic,
-                                                     const MatrixOnGraph& matrix, FactorReport* report = nullptr);
+                                                     const MatrixOnGraph& matrix);
 
 }  // namespace equidem
