@@ -142,7 +142,9 @@ TEST_CASE("who_asks_for_it_may_let_bodies_pass") {
 }
 
 TEST_CASE("a_motion_that_is_no_number_is_refused") {
-  GrainScene scene = scene_of({ball({0, 0.9}, 1, {0, 0})}, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e308});
+  const auto bodies =
+      GENERATE(std::vector{ball({0, 0.9}, 1, {0, 0})}, std::vector{ball({0, 2}, 1, {0, 0}), ball({0, 3.9}, 1, {0, 0})});
+  GrainScene scene = scene_of(bodies, {line("floor", {0, 0}, {0, 1})}, {.stiffness = 1e308});
   GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e10));
   CHECK_THROWS_WITH(simulation.advance(2), Catch::Contains("step 0"));
   CHECK(simulation.step() == 0);
