@@ -143,7 +143,8 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
   }
   Results all = solve_results(p.problem, part_problem_results(ranks, p), results);
   all.append(rank_results(ranks, network, before));
-  deliver_of_ranks(ranks, options, p, results.front().status(), std::move(all), std::move(times));
+  deliver_of_ranks(ranks, options, p, status_of(results.front().equilibrium.unstable_modes), std::move(all),
+                   std::move(times));
 }
 
 constexpr std::array strain_states{"state_strain_xx", "state_strain_yy", "state_strain_xy"};
@@ -198,7 +199,7 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
                                     {}, relation_of_all(p));
   all.set("strain_of_states", strain_of_states);
   all.append(rank_results(ranks, network, before));
-  deliver_of_ranks(ranks, options, p, status_of(result), std::move(all), std::move(times));
+  deliver_of_ranks(ranks, options, p, status_of(result.unstable_modes), std::move(all), std::move(times));
 }
 
 template <void (*verb)(const petsc::Ranks&, const CommonOptions&)>
