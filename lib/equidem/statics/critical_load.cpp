@@ -69,11 +69,12 @@ class LoadPencil final : public StiffnessPencil {
   [[nodiscard]] StiffnessMatrix stiffness(double factor) const override {
     return assemble_stiffness(assembly_, graph_, springs_.with_prestress(springs_.scaled_prestress(factor)), unknowns_);
   }
-  [[nodiscard]] StiffnessMatrix slope() const override {
+  [[nodiscard]] StiffnessMatrix slope(const StiffnessMatrix&) const override {
     return assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
   }
   /// Energies are summed over contacts: in x.K x of a slender assembly the digits of its stretch would be lost.
-  [[nodiscard]] double quotient(const StiffnessMatrix&, const std::vector<double>& x) const override {
+  [[nodiscard]] double quotient(const StiffnessMatrix&, const StiffnessMatrix&,
+                                const std::vector<double>& x) const override {
     const std::vector<DiscMotion> motions = disc_motions(unknowns_, x);
     return -elastic_energy(assembly_, unstressed_, motions) / elastic_energy(assembly_, weightless_, motions);
   }
