@@ -8,7 +8,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/contact/bending.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/dynamics/relaxation.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"

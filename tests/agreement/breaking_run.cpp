@@ -10,9 +10,9 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/breakage/avalanches.hpp"
 #include "equidem/breakage/breakage_run.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/statics/equilibrium.hpp"
 #include "equidem/waves/natural_frequencies.hpp"
 

@@ -33,7 +33,8 @@ double difference_of_forces(const HeldDiscs& held, Unbonded& statics, const Slow
   double difference = 0, largest = 0;
   for (std::size_t c = 0; c < held.bodies.size(); ++c) {
     const auto found = moved.find(held.bodies[c]);
-    const ContactForce f = statics.run().state().forces()[c], g = found == moved.end() ? ContactForce{} : found->second;
+    const ContactForce f = statics.run().contact_state().forces()[c],
+                       g = found == moved.end() ? ContactForce{} : found->second;
     largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
     difference = std::max({difference, std::abs(f.normal - g.normal), std::abs(f.tangential - g.tangential)});
   }
@@ -78,7 +79,7 @@ TEST_CASE("discs_under_a_dead_weight_that_are_sheared_then_carry_the_forces_of_s
   const double difference = difference_of_forces(held, statics, slow.forces());
   CAPTURE(difference, statics.run().why(), statics.events().size());
   CHECK(statics.run().end() == PathEnd::legs_done);
-  CHECK(statics.run().state().dead() == 1);
+  CHECK(statics.run().contact_state().dead() == 1);
   CHECK(difference < 0.004);
   // The other order leads elsewhere.
   SlowGrains other(discs, box, {}, 8000);
@@ -99,7 +100,7 @@ TEST_CASE("a_disc_on_two_others_leaves_them_in_motion_at_the_share_of_the_dead_l
   const HeldDiscs held = held_discs(slow.packing(), 1e-3, {});
   Unbonded statics = under_gravity(held, {{}, {across, 0}});
   statics.all();
-  const double share = statics.run().state().dead();
+  const double share = statics.run().contact_state().dead();
   CAPTURE(share, statics.run().why(), statics.events().size());
   CHECK(statics.run().end() == PathEnd::load_moves_part);
   CHECK(share == Approx(g * std::tan(std::acos(-1.0) / 6) / across).epsilon(1e-3));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/assembly/lattices/hexagonal.hpp"
-#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/core/text.hpp"
 
@@ -47,7 +47,7 @@ RubbingLevel level_of(const HeldDiscs& held, const Push& load, const std::vector
   level.ended = scene.run().end();
   level.why = scene.run().why();
   for (const BreakEvent& event : scene.events()) ++level.events[to_string(event.mode)];
-  const UnbondedState& state = scene.run().state();
+  const UnbondedState& state = scene.run().contact_state();
   double largest = 0;
   for (const ContactForce& f : state.forces())
     largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});

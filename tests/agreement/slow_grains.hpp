@@ -17,8 +17,9 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 #include "equidem/packing/size_distribution.hpp"
+
+#include "breakage/scenes.hpp"
 
 namespace equidem::test {
 

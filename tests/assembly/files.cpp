@@ -16,7 +16,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 #include "equidem/packing/packing.hpp"
 
 #include "support/catch.hpp"

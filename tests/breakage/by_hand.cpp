@@ -4,7 +4,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/avalanches.hpp"
-#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/core/error.hpp"
 
 #include "breakage/scenes.hpp"

@@ -65,14 +65,14 @@ TEST_CASE("a_moment_turns_a_disc_in_a_groove_where_friction_ends_on_both_of_its_
         borne.all();
         CAPTURE(angle, friction, times, borne.run().why());
         CHECK(borne.run().end() == PathEnd::legs_done);
-        CHECK(borne.run().state().dead() == 1);
+        CHECK(borne.run().contact_state().dead() == 1);
       }
       for (const double times : {1.1, -4.0, 1000.0}) {
         Unbonded turned = in_a_groove(angle, friction, {}, times * limit);
         turned.all();
         CAPTURE(angle, friction, times, turned.run().why());
         CHECK(not_carried(turned.run().end()));
-        CHECK(turned.run().state().dead() == Approx(1 / std::abs(times)).epsilon(1e-9));
+        CHECK(turned.run().contact_state().dead() == Approx(1 / std::abs(times)).epsilon(1e-9));
         CHECK(turned.run().lambda() == 0);
         CHECK_THAT(turned.run().why(), Catch::Contains(carried_share(1 / std::abs(times))));
         CHECK(turned.run().energy_error() < 1e-10);
@@ -92,7 +92,7 @@ TEST_CASE("a_disc_leaves_its_groove_where_the_force_on_it_points_at_its_lower_co
         tilted.all();
         CAPTURE(angle, friction, times, tilted.run().why(), tilted.events().size());
         CHECK(not_carried(tilted.run().end()));
-        CHECK(tilted.run().state().dead() == Approx(1 / std::abs(times)).epsilon(1e-9));
+        CHECK(tilted.run().contact_state().dead() == Approx(1 / std::abs(times)).epsilon(1e-9));
         CHECK_THAT(tilted.run().why(), Catch::Contains(carried_share(1 / std::abs(times))));
         Unbonded borne = in_a_groove(angle, friction, {0.95 * times / std::abs(times) * limit, 0}, 0);
         CHECK(borne.all().run().end() == PathEnd::legs_done);
@@ -114,7 +114,7 @@ TEST_CASE("contacts_that_rest_without_a_force_carry_no_part_of_a_dead_load_that_
     lifted.all();
     CAPTURE(friction, lifted.run().why());
     CHECK(not_carried(lifted.run().end()));
-    CHECK(lifted.run().state().dead() == 0);
+    CHECK(lifted.run().contact_state().dead() == 0);
     CHECK_THAT(lifted.run().why(), Catch::Contains("before any of the dead loads acts"));
   }
 }
@@ -137,7 +137,7 @@ TEST_CASE("a_dead_load_ends_where_slip_that_relieves_its_own_contact_leaves_no_c
                 {friction, {{-1, 0}, {0, 0}}});
   disc.all();
   CAPTURE(disc.run().why());
-  CHECK(disc.run().state().dead() == Approx(limit).epsilon(1e-9));
+  CHECK(disc.run().contact_state().dead() == Approx(limit).epsilon(1e-9));
   CHECK(disc.run().end() == PathEnd::no_answer);
   CHECK_THAT(disc.run().why(), Catch::Contains(fmt::format(
                                    "at {:.4g} % of the dead loads no consistent contact state found", 100 * limit)));

@@ -113,7 +113,7 @@ TEST_CASE("a_disc_pressed_into_a_groove_slips_on_both_sides_or_sticks_on_both_fr
         const double share =
             std::min(friction, friction > 0 ? tangential_stiffness / normal_stiffness * std::tan(slope) : 0);
         const double normal = -1 / (2 * (std::cos(slope) + share * std::sin(slope)));
-        for (const ContactForce& f : disc.run().state().forces()) {
+        for (const ContactForce& f : disc.run().contact_state().forces()) {
           CHECK(f.normal == Approx(normal).epsilon(1e-12));
           CHECK(std::abs(f.tangential) == Approx(-share * normal).epsilon(1e-12).margin(1e-15));
         }

@@ -7,7 +7,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/power_cells.hpp"
-#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/core/random.hpp"
 
 #include "breakage/unbonded_scenes.hpp"

@@ -87,7 +87,7 @@ TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
   for (const int rows : {4, 7}) {
     for (const double friction : {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 3.0, 10.0}) {
       Unbonded pressed = pressed_lattice(rows, friction, {1, 2, 0});
-      const UnbondedState& state = pressed.run().state();
+      const UnbondedState& state = pressed.run().contact_state();
       Way way(state.motion().high);
       bool back = false;
       double energy = 0;
@@ -97,14 +97,14 @@ TEST_CASE("lattices_without_bonds_carry_a_plate_that_presses_them") {
         const bool event_on_the_way_back = !pressed.events().empty() && pressed.events().back().leg == 2;
         if (!back && pressed.run().lambda() < 2 &&
             (event_on_the_way_back || pressed.run().end() == PathEnd::legs_done)) {
-          way.go_to(pressed_lattice(rows, friction, {1, 2}).all().run().state().motion().high);
+          way.go_to(pressed_lattice(rows, friction, {1, 2}).all().run().contact_state().motion().high);
           back = true;
         }
         way.go_to(state.motion().high);
-        const ContactLedger& l = state.ledger();
+        const PathLedger& l = state.ledger();
         energy = std::max({energy, std::abs(l.work), std::abs(l.elastic), std::abs(l.friction)});
         const double missing = std::abs(l.work - l.elastic - l.friction - l.released);
-        const double residual = pressed.run().counters().largest_residual;
+        const double residual = pressed.run().solver().largest_residual;
         const double unbalanced = residual * state.largest_force() * way.length();
         CAPTURE(rows, friction, steps, pressed.run().lambda(), missing, unbalanced, energy, residual);
         CHECK(residual < 1e-12);

@@ -108,7 +108,7 @@ inline ComparedPaths compare_forces(Unbonded& ours, DenseUnbonded& dense, std::s
     bool more = ours.run().advance();
     while (more && ours.run().releasing()) more = ours.run().advance();
     if (!more && ours.run().end() != PathEnd::legs_done && ours.events().size() == first) break;
-    const UnbondedState& state = ours.run().state();
+    const UnbondedState& state = ours.run().contact_state();
     if (!state.releasing().empty()) return stop(falling);
     const std::span fresh = std::span(ours.events()).subspan(first);
     const std::int64_t leg = !fresh.empty() ? fresh.back().leg : std::ssize(legs) - 1;

@@ -11,7 +11,7 @@
 
 namespace equidem::test {
 
-using MakeSystem = std::unique_ptr<BreakableSystem> (*)(BreakableNetwork network);
+using Factor = BreakableSystem::Factor;
 
 /// Everything that a run refers to.
 class OwnedScene {
@@ -46,15 +46,15 @@ class OwnedScene {
 class Broken : public OwnedScene {
  public:
   Broken(Assembly assembly, ContactSprings springs, ContactStrengths strengths, const LoadPathOptions& options,
-         Rotation rotation = Rotation::from_scene, MakeSystem make = make_breakable_system)
-      : OwnedScene(std::move(assembly), std::move(springs), std::move(strengths), options, rotation), make_(make) {
+         Rotation rotation = Rotation::from_scene, Factor factor = Factor::updated)
+      : OwnedScene(std::move(assembly), std::move(springs), std::move(strengths), options, rotation), factor_(factor) {
     begin();
   }
 
   /// Anew, unbroken.
   void begin() {
     run_.reset();
-    system_ = make_(breakable_network(scene(), effects(), supports()));
+    system_ = std::make_unique<BreakableSystem>(breakable_network(scene(), effects(), supports()), factor_);
     run_ = std::make_unique<BreakageRun>(scene(), *system_);
   }
 
@@ -70,7 +70,7 @@ class Broken : public OwnedScene {
   }
 
  private:
-  MakeSystem make_;
+  Factor factor_;
   std::unique_ptr<BreakableSystem> system_;
   std::unique_ptr<BreakageRun> run_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rule by which a path ends whose contacts change without end.
-#include "equidem/breakage/unbonded/standstill.hpp"
-
 #include <algorithm>
 #include <vector>
+
+#include "equidem/breakage/unbonded/contact_events.hpp"
 
 #include "support/catch.hpp"
 

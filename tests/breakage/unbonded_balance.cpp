@@ -28,7 +28,7 @@ class Imbalance {
 
   /// The largest component that is not balanced, N/m.
   [[nodiscard]] double largest() const {
-    const UnbondedState& state = path_.run().state();
+    const UnbondedState& state = path_.run().contact_state();
     const LoadPath& loads = path_.path();
     const std::vector<long double> inside = internal();
     long double most = 0;
@@ -43,7 +43,7 @@ class Imbalance {
   }
   [[nodiscard]] double largest_contact_force() const {
     double most = 0;
-    for (const ContactForce& f : path_.run().state().forces())
+    for (const ContactForce& f : path_.run().contact_state().forces())
       most = std::max({most, std::abs(f.normal), std::abs(f.tangential)});
     return most;
   }
@@ -52,7 +52,7 @@ class Imbalance {
   [[nodiscard]] std::vector<long double> internal() const {
     const Assembly& assembly = path_.assembly();
     const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-    const std::span<const ContactForce> forces = path_.run().state().forces();
+    const std::span<const ContactForce> forces = path_.run().contact_state().forces();
     std::vector<long double> sum(unknowns_.held.size(), 0);
     for (std::size_t c = 0; c < forces.size(); ++c) {
       const ContactFrame frame = frame_of(assembly, c);
@@ -87,7 +87,7 @@ TEST_CASE("forces_of_contacts_that_rub_balance_where_discs_move_far_and_hardly_a
     const Imbalance imbalance(path);
     double force = 0;
     for (int steps = 0; steps < 100 && path.run().advance(); ++steps) {
-      const UnbondedState& state = path.run().state();
+      const UnbondedState& state = path.run().contact_state();
       const double told = state.relative_residual(), found = imbalance.largest();
       force = std::max(force, imbalance.largest_contact_force());
       CAPTURE(d.name, steps, told, found, force);
@@ -100,7 +100,7 @@ TEST_CASE("forces_of_contacts_that_rub_balance_where_discs_move_far_and_hardly_a
       ++states;
     }
     CAPTURE(d.name, path.run().why());
-    CHECK(path.run().counters().largest_residual < 1e-12);
+    CHECK(path.run().solver().largest_residual < 1e-12);
     events += std::ssize(path.events());
   }
   CAPTURE(states, events, largest);
@@ -117,13 +117,13 @@ TEST_CASE("energies_of_contacts_that_rub_close_where_all_forces_were_round_off_o
   for (const std::uint64_t seed : {321, 4089, 4104, 5328, 1665, 4505}) {
     const DrawnPacking d = draw_packing(seed);
     Unbonded path(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
-    const UnbondedState& state = path.run().state();
+    const UnbondedState& state = path.run().contact_state();
     Way way(state.motion().high);
     double largest = 0, met = 0;
     bool more = true;
     for (int steps = 0; more && steps < 400; ++steps) {
       more = path.run().advance();
-      const ContactLedger& ledger = state.ledger();
+      const PathLedger& ledger = state.ledger();
       const double missing = ledger.missing(), before = way.length();
       way.go_to(state.motion().high);
       met += state.negligible_force() * (way.length() - before);
@@ -133,6 +133,6 @@ TEST_CASE("energies_of_contacts_that_rub_close_where_all_forces_were_round_off_o
     }
     CAPTURE(d.name, largest, path.run().why());
     CHECK(path.run().energy_error() < 1e-10);
-    CHECK(largest > path.run().state().ledger().negligible);
+    CHECK(largest > path.run().ledger().negligible);
   }
 }

@@ -82,7 +82,7 @@ TEST_CASE("a_load_below_the_limit_of_friction_goes_to_and_fro_without_slip") {
   disc.all();
   CHECK(disc.events().empty());
   CHECK(disc.run().end() == PathEnd::legs_done);
-  CHECK(disc.run().state().ledger().friction == 0);
+  CHECK(disc.run().ledger().friction == 0);
   CHECK(disc.run().energy_error() < 1e-12);
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("to_and_fro_a_contact_loses_the_area_of_its_loop") {
         std::vector<std::string>{"slip", "stick", "slip", "stick", "slip", "stick", "slip", "stick", "slip"});
   CHECK(disc.event(0).lambda == Approx(friction / (tangential_spring * amplitude)).epsilon(1e-12));
   CHECK(disc.event(2).lambda == Approx(1 - 2 * friction / (tangential_spring * amplitude)).epsilon(1e-12));
-  CHECK(disc.run().state().ledger().friction == Approx(friction * slip * (1 + 4 * 2)).epsilon(1e-12));
+  CHECK(disc.run().ledger().friction == Approx(friction * slip * (1 + 4 * 2)).epsilon(1e-12));
   CHECK(disc.event(8).friction - disc.event(4).friction == Approx(4 * friction * slip).epsilon(1e-12));
   CHECK(disc.run().energy_error() < 1e-12);
 }
@@ -162,13 +162,13 @@ TEST_CASE("loads_under_control_of_their_motion_fall_as_a_bond_lets_go") {
   const LegPoint end = pulled.run().leg_points()[1];
   CHECK(end.lambda == Approx(8).epsilon(1e-12));
   CHECK(end.motion == Approx(8 / normal_spring).epsilon(1e-12));
-  CHECK(pulled.run().state().ledger().released == Approx(tension * tension / (2 * normal_spring)).epsilon(1e-12));
+  CHECK(pulled.run().ledger().released == Approx(tension * tension / (2 * normal_spring)).epsilon(1e-12));
   CHECK(pulled.run().energy_error() < 1e-12);
   options.control = LoadControl::load;
   Unbonded held(chain, stiff_and_soft, strengths, options, {0.3, {}});
   held.all();
   // Where the load is held the energy of its further motion is released too.
-  CHECK(held.run().state().ledger().released == Approx(2 * tension * tension / (2 * normal_spring)).epsilon(1e-12));
+  CHECK(held.run().ledger().released == Approx(2 * tension * tension / (2 * normal_spring)).epsilon(1e-12));
 }
 
 TEST_CASE("the_gap_to_the_next_bond_is_one_of_lambda_whatever_leg_it_is_on") {
@@ -323,11 +323,11 @@ TEST_CASE("a_disc_between_two_bonds_almost_in_line_is_held_by_what_they_lack_to_
     Unbonded path(scene, ContactSprings(SpringConstants{normal_spring, 0}), equal_strengths(scene, 1e9, 1e9), options,
                   {0.3, {}});
     path.all();
-    CAPTURE(share, path.run().why(), path.run().state().relative_residual());
+    CAPTURE(share, path.run().why(), path.run().contact_state().relative_residual());
     CHECK(path.run().end() == PathEnd::legs_done);
-    CHECK(path.run().state().relative_residual() < 1e-12);
+    CHECK(path.run().contact_state().relative_residual() < 1e-12);
     const double along = 1e-9 / (2 * h / std::sqrt(1 + h * h));  // N of each bond balances half of the load
-    for (const ContactForce& f : path.run().state().forces()) CHECK(f.normal == Approx(-along).epsilon(1e-9));
+    for (const ContactForce& f : path.run().contact_state().forces()) CHECK(f.normal == Approx(-along).epsilon(1e-9));
   }
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("random_packings_open_close_slip_and_break_as_complementarity_by_dense
     CAPTURE(d.name, ours.run().why(), compared.way, compared.difference, compared.states, compared.events);
     const bool several = std::ranges::find(several_answers, seed) != std::end(several_answers);
     CHECK((several || compared.until != ComparedUntil::differs));
-    CHECK(ours.run().counters().largest_residual < 1e-12);
+    CHECK(ours.run().solver().largest_residual < 1e-12);
     CHECK(ours.run().energy_error() < 1e-10);
     for (std::size_t k = 0; k < compared.events; ++k) ++seen[to_string(ours.event(k).mode)];
     ++until[compared.until];
@@ -69,7 +69,7 @@ TEST_CASE("contacts_that_round_off_pulls_or_overlaps_open_and_close_and_the_path
   for (const std::uint64_t seed : {801, 3817, 4505, 24, 456, 1659, 2184, 3129, 3384, 3459}) {
     const DrawnPacking d = draw_packing(seed);
     Unbonded path(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);
-    const UnbondedState& state = path.run().state();
+    const UnbondedState& state = path.run().contact_state();
     while (path.run().advance()) {
       const double none = 10 * state.negligible_force();
       if (none > 4e-4 * state.largest_force()) continue;  // all forces are round-off
@@ -84,11 +84,11 @@ TEST_CASE("contacts_that_round_off_pulls_or_overlaps_open_and_close_and_the_path
         CHECK(std::abs(t) <= d.unbonded.friction * std::max(-n, 0.0) + none);
       }
     }
-    const ContactLedger& ledger = state.ledger();
+    const PathLedger& ledger = state.ledger();
     CAPTURE(d.name, path.run().why(), path.events().size(), ledger.missing(), ledger.largest, ledger.negligible);
     CHECK(path.run().end() == PathEnd::legs_done);
     CHECK(path.run().lambda() == Approx(2).epsilon(1e-15));
-    CHECK(path.run().counters().largest_residual < 1e-12);
+    CHECK(path.run().solver().largest_residual < 1e-12);
     CHECK(std::abs(ledger.missing()) <= 1e-12 * ledger.largest + 1e-5 * ledger.negligible);
     events += path.events().size();
   }

@@ -155,14 +155,14 @@ TEST_CASE("a_disc_that_is_left_on_one_bond_ends_no_path_however_the_scene_lies")
     const double angle = 0.1 + 2 * std::numbers::pi * k / 40;
     Unbonded path = s.at({"", std::cos(angle), std::sin(angle), 1, k % 2 == 1});
     REQUIRE(path.run().advance());
-    pressed = std::max(pressed, path.run().state().largest_force());
+    pressed = std::max(pressed, path.run().contact_state().largest_force());
     path.all();
     CAPTURE(k, angle, path.run().why(), path.events().size());
     REQUIRE(path.events().size() == 1);
     CHECK(path.event(0).contact == 2);
     CHECK(path.event(0).mode == BreakMode::tension);
     CHECK(path.run().end() == PathEnd::legs_done);
-    for (const ContactForce& f : path.run().state().forces())
+    for (const ContactForce& f : path.run().contact_state().forces())
       CHECK(std::max(std::abs(f.normal), std::abs(f.tangential)) < 1e-13);
     CHECK(path.run().loose() == std::vector<std::int32_t>{0});
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/names.hpp"
 
 #include "example.hpp"

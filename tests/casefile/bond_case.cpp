@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "equidem/casefile/assembly/strength_tables.hpp"
+#include "equidem/casefile/contact_tables.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/assembly/case_tables.hpp"
 #include "equidem/core/file.hpp"
 
 #include "example.hpp"

@@ -37,7 +37,7 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
   floor.normal = {0, 1};
   scene.walls = {floor};
   GrainOptions options;
-  if (!law.empty()) options.law = normal_law_from(law);
+  if (!law.empty()) options.law = enum_from<NormalLaw>(law);
   const ContactTable contacts = set_kinds(
       scene, {},
       {.bodies = {.stiffness = SpringStiffness{1e6}, .rebound = Restitution{0.8}, .closing_speed = 1, .friction = 0.3}},

@@ -8,7 +8,7 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"

@@ -5,7 +5,7 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
-#include "equidem/casefile/springs_table.hpp"
+#include "equidem/casefile/contact_tables.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"

@@ -310,10 +310,10 @@ TEST_CASE("every_normal_law_has_a_name_and_a_letter_of_its_own") {
   std::set<std::string> names, letters;
   for (const LawDescription& law : normal_laws()) {
     CAPTURE(law.name);
-    CHECK(normal_law_from(law.name) == law.law);
+    CHECK(enum_from<NormalLaw>(law.name) == law.law);
     CHECK(&describe(law.law) == &law);
     CHECK(names.insert(law.name).second);
     CHECK(letters.insert(std::string{law.letter}).second);
   }
-  CHECK_THROWS_WITH(normal_law_from("hooke"), Catch::Contains("linear_dashpot") && Catch::Contains("energy_map"));
+  CHECK_THROWS_WITH(enum_from<NormalLaw>("hooke"), Catch::Contains("linear_dashpot") && Catch::Contains("energy_map"));
 }

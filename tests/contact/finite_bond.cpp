@@ -11,10 +11,12 @@
 
 #include "equidem/core/random.hpp"
 
+#include "support/bond_rates.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 using std::numbers::pi;
 
 namespace {

@@ -9,7 +9,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"

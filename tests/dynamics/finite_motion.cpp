@@ -13,6 +13,7 @@
 
 #include "dynamics/loop_by_hand.hpp"
 #include "support/assemblies.hpp"
+#include "support/bond_rates.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
 

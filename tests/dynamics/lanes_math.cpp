@@ -2,8 +2,6 @@
 /// \file
 /// Root, angles and the short series of the loop against the standard library.
 
-#include "equidem/dynamics/kernels/lanes_math.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <numbers>
 
 #include "equidem/core/random.hpp"
+#include "equidem/dynamics/kernels/lanes.hpp"
 
 #include "support/catch.hpp"
 

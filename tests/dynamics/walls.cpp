@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/dynamics/walls.hpp"
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 #include "support/catch.hpp"
 
@@ -40,7 +39,7 @@ std::vector<Wall> box_around(const Assembly& assembly) {
 
 std::string refusal(const std::vector<Wall>& walls, const Assembly& assembly) {
   try {
-    check_walls(walls, assembly);
+    for (std::size_t k = 0; k < walls.size(); ++k) check_wall(walls, k, assembly);
   } catch (const Error& error) {
     return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
   }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/fields/coarse_fields.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "equidem/core/error.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 
 #include "fields/bodies.hpp"
@@ -83,7 +82,7 @@ TEST_CASE("cells_add_up_to_the_stress_of_the_whole_and_bodies_to_their_area") {
     contact.force = -(random.uniform(0, 5) * normal) + random.uniform(-1, 1) * perpendicular(normal);
     contacts.push_back(contact);
   }
-  const Region all{{-0.2, -0.2}, {1.2, 1.2}};
+  const Rectangle all{{-0.2, -0.2}, {1.2, 1.2}};
   const auto sum_of = [&](double width) {
     const CoarseFields fields = coarse_fields(bodies.grains, bodies.clumps, contacts, grid_over(all, width));
     std::vector<double> sum(5, 0.0);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "equidem/core/random.hpp"
-#include "equidem/fields/coarse_fields.hpp"
+#include "equidem/fields/box_measures.hpp"
 
 #include "support/catch.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "grains/bonded_scenes.hpp"
 #include "grains/cell_scenes.hpp"
-#include "grains/one_by_one.hpp"
 #include "grains/resuming.hpp"
 #include "grains/shapes.hpp"
 #include "support/catch.hpp"
@@ -18,6 +17,16 @@ using namespace equidem;
 using namespace equidem::test;
 
 namespace {
+
+double distance_of_motions(const GrainSimulation& a, const GrainSimulation& b) {
+  const std::vector<Grain> here = a.grains(), there = b.grains();
+  double largest = 0;
+  for (std::size_t k = 0; k < std::min(here.size(), there.size()); ++k) {
+    largest = std::max({largest, norm(here[k].position - there[k].position), norm(here[k].velocity - there[k].velocity),
+                        std::abs(here[k].spin - there[k].spin), std::abs(here[k].angle - there[k].angle)});
+  }
+  return largest;
+}
 
 /// Pairs of discs side by side, tied two by two, which fall on one another.
 GrainScene box_of_tied_pairs(const Stepping& stepping) {

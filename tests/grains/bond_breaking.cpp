@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "equidem/assembly/delaunay.hpp"
-#include "equidem/contact/bending.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/statics/equilibrium.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/waves/natural_frequencies.hpp"

@@ -4,8 +4,8 @@
 #include <map>
 
 #include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
-#include "equidem/grains/stages/unbalance.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "support/catch.hpp"

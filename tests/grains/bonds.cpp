@@ -5,10 +5,11 @@
 #include <set>
 #include <utility>
 
-#include "equidem/contact/viscous_bond.hpp"
+#include "equidem/contact/finite_bond.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 
 #include "grains/bonded_scenes.hpp"
+#include "support/bond_rates.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/scene/clipped_area.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "equidem/core/random.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "support/catch.hpp"
 
@@ -40,7 +39,7 @@ Moments below(const Clump::Disc& disc, long double side, long double a, long dou
 /// An oracle without arcs that are cut or cells: between the abscissas at which circles begin, end, cross each other or
 /// the region's sides, the same circles bound what a line x = const cuts; there the integrals are elementary. What
 /// rounding puts into a wrong order lies between two abscissas, or two heights, that differ by rounding.
-Moments moments_by_chords(const std::vector<Clump::Disc>& discs, const Region& region) {
+Moments moments_by_chords(const std::vector<Clump::Disc>& discs, const Rectangle& region) {
   std::vector<long double> cuts = {region.low.x, region.high.x};
   for (const Clump::Disc& disc : discs) {
     const long double x = disc.offset.x, y = disc.offset.y, r = disc.radius;
@@ -156,7 +155,7 @@ TEST_CASE("unions_of_discs_that_touch_nest_coincide_or_cross_in_one_point_have_t
     // Sides that touch discs, halve them, and others.
     const Clump::Disc& some = near[static_cast<std::size_t>(k) % near.size()];
     const double share = k % 3 == 0 ? some.radius : k % 3 == 1 ? 0.0 : random.uniform(-0.5, 0.5);
-    const Region region = {some.offset - Vec2{share, 1.1}, some.offset + Vec2{0.9, share}};
+    const Rectangle region = {some.offset - Vec2{share, 1.1}, some.offset + Vec2{0.9, share}};
     const double clipped = region.area() > 0 ? static_cast<double>(moments_by_chords(near, region).area) : 0;
     const double off_area = std::abs(whole.area - area) / area;
     const double off_centre = (norm(centre) - 1e-16 * norm(far)) / std::sqrt(area);
@@ -211,8 +210,8 @@ TEST_CASE("regions_that_tile_the_plane_share_every_body_between_them") {
     if (k % 3 == 1) grain.short_half_axis = 0.2;
     if (k % 3 == 2) grain.clump = 0;
     double sum = 0;
-    for (const Region& region :
-         {Region{{-2, -2}, {0, 0}}, Region{{0, -2}, {2, 0}}, Region{{-2, 0}, {0, 2}}, Region{{0, 0}, {2, 2}}})
+    for (const Rectangle& region : {Rectangle{{-2, -2}, {0, 0}}, Rectangle{{0, -2}, {2, 0}}, Rectangle{{-2, 0}, {0, 2}},
+                                    Rectangle{{0, 0}, {2, 2}}})
       sum += clipped_area(grain, clumps, region);
     CAPTURE(k, x);
     CHECK(sum == Approx(area_of(grain, clumps)).epsilon(1e-12));

@@ -9,7 +9,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/grains/scene/grain_time_step.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 
 #include "support/catch.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// A run that was saved goes on as if it had never stopped.
+#include <cmath>
+
 #include "grains/bonded_scenes.hpp"
 #include "grains/resuming.hpp"
 #include "support/catch.hpp"
@@ -68,4 +70,19 @@ TEST_CASE("a_state_of_another_scene_is_refused") {
   damaged["contacts"].push_back(1);
   CHECK_THROWS_AS(other.restore(damaged), Error);
   CHECK(bits_of(other) == before);
+}
+
+TEST_CASE("a_saved_contact_of_what_the_scene_lacks_is_refused") {
+  GrainSimulation simulation(busy_box(NormalLaw::linear_dashpot, 3, 3, 22),
+                             options_of(NormalLaw::linear_dashpot, 0.01));
+  simulation.advance(40);
+  const Bits before = bits_of(simulation);
+  REQUIRE(!simulation.save()["contacts"].empty());
+  for (const double body : {-1.0, 9.0, 0.5, 1e300, std::nan("")}) {
+    SavedState damaged = simulation.save();
+    damaged["contacts"][0] = body;
+    CAPTURE(body);
+    CHECK_THROWS_AS(simulation.restore(damaged), Error);
+    CHECK(bits_of(simulation) == before);
+  }
 }

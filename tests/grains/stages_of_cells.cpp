@@ -2,8 +2,8 @@
 /// \file
 /// Runs in stages in a periodic cell.
 #include "equidem/core/text.hpp"
+#include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
-#include "equidem/grains/stages/unbalance.hpp"
 
 #include "grains/cell_scenes.hpp"
 #include "support/catch.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/core/text.hpp"
 
 #include "breakage/scenes.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("contacts_without_strength_or_with_equal_strengths_break_in_order") {
   Broken none = plate_with(0, 0, 0.5);
   none.all();
   CHECK(std::ranges::all_of(none.events(), [](const BreakEvent& event) { return event.lambda == 0; }));
-  CHECK(none.run().released() == 0);
+  CHECK(none.run().ledger().released == 0);
   CHECK(none.run().end() == PathEnd::carries_nothing);
   table.note("quasistatic, strength 0", "all breaks at lambda 0", told(none.run()));
   const Assembly cell = hexagonal_lattice({.columns = 8, .rows = 8, .radius = 0.5, .periodic = true});

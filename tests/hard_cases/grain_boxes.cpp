@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/scene/bond_break.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/packing/packing.hpp"
 

@@ -122,7 +122,7 @@ TEST_CASE("one_grain_falls_rebounds_and_rests") {
     options.settling.springs = {1e7, 5e6};
     const GrainPacking packing = pack(options);
     REQUIRE(packing.size() == 1);
-    const Region all{{-1, -1}, {6, 6}};  // a bit of what fell is in the floor
+    const Rectangle all{{-1, -1}, {6, 6}};  // a bit of what fell is in the floor
     const double off = std::abs(measure(packing, all).solid_fraction * all.area() / std::numbers::pi - 1);
     CAPTURE(entry.name, off, packing.settling.unbalanced);
     CHECK(off < 1e-12);

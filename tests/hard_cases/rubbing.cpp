@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/breakage/notch.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/breakage/strengths.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/viscoelastic_stiffness.hpp"
 #include "equidem/statics/critical_load.hpp"
@@ -60,8 +60,8 @@ TEST_CASE("an_inclined_crack_with_any_friction_goes_to_and_fro_and_closes_its_en
     CHECK(scene.run().end() == (friction > 1 ? PathEnd::no_answer : PathEnd::legs_done));
     CHECK(!scene.run().why().empty());
     CHECK(scene.run().energy_error() < 1e-10);
-    CHECK(scene.run().counters().largest_residual < 1e-12);
-    const double lost = scene.run().state().ledger().friction;
+    CHECK(scene.run().solver().largest_residual < 1e-12);
+    const double lost = scene.run().ledger().friction;
     CHECK(lost >= 0);
     if (friction <= 1) CHECK((lost > 0) == (friction > 0));
     table.note(fmt::format("quasistatic, rubs, friction {:g}", friction),
@@ -80,7 +80,7 @@ TEST_CASE("discs_without_a_bond_and_without_a_force_open_or_close_at_once") {
     path.legs = {1};
     Unbonded scene(rubbing_cell(), usual_springs, path, 0.5);
     scene.all();
-    const auto& status = scene.run().state().status();
+    const auto& status = scene.run().contact_state().status();
     CAPTURE(strain, told(scene.run()));
     CHECK(std::ranges::count(status, ContactStatus::open) == (strain > 0 ? std::ssize(status) : 0));
     CHECK(std::abs(scene.run().leg_points().back().load) > (strain > 0 ? -1.0 : 1.0));

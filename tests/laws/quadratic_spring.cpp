@@ -6,7 +6,6 @@
 
 #include "equidem/contact/laws/normal_law.hpp"
 
-#include "grains/one_by_one.hpp"
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
 
@@ -96,17 +95,6 @@ TEST_CASE("the_ledger_of_quadratic_springs_closes_to_the_order_of_the_scheme") {
   CHECK(order > (integrator == GrainIntegrator::semi_implicit_euler ? 0.9 : 1.9));
 }
 
-TEST_CASE("quadratic_springs_move_discs_alike_one_by_one_and_eight_at_a_time") {
-  const GrainIntegrator integrator = GENERATE(GrainIntegrator::semi_implicit_euler, GrainIntegrator::velocity_verlet);
-  GrainSimulation lanes(crowd(), stepping(integrator, 1e-3)), single(crowd(), one_by_one(stepping(integrator, 1e-3)));
-  lanes.advance(4000);
-  single.advance(4000);
-  CAPTURE(static_cast<int>(integrator), lanes.counters().contacts, distance_of_motions(lanes, single));
-  CHECK(lanes.counters().contacts > 3);
-  CHECK(lanes.counters().contacts == single.counters().contacts);
-  CHECK(distance_of_motions(lanes, single) < 1e-11);
-}
-
 TEST_CASE("quadratic_springs_move_clumps_and_ellipses_without_loss") {
   const GrainIntegrator integrator = GrainIntegrator::velocity_verlet;
   GrainScene scene = crowd();
@@ -123,9 +111,9 @@ TEST_CASE("quadratic_springs_move_clumps_and_ellipses_without_loss") {
 }
 
 TEST_CASE("a_law_of_a_longer_list_is_known_by_its_name") {
-  CHECK(normal_law_from("quadratic_spring") == quadratic);
+  CHECK(enum_from<NormalLaw>("quadratic_spring") == quadratic);
   CHECK(to_string(quadratic) == "quadratic_spring");
-  CHECK(letter_of(quadratic) == "Q");
+  CHECK(std::string(describe(quadratic).letter) == "Q");
   CAPTURE(names_of_laws(LawKind::force));
   CHECK(names_of_laws(LawKind::force).ends_with(" or quadratic_spring"));
 }

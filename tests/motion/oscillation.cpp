@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/motion/oscillation.hpp"
-
 #include <cmath>
 #include <numbers>
+
+#include "equidem/motion/probe.hpp"
 
 #include "support/catch.hpp"
 

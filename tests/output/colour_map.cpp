@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/output/pictures/colour_map.hpp"
-
 #include <cmath>
 
 #include "equidem/core/random.hpp"
+#include "equidem/output/pictures/canvas.hpp"
 
 #include "support/catch.hpp"
 

@@ -176,7 +176,7 @@ TEST_CASE("a_picture_of_grains_shows_walls_paths_and_title") {
   const std::vector<int> groups{0, 1, 17};
   GrainPicture picture{.title = "Walls & paths", .time = 0.5, .grains = grains};
   const auto strokes_of = [&](const char* name) {
-    CHECK(write_grain_picture(folder.path(), name, picture, false).size() == 2);
+    write_grain_picture(folder.path(), name, picture, false);
     CHECK(read_file(folder.path() / (std::string(name) + ".png")).starts_with("\x89PNG"));
     const std::string svg = read_file(folder.path() / (std::string(name) + ".svg"));
     std::size_t strokes = 0;

@@ -5,8 +5,6 @@
 #include <set>
 #include <vector>
 
-#include "equidem/output/quantity_list.hpp"
-
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -73,10 +71,10 @@ TEST_CASE("names_of_columns_read_back_to_keys_and_units") {
   CHECK(column_name("growth_rate", "1/s") == "growth_rate_per_s");
   CHECK(column_name("stiffness_ratio", "") == "stiffness_ratio");
   std::set<std::string> paths;
-  for (const ResultQuantity& quantity : quantities) {
+  for (const ResultQuantity& quantity : result_quantities()) {
     CAPTURE(quantity.path);
     CHECK(paths.insert(quantity.path).second);
-    CHECK(*quantity.label != '\0');
+    CHECK_FALSE(quantity.label.empty());
     const ScalarNumber number = number_of_column(column_name(quantity.path, quantity.unit));
     CHECK(number.path == quantity.path);
     CHECK(number.unit == quantity.unit);

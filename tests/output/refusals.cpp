@@ -31,7 +31,7 @@ std::vector<Writer> writers(const MadeUpState& state) {
       {"contact table", [&](const fs::path& f, bool o) { write_contact_csv(f / "c.csv", state.view(), o); }},
       {"VTK", [&](const fs::path& f, bool o) { write_vtk(f, "v", state.view(), o); }},
       {"plot", [plot](const fs::path& f, bool o) { write_plot(f, "p", plot, o); }},
-      {"picture", [&](const fs::path& f, bool o) { write_picture(f, "q", state.view(), {.width = 400}, o); }},
+      {"picture", [&](const fs::path& f, bool o) { write_picture(f, "q", state.view(), {}, o); }},
   };
 }
 

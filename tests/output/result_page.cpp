@@ -6,7 +6,6 @@
 
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/page/answers.hpp"
 #include "equidem/output/page/page.hpp"
 
 #include "output/states.hpp"

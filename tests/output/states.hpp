@@ -15,7 +15,7 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/state.hpp"
+#include "equidem/output/files/body_tables.hpp"
 
 #include "support/temporary_folder.hpp"
 

@@ -13,7 +13,7 @@ using namespace equidem;
 
 TEST_CASE("clipped_areas_agree_with_points_thrown_at_random") {
   Random random(3);
-  const Region region = {{0, 0}, {1, 0.6}};
+  const Rectangle region = {{0, 0}, {1, 0.6}};
   constexpr int points = 20000;
   for (int k = 0; k < 60; ++k) {
     const double radius = random.uniform(0.05, 0.9);
@@ -32,7 +32,7 @@ TEST_CASE("clipped_areas_agree_with_points_thrown_at_random") {
 }
 
 TEST_CASE("clipped_areas_of_special_places_are_exact") {
-  const Region region = {{0, 0}, {2, 1}};
+  const Rectangle region = {{0, 0}, {2, 1}};
   const double whole = std::numbers::pi * 0.01;
   CHECK(clipped_area({1, 0.5}, 0.1, region) == Approx(whole).epsilon(1e-14));
   CHECK(clipped_area({1, 0.1}, 0.1, region) == Approx(whole).epsilon(1e-14));
@@ -53,8 +53,8 @@ TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
   const Vec2 size = packing.box.size;
   const double x = 0.37 * size.x, y = 0.61 * size.y;
   double covered = 0;
-  for (const Region& region :
-       {Region{{0, 0}, {x, y}}, Region{{x, 0}, {size.x, y}}, Region{{0, y}, {x, size.y}}, Region{{x, y}, size}})
+  for (const Rectangle& region : {Rectangle{{0, 0}, {x, y}}, Rectangle{{x, 0}, {size.x, y}},
+                                  Rectangle{{0, y}, {x, size.y}}, Rectangle{{x, y}, size}})
     covered += measure(packing, region).solid_fraction * region.area();
   CHECK(covered == Approx(area_of_discs(packing.radii)).epsilon(1e-12));
 }
@@ -62,15 +62,15 @@ TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
 TEST_CASE("a_region_without_bodies_or_out_of_a_periodic_box_is_refused") {
   const auto sides = GENERATE(PackingBox::Sides::walls, PackingBox::Sides::periodic);
   const GrainPacking packing = packing_of({{4, 2}, sides}, {{0.5, 0.5}}, {0.5});
-  CHECK_NOTHROW(measure(packing, Region{{0, 0}, {1, 1}}));
-  CHECK_THROWS_AS(measure(packing, Region{{1.5, 0}, {2, 1}}), Error);
-  CHECK_THROWS_AS(measure(packing, Region{{8, 8}, {9, 9}}), Error);
+  CHECK_NOTHROW(measure(packing, Rectangle{{0, 0}, {1, 1}}));
+  CHECK_THROWS_AS(measure(packing, Rectangle{{1.5, 0}, {2, 1}}), Error);
+  CHECK_THROWS_AS(measure(packing, Rectangle{{8, 8}, {9, 9}}), Error);
 }
 
 TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_hand") {
   GrainPacking packing = packing_of({{4, 2}, PackingBox::Sides::walls},
                                     {{0.5, 0.5}, {1.5, 0.5}, {2.499, 0.5}, {3.2, 1.2}}, {0.5, 0.5, 0.5, 0.3});
-  const PackingMeasures measures = measure(packing, Region{{0, 0}, {4, 2}});
+  const PackingMeasures measures = measure(packing, Rectangle{{0, 0}, {4, 2}});
   CHECK(measures.contacts == 2);       // 0-1, 1-2
   CHECK(measures.wall_contacts == 4);  // three on the floor, one at the left
   CHECK(measures.coordination == 8.0 / 4);
@@ -83,8 +83,8 @@ TEST_CASE("contacts_rattlers_and_void_ratio_of_a_row_of_discs_are_counted_by_han
   CHECK(measures.void_ratio == Approx((1 - solid) / solid).epsilon(1e-13));
   CHECK(measures.void_ratio == Approx(measures.porosity / (1 - measures.porosity)).epsilon(1e-13));
   packing.box.sides = PackingBox::Sides::open_top;  // two hold it where weight presses it down
-  CHECK(measure(packing, Region{{0, 0}, {4, 2}}).rattlers == 1);
-  CHECK_THROWS_AS(measure(packing, Region{{1, 0}, {0, 1}}), Error);
+  CHECK(measure(packing, Rectangle{{0, 0}, {4, 2}}).rattlers == 1);
+  CHECK_THROWS_AS(measure(packing, Rectangle{{1, 0}, {0, 1}}), Error);
 }
 
 TEST_CASE("discs_touch_across_the_sides_of_a_periodic_box") {
@@ -101,9 +101,24 @@ TEST_CASE("discs_touch_across_the_sides_of_a_periodic_box") {
 
 TEST_CASE("the_region_measured_keeps_away_from_walls_and_surface") {
   const GrainPacking packing = pack(square_box(PackingMethod::growth, PackingBox::Sides::walls, 400, 0.8));
-  const Region region = measured_region(packing);
+  const Rectangle region = measured_region(packing);
   double mean = 0;
   for (const double r : packing.radii) mean += r / static_cast<double>(packing.size());
   CHECK(region.low.x == Approx(4 * mean));
   CHECK(packing.box.size.y - region.high.y == Approx(4 * mean));
+}
+
+TEST_CASE("a_packing_and_a_run_of_it_have_one_void_ratio") {
+  // under an open top with a step in the surface, and shapes whose radii are not those of circles of equal area
+  GrainPacking packing = packing_of({{40, 20}, PackingBox::Sides::open_top}, {}, {});
+  for (int row = 0; row < 10; ++row)
+    for (int column = 0; column < (row < 8 ? 20 : 10); ++column)
+      packing.grains.push_back(
+          {.position = {1.0 + 2 * column, 1.0 + 2 * row}, .radius = 1, .inertia = {1, 1}, .short_half_axis = 0.7});
+  packing.radii.assign(packing.grains.size(), 1);
+  GrainScene scene;
+  scene.grains = packing.grains;
+  scene.walls = walls_of(packing.box);
+  BoxMeasures run(scene, {});
+  CHECK(measure(packing).void_ratio == run.record(0, 0, scene.grains, scene.walls).void_ratio);
 }

@@ -198,7 +198,7 @@ TEST_CASE("a_packing_that_fails_keeps_the_bodies_as_they_lie_and_says_why") {
     CHECK(!packing.complete);
     CHECK(packing.size() >= least);
     CHECK(packing.grains.size() == packing.size());
-    CHECK_NOTHROW(measure(packing, Region{{0, 0}, packing.box.size}));
+    CHECK_NOTHROW(measure(packing, Rectangle{{0, 0}, packing.box.size}));
     CHECK_THROWS_AS(pack(options), Error);
   };
   PackingOptions options = square_box(PackingMethod::rejection, PackingBox::Sides::walls, 200, 0.7);
@@ -242,7 +242,7 @@ TEST_CASE("bodies_that_are_round_or_nearly_so_jam_like_discs") {
       options.shape = shape;
       options.as_dense_as_possible = true;
       options.overlap = 1e-3;
-      const PackingMeasures measures = measure(pack(options), Region{{0, 0}, options.box.size});
+      const PackingMeasures measures = measure(pack(options), Rectangle{{0, 0}, options.box.size});
       CAPTURE(to_string(shape.kind), shape.aspect, measures.solid_fraction, measures.coordination);
       CHECK(measures.solid_fraction > 0.77);
       CHECK(measures.solid_fraction < 0.86);

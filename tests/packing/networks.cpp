@@ -15,8 +15,7 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/packing/overlaps.hpp"
 #include "equidem/statics/equilibrium.hpp"
 
 #include "packing/packings.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 #include "grains/shapes.hpp"

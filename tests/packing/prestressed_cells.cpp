@@ -7,12 +7,12 @@
 #include <cmath>
 #include <vector>
 
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 #include "equidem/statics/load_bearing.hpp"
 
 #include "packing/packings.hpp"

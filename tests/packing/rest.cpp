@@ -5,7 +5,6 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 
 #include "packing/packings.hpp"
 #include "support/catch.hpp"

@@ -10,8 +10,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
-#include "equidem/packing/outline.hpp"
 #include "equidem/packing/overlaps.hpp"
 
 #include "packing/packings.hpp"
@@ -323,7 +321,7 @@ TEST_CASE("ellipses_touch_once_pairs_and_clumps_as_often_as_they_do") {
   for (const Kind kind : {Kind::rigid_pair, Kind::bonded_pair}) {
     packing.box.size = {11, 10};
     make_grains({.kind = kind}, {{{4, 5}, {6, 5}, {9, 5}}, {1, 1, 1}, {0.25, 0.75, 0.5}}, 1, packing);
-    const PackingMeasures measures = measure(packing, Region{{0, 0}, {11, 10}});
+    const PackingMeasures measures = measure(packing, Rectangle{{0, 0}, {11, 10}});
     CHECK(measures.contacts == 2);
     CHECK(measures.wall_contacts == 1);
     CHECK(measures.coordination == Approx(5.0 / 3));

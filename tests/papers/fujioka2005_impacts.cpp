@@ -80,7 +80,7 @@ TEST_CASE("fujioka_2005_table_2_in_the_simulation_of_grains") {
     const double step = std::pow(10.0, -3.0 - static_cast<double>(k));
     GrainSimulation run = start(column(pair_of(row.law), 1), row.law, step);
     while (run.counters().evaluations == 0 || height(run.grains()[0]) <= 0) run.advance(1);
-    CAPTURE(letter_of(row.law), step);
+    CAPTURE(describe(row.law).letter, step);
     CHECK(run.counters().evaluations == row.printed[k]);
   }
 }
@@ -94,7 +94,7 @@ TEST_CASE("fujioka_2005_impacts_of_the_maps_have_the_ratio_e_squared_but_for_gra
   for (std::size_t n = 0; n < impacts.size(); ++n) {
     // a step of gravity changes the square of the speed by 2 g dt/v of itself
     const double gain = gravity * 1e-3 / impacts[n].speed;
-    CAPTURE(letter_of(law), fast, n + 1, impacts[n].ratio, gain);
+    CAPTURE(describe(law).letter, fast, n + 1, impacts[n].ratio, gain);
     CHECK(std::abs(impacts[n].ratio - 0.49) < 3 * gain + 1e-12);
   }
   if (fast) CHECK(std::abs(impacts[0].ratio - 0.49) < 1e-6);
@@ -118,7 +118,7 @@ TEST_CASE("fujioka_2005_figure_4_is_of_the_energies_at_the_steps_of_contact_and_
   for (std::size_t n = 0; n < impacts.size(); ++n) {
     // velocities are half a step behind: what a flight keeps differs by g v dt/2, up before and down after an impact
     const double lag = 1.19 * gravity * 1e-3 / impacts[n].speed;  // e + e²
-    CAPTURE(letter_of(row.law), n + 1, impacts[n].step_ratio, impacts[n].ratio, lag);
+    CAPTURE(describe(row.law).letter, n + 1, impacts[n].step_ratio, impacts[n].ratio, lag);
     CHECK(impacts[n].step_ratio == Approx(row.ratios[n]).margin(1.5e-4));
     CHECK(std::abs(impacts[n].step_ratio - 0.49) < row.narrow);
     CHECK(impacts[n].ratio == Approx(impacts[n].step_ratio - lag).margin(0.15 * lag));
@@ -166,7 +166,7 @@ TEST_CASE("fujioka_2005_fast_impacts_without_gravity_have_the_ratio_e_squared_to
       run.advance(1);
     }
     const double after = std::abs(run.grains()[0].velocity.y);
-    CAPTURE(letter_of(law), impact, before, after);
+    CAPTURE(describe(law).letter, impact, before, after);
     CHECK(after * after / (before * before) == Approx(0.49).epsilon(1e-12));
     before = after;
   }

@@ -79,7 +79,7 @@ TEST_CASE("fujioka_2005_table_2_steps_in_contact") {
       const double dt = std::pow(10.0, -3.0 - static_cast<double>(i));
       Ball ball{.depth = -height};
       ball.fall_and_rebound(paper_law(row.law), g * dt * dt / diameter);
-      CAPTURE(letter_of(row.law), dt);
+      CAPTURE(describe(row.law).letter, dt);
       CHECK(ball.steps == row.printed[i]);
     }
   }
@@ -96,7 +96,7 @@ TEST_CASE(
         ball.steps = 0;
         ball.fall_and_rebound(paper_law(law), 0);
         const double after = ball.closing * ball.closing;
-        CAPTURE(letter_of(law), phase, hit, after / before);
+        CAPTURE(describe(law).letter, phase, hit, after / before);
         CHECK(std::abs(after / before - 0.49) < 1e-14);
         before = after;
         ball.closing = -ball.closing;  // reversed in place
@@ -166,7 +166,7 @@ TEST_CASE("fujioka_2005_the_depth_of_equation_20_is_the_corrected_one") {
 TEST_CASE("fujioka_2005_statistics_over_the_phase_of_contact") {  // the reference: 4000 phases at random
   const nlohmann::json numbers = reference();
   for (const NormalLaw law : {NormalLaw::linear_dashpot, NormalLaw::five_case_map, NormalLaw::energy_map}) {
-    const auto& expected = numbers["phase_" + letter_of(law)];
+    const auto& expected = numbers[std::string("phase_") + describe(law).letter];
     double steps = 0, ratio = 0, smallest = 10, largest = 0;
     constexpr int phases = 4000;
     for (int i = 0; i < phases; ++i) {
@@ -178,7 +178,7 @@ TEST_CASE("fujioka_2005_statistics_over_the_phase_of_contact") {  // the referen
       smallest = std::min(smallest, r);
       largest = std::max(largest, r);
     }
-    CAPTURE(letter_of(law), steps / phases, ratio / phases, smallest, largest, expected.dump());
+    CAPTURE(describe(law).letter, steps / phases, ratio / phases, smallest, largest, expected.dump());
     const double four_deviations = 4 / std::sqrt(phases);
     CHECK(std::abs(steps / phases - expected["steps_mean"].get<double>()) < 0.5 * four_deviations);
     if (law == NormalLaw::linear_dashpot) {

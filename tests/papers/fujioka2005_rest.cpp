@@ -45,7 +45,7 @@ TEST_CASE("a_ball_rests_at_its_weight_over_its_stiffness_by_forces_and_exact_flo
   PairProperties pair = pair_of(law);
   pair.dimensionless = a;
   const Late late = settle(pair, law, 1, 6000);
-  CAPTURE(letter_of(law), a, late.speed, late.overlap);
+  CAPTURE(describe(law).letter, a, late.speed, late.overlap);
   CHECK(late.speed < 1e-8);
   CHECK(late.overlap == Approx(1).epsilon(1e-6));
 }
@@ -57,7 +57,7 @@ TEST_CASE("a_ball_rests_by_the_maps_at_half_of_one_plus_a_of_that") {
   PairProperties pair = pair_of(law);
   pair.dimensionless = a;
   const Late late = settle(pair, law, 1, 6000);
-  CAPTURE(letter_of(law), a, late.speed, late.overlap);
+  CAPTURE(describe(law).letter, a, late.speed, late.overlap);
   CHECK(late.overlap == Approx(0.5 * (1 + a)).epsilon(1e-6));
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("a_column_comes_to_rest_by_exact_flow_and_never_by_the_maps") {
   }
   for (const NormalLaw law : {NormalLaw::five_case_map, NormalLaw::energy_map}) {
     const Late late = settle(pair_of(law), law, balls, steps);
-    CAPTURE(letter_of(law), late.speed, late.overlap);
+    CAPTURE(describe(law).letter, late.speed, late.overlap);
     CHECK(late.speed > 0.5);
     CHECK(late.overlap < 0.5);
   }

@@ -90,7 +90,7 @@ TEST_CASE("fujioka_2005_stacked_spheres_errors_fall_with_the_step_for_all_laws_b
   const Row row = GENERATE(Row{NormalLaw::hertz_dashpot, 1.0, 0.5, 1e-4}, Row{NormalLaw::five_case_map, 1.5, 0.6, 1e-5},
                            Row{NormalLaw::energy_map, 1.5, 0.6, 1e-5}, Row{NormalLaw::exact_flow, 1.8, 0.9, 2e-6});
   const Errors coarse = slide(pair_of(row.law), row.law, 1e-4), fine = slide(pair_of(row.law), row.law, 1e-5);
-  CAPTURE(letter_of(row.law), coarse.speed, fine.speed, coarse.parting, fine.parting);
+  CAPTURE(describe(row.law).letter, coarse.speed, fine.speed, coarse.parting, fine.parting);
   CHECK(fine.speed < row.speed_error);
   CHECK(order(coarse.speed, fine.speed) > row.speed);
   CHECK(order(coarse.parting, fine.parting) > row.parting);

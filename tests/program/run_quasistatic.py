@@ -275,7 +275,7 @@ class Quasistatic(ProgramTest):
         case.write_text(case.read_text().replace('after_breaking = "rubs"\n', "").replace("residual_friction", "friction"))
         gone = equidem("quasistatic", case)
         self.check_done(gone)
-        self.assertRegex(gone.stdout, "not used +forces at rest: .*quasistatic where")
+        self.assertRegex(gone.stdout, "not used +forces at rest: .*quasistatic with")
 
     def test_other_verbs_tell_that_they_take_no_notch(self):
         done = equidem("solve", NOTCH)

@@ -1,29 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scripts abe1996, abe1996_random and fujioka2005 of tools/papers, as a user runs them, beside published
 numbers."""
-import csv
-import json
-import pathlib
-import signal
-import subprocess
-import sys
-import time
-
 import pytest
-
-ROOT = pathlib.Path(__file__).parents[2]
-PAPERS = ROOT / "tools" / "papers"
-NAMES = ("abe1996", "abe1996_random", "fujioka2005")
-
-
-def run(name, *arguments):
-    return subprocess.run([sys.executable, "-B", PAPERS / f"{name}.py", *map(str, arguments)], capture_output=True,
-                          text=True, timeout=280, check=False)
-
-
-def rows(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+from papers import ROOT, check_help, check_interrupt, result_of, rows, run
 
 
 def published(name):
@@ -35,29 +14,23 @@ def fixture_computed(tmp_path_factory):
     """Of each paper, once: the folder and result.json."""
     made = {}
 
-    def of(name, *arguments):
+    def of(name):
         if name not in made:
             out = tmp_path_factory.mktemp(name) / "out"
-            done = run(name, "--out", out, *arguments)
-            assert done.returncode == 0, done.stderr
-            assert done.stdout == (out / "report.txt").read_text(encoding="utf-8")
-            made[name] = out, json.loads((out / "result.json").read_text(encoding="utf-8"))
+            made[name] = out, result_of(name, out, "--quick")
         return made[name]
     return of
 
 
 # ---- the command line
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["abe1996", "abe1996_random", "fujioka2005"])
 def test_help_names_options_and_exit_codes(name):
-    done = run(name, "--help")
-    assert done.returncode == 0
-    for word in ("--out", "--json", "--overwrite", "--quick", "Example", "Exit codes:"):
-        assert word in done.stdout, word
+    check_help(name)
 
 
 def test_bad_usage_is_exit_code_2(tmp_path):
-    for arguments in (["--rows", "9"], ["--frob"], ["--thread", "2"]):
+    for arguments in (["--frob"], ["--thread", "2"]):
         done = run("fujioka2005", *arguments)
         assert done.returncode == 2 and arguments[0] in done.stderr and done.stdout == "", done
     (tmp_path / "figure4.svg").touch()
@@ -65,19 +38,14 @@ def test_bad_usage_is_exit_code_2(tmp_path):
     assert done.returncode == 2 and "figure4.svg" in done.stderr and "--overwrite" in done.stderr
 
 
-def test_interrupted_it_ends_with_130():
-    with subprocess.Popen([sys.executable, "-B", PAPERS / "fujioka2005.py"], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as started:
-        time.sleep(5)
-        started.send_signal(signal.SIGINT)
-        stdout, stderr = started.communicate(timeout=60)
-    assert (started.returncode, stdout) == (130, ""), stderr
+def test_interrupted_it_ends_with_130(tmp_path):
+    check_interrupt("fujioka2005", tmp_path / "out")
 
 
 # ---- Abe (1996)
 
 def test_abe1996_tension_test_follows_his_theory(computed):
-    _, result = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    _, result = computed("abe1996")
     printed = published("abe1996")
     assert result["critical_ratio_lattice"] == pytest.approx(printed["scatter_begins"])
     points = {point["ratio"]: point for point in result["points"]}
@@ -95,7 +63,7 @@ def test_abe1996_tension_test_follows_his_theory(computed):
 
 
 def test_abe1996_lattices_have_the_moduli_of_his_equations(computed):
-    _, result = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    _, result = computed("abe1996")
     for key in ("free_rotation_deviation", "restrained_rotation_deviation"):
         assert result["macroscopic_stress"][key] < 1e-12
     stress = result["macroscopic_stress"]
@@ -113,14 +81,14 @@ def test_abe1996_lattices_have_the_moduli_of_his_equations(computed):
 
 
 def test_abe1996_writes_its_figures(computed):
-    out, _ = computed("abe1996", "--quick", "--rows", 17, "--columns", 17)
+    out, _ = computed("abe1996")
     for name in ("figure6.png", "figure7.svg", "figure7_plane_stress.csv", "figure8.csv", "error_by_size.png"):
         assert (out / name).stat().st_size > 0, name
     assert {row["series"] for row in rows(out / "figure7.csv")} == {"theory", "nu_large", "nu_stable", "nu_unstable"}
 
 
 def test_abe1996_random_answers_in_sentences_tables_and_plots(computed):
-    out, result = computed("abe1996_random", "--quick")
+    out, result = computed("abe1996_random")
     report = (out / "report.txt").read_text(encoding="utf-8")
     for words in ("Errors of the mean field", "The correction (11)", "With a local psi", "Best for nu"):
         assert words in report
@@ -141,7 +109,7 @@ def test_abe1996_random_answers_in_sentences_tables_and_plots(computed):
 # ---- Fujioka & Ushijima (2005)
 
 def test_fujioka2005_counts_the_steps_of_table_2(computed):
-    out, result = computed("fujioka2005", "--quick")
+    out, result = computed("fujioka2005")
     printed = published("fujioka2005")
     steps = {row["letter"]: row["steps"] for row in reversed(result["table2"])}
     for letter in "CTFP":
@@ -150,7 +118,7 @@ def test_fujioka2005_counts_the_steps_of_table_2(computed):
 
 
 def test_fujioka2005_impacts_keep_the_energy_as_printed(computed):
-    _, result = computed("fujioka2005", "--quick")
+    _, result = computed("fujioka2005")
     theory = published("fujioka2005")["restitution"] ** 2
     for row in result["fast_impacts"]:
         if row["letter"] in "FPX":
@@ -166,7 +134,7 @@ def test_fujioka2005_impacts_keep_the_energy_as_printed(computed):
 
 
 def test_fujioka2005_stacked_spheres_converge_but_for_the_lag_of_C(computed):
-    _, result = computed("fujioka2005", "--quick")
+    _, result = computed("fujioka2005")
     for row in result["stacked"]:
         if row["letter"] in "FPX":
             assert min(zip(row["time_step"], row["speed_error"]))[1] < 1e-5, row["label"]
@@ -176,7 +144,7 @@ def test_fujioka2005_stacked_spheres_converge_but_for_the_lag_of_C(computed):
 
 
 def test_fujioka2005_evaluations_of_table_1_are_those_of_balls_at_rest(computed):
-    _, result = computed("fujioka2005", "--quick")
+    _, result = computed("fujioka2005")
     counts = {row["letter"]: row for row in reversed(result["table1"])}
     resting = 16 * (5 - 0.67763 * 1.7 / 0.3) / 1e-5
     for letter in "TFPX":
@@ -186,7 +154,7 @@ def test_fujioka2005_evaluations_of_table_1_are_those_of_balls_at_rest(computed)
 
 
 def test_fujioka2005_columns_come_to_rest_under_X_alone(computed):
-    out, result = computed("fujioka2005", "--quick")
+    out, result = computed("fujioka2005")
     for row in result["column"]:
         if row["letter"] == "X":
             assert row["speed_of_g_dt"] < 1e-4 and row["overlap_of_static"] == pytest.approx(1, abs=1e-6)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Bonds that resist the relative rotation of their discs: beams, energy, lattices, all back ends.
-#include "equidem/contact/bending.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/contact/contact_response.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"

@@ -3,6 +3,7 @@
 /// Networks that break contact by contact, and their forces by factorizing anew.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -204,12 +205,7 @@ inline std::vector<std::vector<ContactForce>> anew(const BreakingScene& scene, c
 }
 
 inline bool is_carried(const std::vector<HeldMechanism>& mechanisms) {
-  for (const HeldMechanism& m : mechanisms) {
-    for (const double r : m.reaction) {
-      if (std::abs(r) > 1e-6) return false;
-    }
-  }
-  return true;
+  return std::ranges::none_of(mechanisms, &HeldMechanism::driven);
 }
 
 }  // namespace equidem::test

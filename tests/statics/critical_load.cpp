@@ -9,7 +9,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/equilibrium.hpp"
 #include "equidem/statics/mechanisms.hpp"

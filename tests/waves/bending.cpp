@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Waves and vibrations of bonds that resist relative rotation.
-#include "equidem/contact/bending.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/waves/bloch.hpp"

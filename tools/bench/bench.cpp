@@ -19,18 +19,48 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 
-#include "machine.hpp"
+#include "command.hpp"
 
 namespace equidem::bench {
 
 void Report::begin(const char* title) {
-  add(fmt::format("# {}\n\n    {}\n\n{}.\n", title, command_, this_machine().text()));
+  add(fmt::format("# {}\n\n    {}\n\n{}.\n", title, command_, machine_text()));
 }
 
 void Report::add(const std::string& text) {
   std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
   text_ += text;
+}
+
+void TextTable::add_row(std::string_view cells) {
+  constexpr std::string_view separator = " & ";
+  std::vector<std::string>& row = rows_.emplace_back();
+  for (std::size_t end; (end = cells.find(separator)) != std::string_view::npos;) {
+    row.emplace_back(cells.substr(0, end));
+    cells.remove_prefix(end + separator.size());
+  }
+  row.emplace_back(cells);
+}
+
+std::string TextTable::markdown() const {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows_) {
+    widths.resize(std::max(widths.size(), row.size()), 3);
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns_of(row[k]));
+  }
+  std::string text;
+  for (const auto& row : rows_) {
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+      const std::string cell = k < row.size() ? row[k] : "";
+      text += "| " + cell + std::string(widths[k] - columns_of(cell), ' ') + " ";
+    }
+    text += "|\n";
+    if (&row != &rows_.front()) continue;
+    for (const std::size_t width : widths) text += "|" + std::string(width + 2, '-');
+    text += "|\n";
+  }
+  return text;
 }
 
 /// The command without --markdown and its value: where a page is written does not change it.

@@ -7,10 +7,12 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/core/text.hpp"
 #include "equidem/motion/wall.hpp"
 
 namespace CLI {
@@ -33,6 +35,26 @@ class Report {
   std::string command_, text_;
 };
 
+/// A table of Markdown, columns as wide as their widest cell. Cells are separated by " & ".
+class TextTable {
+ public:
+  explicit TextTable(std::string_view head) { add_row(head); }
+
+  /// A row from the format of its cells, "{} & {:.2f}".
+  template <class... Values>
+  void add(fmt::format_string<Values...> cells, Values&&... values) {
+    add_row(fmt::format(cells, std::forward<Values>(values)...));
+  }
+  /// A row of cells that are formatted already.
+  void add_row(std::string_view cells);
+  [[nodiscard]] bool empty() const { return rows_.size() < 2; }
+  [[nodiscard]] std::string markdown() const;
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+/// \throws Error (bad_input) where the file cannot be written
 /// The main function of a benchmark: options, --markdown, errors on stderr.
 /// \param declare adds the options of this benchmark
 /// \return exit code

@@ -16,7 +16,6 @@
 #include "equidem/statics/stiffness_solver.hpp"
 
 #include "bench.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -109,18 +108,18 @@ class Clock {
 struct PathPart {
   std::int64_t first = 0, end = 0;  // breaks
   double seconds = 0;
-  BreakableCounters counters;  // of this part
-  std::int64_t rattlers = 0;   // discs that left the network
-  double softness = 1;         // motion over load behind it, over that at first
+  SolverReport counters;      // of this part
+  std::int64_t rattlers = 0;  // discs that left the network
+  double softness = 1;        // motion over load behind it, over that at first
 };
 
 std::vector<PathPart> follow_path(const Scene& scene, int breaks, int part) {
   const BreakageScene all{scene.assembly, scene.springs, scene.strengths, scene.path};
-  const auto system = make_breakable_system(breakable_network(all, scene.effects, scene.supports));
-  BreakageRun run(all, *system);
+  BreakableSystem system(breakable_network(all, scene.effects, scene.supports));
+  BreakageRun run(all, system);
   const double stiff = run.response().motion[1];
   std::vector<PathPart> parts;
-  BreakableCounters before = system->counters();
+  SolverReport before = system.report();
   Clock watch;
   bool more = true;
   while (more && std::ssize(run.events()) < breaks) {
@@ -129,7 +128,7 @@ std::vector<PathPart> follow_path(const Scene& scene, int breaks, int part) {
     while (std::ssize(run.events()) < end && more) more = run.advance();
     PathPart now;
     now.first = first, now.end = std::ssize(run.events()), now.seconds = watch.lap();
-    const BreakableCounters counters = system->counters();
+    const SolverReport counters = system.report();
     now.counters.refinements = counters.refinements - before.refinements;
     now.counters.factorizations = counters.factorizations - before.factorizations;
     now.counters.largest_residual = counters.largest_residual;
@@ -220,7 +219,7 @@ int main(int argc, char** argv) {
       },
       [&](Report& report) {
         report.begin("Breaking contacts");
-        equidem::TextTable table(
+        TextTable table(
             "assembly & discs & threads & breaks & a break, ms & anew, ms & anew over a break & refined & factorized & "
             "rattlers & softness & residual");
         request.sizes.for_each(

@@ -12,7 +12,6 @@
 #include "equidem/grains/grain_simulation.hpp"
 
 #include "bench.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -47,40 +46,25 @@ GrainScene loose_discs(std::size_t count, bool friction) {
   return scene;
 }
 
-/// The scene with a kind without bodies whose contacts always slide: with it contacts are computed one by one, as those
-/// of laws that the packed loop lacks.
-GrainScene one_by_one(GrainScene scene) {
-  const PairProperties grains = scene.pairs[0], walls = scene.pairs[1];
-  PairProperties sliding = contact(0.1);
-  sliding.tangential_ratio = sliding.tangential_damping = 0;
-  scene.kinds = 3;
-  scene.pairs = {grains, walls, sliding, walls, walls, sliding, sliding, sliding, sliding};
-  return scene;
-}
-
 /// Adds a row.
 /// \return the bodies at the end
-std::vector<Grain> measure(TextTable& table, const char* state, GrainScene scene, std::int64_t before,
+std::vector<Grain> measure(TextTable& table, const char* state, const GrainScene& scene, std::int64_t before,
                            std::int64_t steps, int rounds) {
   const GrainOptions options{.law = NormalLaw::linear_dashpot, .time_step = step};
-  GrainSimulation packed(scene, options);
-  packed.advance(before);
-  scene.grains = packed.grains();
-  GrainSimulation single(one_by_one(scene), options);
-  const Entry entries[] = {entry_of("packed", packed), entry_of("one by one", single)};
-  const GrainCounters start = packed.counters();
+  GrainSimulation simulation(scene, options);
+  simulation.advance(before);
+  const Entry entries[] = {entry_of("steps", simulation)};
+  const GrainCounters start = simulation.counters();
   const std::vector<Seconds> seconds = take_turns(entries, steps, rounds);
-  const GrainCounters end = packed.counters();
+  const GrainCounters end = simulation.counters();
   const auto bodies = static_cast<double>(scene.grains.size());
   const double made = static_cast<double>(steps) * (rounds + 1),
                nanoseconds = 1e9 / (bodies * static_cast<double>(steps));
-  table.add("{} & {} & {:.3g} & {} & {} & {} & {:.2f} & {:.1f} & {:.0f} & {:.0f}", scene.grains.size(), state,
+  table.add("{} & {} & {:.3g} & {} & {:.2f} & {:.1f} & {:.0f}", scene.grains.size(), state,
             1e9 / (range_of(seconds[0]).median * nanoseconds), (range_of(seconds[0]) * nanoseconds).text("{:.1f}"),
-            (range_of(seconds[1]) * nanoseconds).text("{:.1f}"), ratio_of(seconds[1], seconds[0]).text("{:.2f}"),
             static_cast<double>(end.evaluations - start.evaluations) / made / bodies,
-            1000 * static_cast<double>(end.rebuilds - start.rebuilds) / made, packed.bytes_per_body(),
-            single.bytes_per_body());
-  return packed.grains();
+            1000 * static_cast<double>(end.rebuilds - start.rebuilds) / made, simulation.bytes_per_body());
+  return simulation.grains();
 }
 
 }  // namespace
@@ -104,9 +88,7 @@ int main(int argc, char** argv) {
         set_thread_count(1);
         report.begin("The loop of colliding discs");
         TextTable table(
-            "discs & state & disc-steps/s & ns & one by one, ns & over the packed loop & contacts per disc & new lists "
-            "per "
-            "1000 steps & bytes per disc & one by one");
+            "discs & state & disc-steps/s & ns & contacts per disc & new lists per 1000 steps & bytes per disc");
         for (const std::size_t size : sizes) {
           const auto steps = static_cast<std::int64_t>(work / static_cast<double>(size));
           const double time = settle * std::pow(static_cast<double>(size) / 3000, 0.25);
@@ -120,12 +102,8 @@ int main(int argc, char** argv) {
         }
         report.add(
             "\nDiscs of radius 0.5 to 1 cm in a box, linear spring and dashpot, friction 0.17 (walls 0.25) with a "
-            "tangential "
-            "spring; \"flowing\": gravity tilted by 40 degrees. Contacts are computed eight at a time or one by one, "
-            "as with "
-            "laws that the packed loop lacks. One thread, processor time; medians (smallest .. largest) of rounds in "
-            "which "
-            "both take turns. Bytes are those of all arrays of the simulation.\n\n" +
+            "tangential spring; \"flowing\": gravity tilted by 40 degrees. One thread, processor time; medians "
+            "(smallest .. largest) of rounds. Bytes are those of all arrays of the simulation.\n\n" +
             table.markdown());
       });
 }

@@ -27,7 +27,7 @@
 #include "equidem/statics/supports.hpp"
 
 #include "bench.hpp"
-#include "machine.hpp"
+#include "command.hpp"
 
 namespace equidem::bench {
 namespace {
@@ -160,7 +160,7 @@ Results measure(const Trial& trial) {
   getrusage(RUSAGE_SELF, &usage);
   if (iterates) assemble();  // for the residual alone
   return Results()
-      .set("machine", this_machine().text())
+      .set("machine", machine_text())
       .set("discs", problem.assembly.size())
       .set("unknowns", problem.unknowns.unknowns)
       .set("assembly", result.assembly)

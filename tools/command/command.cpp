@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <iterator>
 #include <new>
 #include <span>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -20,13 +23,53 @@
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
-#include "equidem/output/page/answers.hpp"
 #include "equidem/output/page/page.hpp"
 #include "equidem/output/quantities.hpp"
 
-#include "option_checks.hpp"
-
 namespace equidem {
+
+PointsInNumbers::PointsInNumbers() : numbers_(newlocale(LC_NUMERIC_MASK, "C", nullptr)), before_(uselocale(numbers_)) {}
+
+PointsInNumbers::~PointsInNumbers() {
+  uselocale(before_);
+  if (numbers_ != nullptr) freelocale(numbers_);
+}
+
+OptionCheck whole_number(std::int64_t least, std::int64_t most) {
+  return [=](const std::string& given) {
+    const auto value = number_given<std::int64_t>(given);
+    return value && *value >= least && *value <= most
+               ? ""
+               : fmt::format("'{}' is not a whole number from {} to {}", given, least, most);
+  };
+}
+
+OptionCheck finite_number() {
+  return [](const std::string& given) {
+    const auto value = number_given<double>(given);
+    return value && std::isfinite(*value) ? "" : fmt::format("'{}' is not a finite number", given);
+  };
+}
+
+OptionCheck number(double least, double most) {
+  return [=](const std::string& given) {
+    const auto value = number_given<double>(given);
+    return value && *value >= least && *value <= most
+               ? ""
+               : fmt::format("'{}' is not a number from {:g} to {:g}", given, least, most);
+  };
+}
+
+OptionCheck plain_text() {
+  return [](const std::string& given) { return has_controls(given) ? std::string("it has control characters") : ""; };
+}
+
+OptionCheck file_name() {
+  return [](const std::string& given) {
+    if (given.empty()) return std::string("the name is empty");
+    return given.starts_with("--") ? fmt::format("'{0}' is an option; a file of that name is ./{0}", given) : "";
+  };
+}
 
 void add_result_options(CLI::App& command, CommonOptions& options) {
   options.verb = command.get_name();
@@ -129,23 +172,20 @@ Case read_case(const CommonOptions& options) {
   prepare(options);
   Case resolved = read_case(options.case_file, overrides_of(options));
   check_viscoelastic(resolved, options.verb);
-  check_prestress(resolved, options.verb);
-  check_bending(resolved, options.verb);
+  check_taken(resolved, options.verb);
   return resolved;
 }
 
-void check_prestress(const Case& resolved, std::string_view verb) {
-  constexpr std::string_view takers[] = {"solve", "homogenize", "stability", "sweep"};
-  if (resolved.prestress != PrestressChoice::on || std::ranges::find(takers, verb) != std::end(takers)) return;
-  bad_input_at(resolved.where("effects.prestress"),
-               fmt::format("{} takes no prestress, and the case asks for it", verb),
-               "its answer would be that of the springs alone",
-               "Remove effects.prestress; solve, homogenize and stability take it");
-}
-
-void check_bending(const Case& resolved, std::string_view verb) {
-  constexpr std::string_view takers[] = {"solve", "homogenize", "calibrate", "stability", "run", "export", "sweep"};
-  if (!resolved.bending.given() || std::ranges::find(takers, verb) != std::end(takers)) return;
+void check_taken(const Case& resolved, std::string_view verb) {
+  constexpr std::string_view of_prestress[] = {"solve", "homogenize", "stability", "sweep"},
+                             of_bending[] = {"calibrate", "run", "export"};
+  if (std::ranges::find(of_prestress, verb) != std::end(of_prestress)) return;
+  if (resolved.prestress == PrestressChoice::on)
+    bad_input_at(resolved.where("effects.prestress"),
+                 fmt::format("{} takes no prestress, and the case asks for it", verb),
+                 "its answer would be that of the springs alone",
+                 "Remove effects.prestress; solve, homogenize and stability take it");
+  if (!resolved.bending.given() || std::ranges::find(of_bending, verb) != std::end(of_bending)) return;
   const char* table = resolved.material ? "material" : "springs";
   bad_input_at(resolved.where(fmt::format("{}.{}", table, resolved.bending.kM ? "kM" : "bond_width")),
                fmt::format("{} takes no bending springs, and the case gives some", verb),
@@ -154,7 +194,7 @@ void check_bending(const Case& resolved, std::string_view verb) {
 }
 
 void OutputPlan::expect(const std::string& name) const {
-  if (options_.out) check_writable(*options_.out / name, options_.overwrite);
+  if (options_.out) check_writable(*options_.out / name, options_.overwrite || replaces_);
 }
 
 void OutputPlan::expect_file(const std::filesystem::path& path) const {
@@ -204,11 +244,14 @@ std::optional<FolderLock> lock_out(const CommonOptions& options) {
 
 namespace {
 
-/// Where deliver and hand_over put the results of a verb on this thread; null: deliver prints and writes them.
-thread_local Delivery* collected = nullptr;
-thread_local bool arrays_collected = false;
-/// The command that leads to what is collected.
-thread_local std::string collected_command;
+/// Where deliver and hand_over put the results of a verb on this thread.
+struct Collection {
+  Delivery* delivery = nullptr;  ///< null: deliver prints and writes them
+  bool arrays = false;
+  std::string command;  ///< that leads to the results
+};
+thread_local Collection collection;
+
 /// The command of the program, written once before its verb begins.
 std::string& command_line() {
   static std::string line;
@@ -233,34 +276,25 @@ void set_command_line(const std::vector<std::string>& words) {
 }
 
 Delivery collect(const std::function<void()>& verb, Arrays arrays, const std::string& command) {
-  struct Restored {
-    Delivery* const delivery = collected;
-    const bool arrays = arrays_collected;
-    const std::string command = collected_command;
-    ~Restored() { collected = delivery, arrays_collected = arrays, collected_command = command; }
-  } const restored;
   Delivery delivery;
-  collected_command = command;
-  collected = &delivery;
-  arrays_collected = arrays == Arrays::wanted;
+  struct Restored {
+    Collection before;
+    ~Restored() { collection = std::move(before); }
+  } const restored{std::exchange(collection, {&delivery, arrays == Arrays::wanted, command})};
   verb();
   return delivery;
 }
 
 bool arrays_wanted() {
-  return arrays_collected;
+  return collection.arrays;
 }
 
 void hand_over(std::vector<ResultArray> arrays) {
-  if (arrays_wanted()) std::ranges::move(arrays, std::back_inserter(collected->arrays));
+  if (arrays_wanted()) std::ranges::move(arrays, std::back_inserter(collection.delivery->arrays));
 }
 
 void hand_over(std::shared_ptr<const Assembly> assembly) {
-  if (arrays_wanted()) collected->assembly = std::move(assembly);
-}
-
-void hand_over(FigureWriter figures) {
-  if (arrays_wanted()) collected->figures = std::move(figures);
+  if (arrays_wanted()) collection.delivery->assembly = std::move(assembly);
 }
 
 std::string Delivery::page(const std::filesystem::path& folder, const std::vector<DrawnFigure>& drawn) const {
@@ -279,9 +313,9 @@ std::string Delivery::page_drawn_in(const std::filesystem::path& folder) const {
   CommonOptions options;
   options.verb = verb;
   options.out = folder;
-  options.overwrite = true;
+  options.overwrite = options.pictures_only = true;
   const DrawnFigures drawn;
-  if (figures) figures(options);
+  for (const OutputPart& part : figures) part.write(options);
   return page(folder, drawn.list());
 }
 
@@ -312,6 +346,23 @@ std::string Delivery::json() const {
   return numbers().append(texts()).json();
 }
 
+std::optional<Error> failure_of(const std::function<void()>& work, const std::string& part) {
+  const std::string missing = part.empty() ? "" : part + " is missing";
+  try {
+    work();
+    return {};
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    if (!part.empty()) return Error(ErrorKind::computation_failed, missing, "there is too little memory for it", "");
+    return Error(ErrorKind::computation_failed, "there is too little memory to go on", "",
+                 "Use fewer discs, or a machine with more memory");
+  } catch (const std::exception& error) {
+    return Error(ErrorKind::computation_failed, part.empty() ? error.what() : missing, part.empty() ? "" : error.what(),
+                 "Please report it with the case");
+  }
+}
+
 namespace {
 
 /// Carries out the parts of a delivery. What fails is a warning of the results.
@@ -324,26 +375,16 @@ class Deliverer {
   /// \return whether it succeeded
   bool attempt(const std::string& what, const std::function<void()>& task, bool lost = true) {
     if (interruption_) return false;
-    try {
-      task();
-      return true;
-    } catch (const Error& error) {
-      if (error.kind() == ErrorKind::interrupted) {
-        interruption_ = error;
-      } else {
-        fail(error, lost);
-      }
-    } catch (const std::bad_alloc&) {
-      fail({ErrorKind::computation_failed, what + " is missing", "there is too little memory for it", ""}, lost);
-    } catch (const std::exception& error) {
-      fail({ErrorKind::computation_failed, what + " is missing", error.what(), "Please report it with the case"}, lost);
+    const std::optional<Error> error = failure_of(task, what);
+    if (!error) return true;
+    if (error->kind() == ErrorKind::interrupted) {
+      interruption_ = error;
+      return false;
     }
-    return false;
-  }
-  void fail(const Error& error, bool lost) {
     if (lost && !failure_)
-      failure_.emplace(ErrorKind::computation_failed, error.problem(), error.why(), error.remedy(), error.where());
-    warn(error.what());
+      failure_.emplace(ErrorKind::computation_failed, error->problem(), error->why(), error->remedy(), error->where());
+    warn(error->what());
+    return false;
   }
   void warn(const std::string& sentence) {
     if (std::ranges::find(warnings_, sentence) != warnings_.end()) return;
@@ -370,20 +411,6 @@ class Deliverer {
 
 }  // namespace
 
-std::optional<Error> failure_of(const std::function<void()>& work) {
-  try {
-    work();
-    return {};
-  } catch (const Error& error) {
-    return error;
-  } catch (const std::bad_alloc&) {
-    return Error(ErrorKind::computation_failed, "there is too little memory to go on", "",
-                 "Use fewer discs, or a machine with more memory");
-  } catch (const std::exception& error) {
-    return Error(ErrorKind::computation_failed, error.what(), "", "Please report it with the case");
-  }
-}
-
 void deliver(const CommonOptions& options, const std::string& given_status, Results results, StageTimes times,
              const std::vector<OutputPart>& parts, const std::optional<Error>& failure) {
   const bool interrupted = failure && failure->kind() == ErrorKind::interrupted;
@@ -397,14 +424,14 @@ void deliver(const CommonOptions& options, const std::string& given_status, Resu
                   .set("complete", false)
                   .set("failure", failure->what());
   }
-  const bool printed = collected == nullptr, to_stdout = options.json && *options.json == "-";
+  const bool printed = collection.delivery == nullptr, to_stdout = options.json && *options.json == "-";
   const bool filed = options.out && !options.dry_run, file_of_json = printed && options.json && !to_stdout;
   Deliverer all(results, failure);
   const auto delivery = [&] {
     Delivery made{status, results, times};
     if (!all.warnings().empty()) made.results.set("warnings", all.warnings());
     made.verb = options.verb;
-    made.command = printed ? command_line() : collected_command;
+    made.command = printed ? command_line() : collection.command;
     return made;
   };
   // The files were found writable before the computation.
@@ -419,28 +446,28 @@ void deliver(const CommonOptions& options, const std::string& given_status, Resu
   const bool written = write_json() && (filed || file_of_json);
   const Stopwatch watch;
   const DrawnFigures drawn;
-  for (const OutputPart& part : parts) all.attempt(part.name, part.write);
+  for (const OutputPart& part : parts)
+    if (options.out || part.place == OutputPart::file) all.attempt(part.name, [&] { part.write(options); });
   for (const DrawnFigure& figure : drawn.list())
     if (!figure.missing.empty()) all.warn(figure.missing);
-  if (options.out && !parts.empty()) times.add("files", watch.seconds());
+  const bool timed = options.out && !parts.empty();
+  if (timed) times.add("files", watch.seconds());
   if (filed && has_page(options.verb)) {
     all.attempt(page_name,
                 [&] { write_file(*options.out / page_name, delivery().page(*options.out, drawn.list()), true); });
   }
   if (!printed) {
-    Delivery made = delivery();
-    collected->status = status;
-    collected->results = std::move(made.results);
-    collected->times = times;
-    collected->verb = made.verb;
-    collected->command = made.command;
+    *collection.delivery = delivery();
+    if (arrays_wanted())
+      std::ranges::copy_if(parts, std::back_inserter(collection.delivery->figures),
+                           [](const OutputPart& part) { return part.place == OutputPart::page; });
   } else if (to_stdout || !options.quiet) {
     const int error = write_to_stdout(to_stdout ? delivery().json() : delivery().report());
     if (error != 0)
       all.attempt(
           "stdout", [&] { stdout_failed(error); }, !written);
   }
-  if (!parts.empty() || !all.warnings().empty()) write_json();
+  if (timed || !all.warnings().empty()) write_json();
   if (filed) say(options, fmt::format("written to {}", options.out->string()));
   all.finish(printed);
   if (options.require_stable && (status == "unstable" || status == "unjudged" || status == "mechanism")) {
@@ -475,6 +502,37 @@ std::string build_description() {
 #else
   return optimized + ", assertions on";
 #endif
+}
+
+namespace {
+
+/// The first "model name" of Linux; empty where unknown.
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("model name")) continue;
+    const std::size_t colon = line.find(": ");
+    return colon == std::string::npos ? "" : line.substr(colon + 2);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string machine_text() {
+  const std::string processor = processor_name();
+  return fmt::format("{}, {}; equidem {}, {}, compiler {}", processor.empty() ? "unknown processor" : processor,
+                     counted(std::thread::hardware_concurrency(), "core"), library_version(), build_description(),
+                     __VERSION__);
+}
+
+Results machine_results() {
+  return Results()
+      .set("processor", processor_name())
+      .set("cores", std::thread::hardware_concurrency())
+      .set("compiler", __VERSION__)
+      .set("build", build_description())
+      .set("version", library_version());
 }
 
 std::string without_full_stop(std::string sentence) {

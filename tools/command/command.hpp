@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Options and output that all verbs share: the case file, overrides, threads, files of the results.
+/// Options and output that all verbs share: the case file, overrides, threads, files of the results, the machine.
+/// Checks of the values of options, for CLI::Option::check.
 #pragma once
 
+#include <clocale>
 #include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +23,8 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
-#include "equidem/output/files/json.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
+#include "equidem/core/table_file.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/output/results.hpp"
 
 namespace CLI {
@@ -29,6 +32,39 @@ class App;
 }
 
 namespace equidem {
+
+/// While it lives, numbers of options have a decimal point in this thread, whatever locale the process is in: CLI11
+/// reads them by strtold.
+class PointsInNumbers {
+ public:
+  PointsInNumbers();
+  ~PointsInNumbers();
+  PointsInNumbers(const PointsInNumbers&) = delete;
+  PointsInNumbers& operator=(const PointsInNumbers&) = delete;
+
+ private:
+  locale_t numbers_, before_;
+};
+
+/// The number that the value of an option is; none where it is none.
+template <class Number>
+std::optional<Number> number_given(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  return number_from<Number>(text);
+}
+
+/// Returns what is wrong with a value, or nothing.
+using OptionCheck = std::function<std::string(const std::string& given)>;
+
+/// A whole number in [least, most].
+OptionCheck whole_number(std::int64_t least, std::int64_t most = std::numeric_limits<std::int64_t>::max());
+/// A finite number, or one in [least, most].
+OptionCheck finite_number();
+OptionCheck number(double least, double most);
+/// A text without control characters.
+OptionCheck plain_text();
+/// The name of a file or folder: not empty, and no option that stands where a name was forgotten.
+OptionCheck file_name();
 
 /// The options that every verb takes.
 struct CommonOptions {
@@ -43,6 +79,7 @@ struct CommonOptions {
   bool quiet = false;
   bool overwrite = false;
   bool require_stable = false;
+  bool pictures_only = false;  ///< of what is written into --out: a page of results in memory shows no more
 };
 
 /// --out, --json, --threads, --quiet and --overwrite; the only options of verbs without a case file.
@@ -61,16 +98,15 @@ void prepare(const CommonOptions& options);
 std::vector<std::string> overrides_of(const CommonOptions& options);
 /// Apply threads and quiet, and read the case with its overrides.
 Case read_case(const CommonOptions& options);
-/// \throws Error (bad_input), with the line of the case file, where prestress is asked for and a verb takes none
-void check_prestress(const Case& resolved, std::string_view verb);
-/// The verb takes bonds that resist bending, or the case has none.
-/// \throws Error (bad_input) where it takes none
-void check_bending(const Case& resolved, std::string_view verb);
+/// \throws Error (bad_input), with the line of the case file, where prestress is asked for or bonds resist bending and
+///         the verb takes neither
+void check_taken(const Case& resolved, std::string_view verb);
 
 /// Checks before the computation that the files of a verb can be written.
 class OutputPlan {
  public:
-  explicit OutputPlan(const CommonOptions& options) : options_(options) {}
+  /// \param replaces the files of an earlier computation in --out, which this one continues; the file of --json is not
+  explicit OutputPlan(const CommonOptions& options, bool replaces = false) : options_(options), replaces_(replaces) {}
 
   /// A file NAME in --out, if there is one.
   /// \throws Error (bad_input) where it could not be written
@@ -85,11 +121,10 @@ class OutputPlan {
   void expect_results() const;
   /// NAME.csv, .gp, .svg and .png, which write_plot writes.
   void expect_plot(const std::string& name) const;
-  [[nodiscard]] bool has_folder() const { return options_.out.has_value(); }
-  [[nodiscard]] const std::filesystem::path& folder() const { return *options_.out; }
 
  private:
   const CommonOptions& options_;
+  bool replaces_;
 };
 
 /// Keeps other processes from --out until the end of a verb, also from what it reads there; none without --out or on a
@@ -99,12 +134,19 @@ class OutputPlan {
 
 /// What a verb writes beside its results: a table, a picture, the case. It fails alone.
 struct OutputPart {
-  std::string name;  ///< for warnings
-  std::function<void()> write;
+  enum Place {
+    folder,  ///< --out
+    page,    ///< likewise, and it is drawn again for a page of results in memory: it owns what it refers to
+    file,    ///< that it names itself, also without --out
+  };
+  std::string name;                                      ///< for warnings
+  std::function<void(const CommonOptions& into)> write;  ///< into the folder --out of the options
+  Place place = folder;
 };
 
 /// Does work of a verb. What ends it before its end is returned, so that the verb delivers what it has by then.
-std::optional<Error> failure_of(const std::function<void()>& work);
+/// \param part of the results that is then missing; empty: the rest of the verb
+std::optional<Error> failure_of(const std::function<void()>& work, const std::string& part = {});
 
 /// Delivers the results of a verb in the order of their worth: OUT/result.json and --json FILE; the parts, one after
 /// the other; OUT/index.html; the report to stdout, unless quiet, or the JSON where --json is "-". What fails on the
@@ -131,9 +173,6 @@ struct ResultArray {
   std::size_t stride = 1;  ///< numbers from one row to the next
 };
 
-/// Writes the case and the figures of a verb into the folder --out of the options. It owns what it needs.
-using FigureWriter = std::function<void(const CommonOptions& options)>;
-
 /// Results as they are given to deliver, and what hand_over adds.
 struct Delivery {
   std::string status;
@@ -141,7 +180,7 @@ struct Delivery {
   StageTimes times;
   std::vector<ResultArray> arrays = {};
   std::shared_ptr<const Assembly> assembly = {};  ///< made by the verb, or null
-  FigureWriter figures = {};                      ///< none: the verb draws nothing
+  std::vector<OutputPart> figures = {};           ///< parts of the page; none where arrays are not wanted
   std::string verb = {};
   std::string command = {};  ///< that leads to the results
 
@@ -172,7 +211,6 @@ std::string shell_words(const std::vector<std::string>& words);
 bool arrays_wanted();
 void hand_over(std::vector<ResultArray> arrays);
 void hand_over(std::shared_ptr<const Assembly> assembly);
-void hand_over(FigureWriter figures);
 
 /// Saves a table on the way to an end that writes it again: a disk that is full then costs no computation.
 class SavedOnTheWay {
@@ -200,6 +238,9 @@ void write_case(const CommonOptions& options, const Resolved& resolved) {
 
 /// "optimized, assertions off".
 std::string build_description();
+/// The machine and the build on which times are measured.
+std::string machine_text();
+Results machine_results();
 
 /// The sentence without its full stop, as a part of another one.
 std::string without_full_stop(std::string sentence);

@@ -13,7 +13,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 namespace {
@@ -171,96 +171,44 @@ std::optional<std::string> man_page(const Program& program, const CLI::App& app,
   return std::nullopt;
 }
 
-namespace {
-
-/// How bash completes what stands after an option, or as a positional argument
-/// functions, null: nothing is expected.
-using Value = const char*;
-constexpr Value any_value = "";
-constexpr Value file_value = "files=-f";
-constexpr Value folder_value = "files=-d";
-constexpr Value key_value = "words=$keys";
-constexpr Value assignment_value = "words=$keys; end='='";
-constexpr Value command_value = "words=$commands";
-
-Value value_of(const CLI::Option& option) {
+/// What bash completes after an option, or as a positional argument; null: nothing is expected.
+static const char* completed_by(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   if (option.get_items_expected_max() == 0) return nullptr;
-  if (type == "KEY") return key_value;
-  if (type == "KEY=VALUE") return assignment_value;
-  if (type.starts_with("FILE")) return file_value;
-  if (type == "DIR") return folder_value;
-  return type == "VERB" ? command_value : any_value;
+  if (type == "KEY") return "words=$keys";
+  if (type == "KEY=VALUE") return "words=$keys; end='='";
+  if (type.starts_with("FILE")) return "files=-f";
+  if (type == "DIR") return "files=-d";
+  return type == "VERB" ? "words=$commands" : "";
 }
 
-struct Completed {
-  std::string name;  ///< "set", without its hyphens
-  Value value;
-};
-
-/// A command and what its line may hold.
-struct Command {
-  std::string name;
-  std::vector<Completed> options = {};
-  Value positional = nullptr;
-};
-
-/// All that the script is made of.
-struct Words {
-  std::string program;
-  std::string function;  ///< start of the names of functions, "_equidem"
-  std::vector<Command> commands = {};
-  std::vector<std::string> topics = {};
-  std::vector<CaseKey> keys = {};
-
-  [[nodiscard]] std::string command_names() const {
-    return joined(
-        commands, [](const Command& command) { return command.name; }, " ");
-  }
-  [[nodiscard]] std::string key_names() const {
-    return joined(
-        keys, [](const CaseKey& key) { return key.path; }, " ");
-  }
-};
-
-Words words_of(const Program& program, const CLI::App& app) {
-  Words words{.program = program.name, .function = fmt::format("_{}", program.name)};
-  std::ranges::replace(words.function, '-', '_');
-  words.topics = {manual_topic, completion_topic};
-  for (const HelpTopic& topic : program.topics) words.topics.emplace_back(topic.name);
+std::string bash_completion(const Program& program, const CLI::App& app) {
+  std::vector<std::string> commands, topics{manual_topic, completion_topic}, after;
+  for (const HelpTopic& topic : program.topics) topics.emplace_back(topic.name);
+  std::string options, values, function = fmt::format("_{}", program.name);
+  std::ranges::replace(function, '-', '_');
   for (const Verb& verb : program.verbs) {
-    Command command{.name = verb.name};
+    std::vector<std::string> names;
+    std::string positional;
     for (const CLI::Option* option : app.get_subcommand(verb.name)->get_options()) {
-      const Value value = value_of(*option);
-      if (value == assignment_value) words.keys = case_keys();
+      const char* const value = completed_by(*option);
       if (option->get_positional()) {
-        command.positional = value;
+        positional = value;
         continue;
       }
-      command.options.push_back({option->get_lnames().front(), value});
-    }
-    words.topics.push_back(command.name);
-    words.commands.push_back(std::move(command));
-  }
-  return words;
-}
-
-/// bash splits words at '=': the value of a key is the second word after it.
-std::string bash(const Words& words) {
-  std::string values, options;
-  for (const CaseKey& key : words.keys)
-    if (!key.words.empty()) values += fmt::format("      {}) words='{}' ;;\n", key.path, joined(key.words, " "));
-  std::vector<std::string> after;
-  for (const Command& command : words.commands) {
-    const auto option_name = [](const Completed& option) { return "--" + option.name; };
-    options += fmt::format("        {}) words='{}' {} ;;\n", command.name, joined(command.options, option_name, " "),
-                           command.positional == nullptr ? "" : command.positional);
-    for (const Completed& option : command.options) {
-      if (option.value == nullptr) continue;
-      std::string line = fmt::format("    --{}) {} ;;\n", option.name, option.value);
+      names.push_back("--" + option->get_lnames().front());
+      if (value == nullptr) continue;
+      std::string line = fmt::format("    {}) {} ;;\n", names.back(), value);
       if (std::ranges::find(after, line) == after.end()) after.push_back(std::move(line));
     }
+    options += fmt::format("        {}) words='{}' {} ;;\n", verb.name, joined(names, " "), positional);
+    commands.emplace_back(verb.name);
   }
+  topics.insert(topics.end(), commands.begin(), commands.end());
+  const std::vector<CaseKey> keys = case_keys();
+  for (const CaseKey& key : keys)
+    if (!key.words.empty()) values += fmt::format("      {}) words='{}' ;;\n", key.path, joined(key.words, " "));
+  // bash splits words at '=': the value of a key is the second word after it.
   return fmt::format(R"(# Completion of {0} for bash, printed by '{0} help completion bash'.
 {1}() {{
   local word="${{COMP_WORDS[COMP_CWORD]}}" at=$((COMP_CWORD - 1)) words='' files='' end=''
@@ -297,14 +245,8 @@ std::string bash(const Words& words) {
 }}
 complete -F {1} {0}
 )",
-                     words.program, words.function, words.command_names(), words.key_names(), values, joined(after, ""),
-                     options, joined(words.topics, " "));
-}
-
-}  // namespace
-
-std::string bash_completion(const Program& program, const CLI::App& app) {
-  return bash(words_of(program, app));
+                     program.name, function, joined(commands, " "), joined(keys, &CaseKey::path, " "), values,
+                     joined(after, ""), options, joined(topics, " "));
 }
 
 }  // namespace equidem

@@ -24,11 +24,10 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 #include "command.hpp"
 #include "manual.hpp"
-#include "option_checks.hpp"
 
 namespace equidem {
 namespace {
@@ -53,14 +52,6 @@ std::string version_text() {
   return fmt::format("equidem {}\n{}, compiler {}\nCLI11 {}, fmt {}.{}.{}, {}\n", library_version(),
                      build_description(), __VERSION__, CLI11_VERSION, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
                      FMT_VERSION % 100, toml_parser());
-}
-
-/// \param last a word beside the names of the commands
-std::vector<std::string> names_of(const Program& program, const char* last) {
-  std::vector<std::string> names;
-  for (const Verb& verb : program.verbs) names.emplace_back(verb.name);
-  names.emplace_back(last);
-  return names;
 }
 
 /// Without line breaks and control characters: words of a file may hold any bytes.
@@ -165,7 +156,8 @@ int run(const Program& program, const std::vector<std::string>& arguments) {
     commands.back()->group(group);
     runs.push_back(verb.declare(*commands.back()));
   }
-  const std::vector<std::string> names = names_of(program, "help");
+  std::vector<std::string> names = names_in(program.verbs);
+  names.emplace_back("help");
   const std::string examples = fmt::format("'{} --help' shows examples", program.name);
   if (!arguments.empty() && arguments[0] == "help") {
     show_help(program, app, arguments);

@@ -11,7 +11,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/study/evaluate.hpp"
 
-#include "option_checks.hpp"
 #include "problem.hpp"
 
 namespace equidem {
@@ -36,30 +35,10 @@ std::int64_t one_beyond_a_multiple_of_four(double n) {
   return 4 * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil((n - 1) / 4 - 1e-9))) + 1;
 }
 
-double aspect_of(const Case& resolved) {
-  return static_cast<double>(resolved.assembly.lattice.columns) / resolved.assembly.lattice.rows;
-}
-
-RefinementOptions block_refinement(double aspect, double accuracy) {
-  return {.accuracy = accuracy,
-          .order = 1,
-          .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
-          .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs / aspect)) - 4,
-          .unit = "rows",
-          .admissible = [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }};
-}
-
-/// Rows, and columns in the proportion of the case.
-AccuracySetting setting_of(double aspect, std::int64_t rows) {
-  const double across = std::round(aspect * static_cast<double>(rows));
-  return {{"assembly.rows", static_cast<double>(rows)},
-          {"assembly.columns", static_cast<double>(one_beyond_a_multiple_of_four(across))}};
-}
-
 std::vector<double> solve_block(Case resolved) {
   const Problem problem = prestressed(build_problem(std::move(resolved)));
   const EquilibriumSolver solver(problem.assembly, problem.springs.springs, problem.supports, problem.options());
-  return BlockSearch::values_of(*solve_case(problem, solver, problem.load_cases.front()).tension);
+  return searched_values(*solve_case(problem, solver, problem.load_cases.front()).tension);
 }
 
 }  // namespace
@@ -101,22 +80,17 @@ Results accuracy_results(const ReachedAccuracy& reached) {
   return results.set("accuracy/ten_times_more", ten);
 }
 
-CaseSearch::CaseSearch(const CommonOptions& options, RefinementOptions refinement, SettingOf setting_of,
-                       std::function<std::vector<double>(Case)> values_of)
+CaseSearch::CaseSearch(const CommonOptions& options, SearchedSetting searched)
     : options_(options),
-      accuracy_(refinement.accuracy),
-      unit_(refinement.unit),
-      setting_of_(std::move(setting_of)),
-      values_of_(std::move(values_of)),
-      admissible_(refinement.admissible),
+      searched_(std::move(searched)),
       search_(
           [this](std::int64_t level) {
             const Stopwatch watch;
-            std::vector<double> values = values_of_(case_of(level));
+            std::vector<double> values = searched_.values_of(case_of(level));
             seconds_before_ += watch.seconds();
             return values;
           },
-          std::move(refinement)) {}
+          searched_.refinement) {}
 
 Case CaseSearch::propose() {
   proposed_.push_back(search_.propose());
@@ -131,51 +105,69 @@ bool CaseSearch::accepts(std::vector<double> values, double seconds) {
 
 Case CaseSearch::case_of(std::int64_t level) const {
   CommonOptions set = options_;
-  for (const auto& [key, value] : setting_of_(level)) set.set.push_back(fmt::format("{}={:.17g}", key, value));
+  for (const auto& [key, value] : searched_.setting_of(level)) set.set.push_back(fmt::format("{}={:.17g}", key, value));
   return read_case(set);
 }
 
-ReachedAccuracy CaseSearch::reached_accuracy(const std::string& of, const std::string& knob,
-                                             double work_exponent) const {
-  const std::int64_t level = proposed_.back();
-  const bool enough = search_.error(level) <= accuracy_ / 10;
-  std::int64_t finer = enough ? level : search_.level_for(accuracy_ / 10, level);
-  if (admissible_) finer = admissible_(finer);
-  const double factor = std::pow(static_cast<double>(finer) / static_cast<double>(level), work_exponent);
-  return {.requested = accuracy_,
-          .estimated = search_.error(level),
-          .of = fmt::format("{} (errors fall as {}^-{:.2f})", of, unit_, search_.order()),
-          .knob = knob,
-          .value = setting_of_(level),
+std::vector<std::int64_t> CaseSearch::before() const {
+  std::vector<std::int64_t> levels = pilots();
+  levels.insert(levels.end(), proposed_.begin(), proposed_.end() - 1);
+  return levels;
+}
+
+ReachedAccuracy CaseSearch::reached() const {
+  const auto& [accuracy, admissible] = std::tie(searched_.refinement.accuracy, searched_.refinement.admissible);
+  const bool enough = search_.error(level()) <= accuracy / 10;
+  std::int64_t finer = enough ? level() : search_.level_for(accuracy / 10, level());
+  if (admissible) finer = admissible(finer);
+  const double factor = std::pow(static_cast<double>(finer) / static_cast<double>(level()), searched_.work_exponent);
+  return {.requested = accuracy,
+          .estimated = search_.error(level()),
+          .of = fmt::format("{} (errors fall as {}^-{:.2f})", searched_.of, searched_.refinement.unit, search_.order()),
+          .knob = searched_.knob,
+          .value = searched_.setting_of(level()),
           .pilots = {},
           .ten_times_more = {.time_factor = factor,
                              .seconds = factor * seconds_,
-                             .value = setting_of_(finer),
+                             .value = searched_.setting_of(finer),
                              .note = enough ? has_it_already : ""}};
 }
 
-bool BlockSearch::serves(const Case& resolved) {
+bool block_can_be_chosen(const Case& resolved) {
   return resolved.test && resolved.assembly.arrangement != nullptr;
 }
 
-BlockSearch::BlockSearch(const CommonOptions& options, const Case& resolved, double accuracy)
-    : CaseSearch(
-          options, block_refinement(aspect_of(resolved), accuracy),
-          [aspect = aspect_of(resolved)](std::int64_t rows) { return setting_of(aspect, rows); }, solve_block),
-      of_case_(fmt::format("{} x {}", resolved.assembly.lattice.columns, resolved.assembly.lattice.rows)) {}
+SearchedSetting searched_block(const Case& resolved, double accuracy) {
+  const auto& [columns, rows] = std::tie(resolved.assembly.lattice.columns, resolved.assembly.lattice.rows);
+  const double aspect = static_cast<double>(columns) / rows;
+  return {.refinement = {.accuracy = accuracy,
+                         .order = 1,
+                         .first = one_beyond_a_multiple_of_four(std::max(9.0, 9 / aspect)),
+                         .most = one_beyond_a_multiple_of_four(std::sqrt(most_discs / aspect)) - 4,
+                         .unit = "rows",
+                         .admissible =
+                             [](std::int64_t n) { return one_beyond_a_multiple_of_four(static_cast<double>(n)); }},
+          .setting_of =
+              [aspect](std::int64_t n) {
+                const auto wide = one_beyond_a_multiple_of_four(std::round(aspect * static_cast<double>(n)));
+                return AccuracySetting{{"assembly.rows", static_cast<double>(n)},
+                                       {"assembly.columns", static_cast<double>(wide)}};
+              },
+          .values_of = solve_block,
+          .of = "nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated",
+          .knob = fmt::format("the size of the block, {} x {} in the case", columns, rows),
+          .work_exponent = work_per_rows};
+}
 
-std::vector<double> BlockSearch::values_of(const TensionResult& result) {
+std::vector<double> searched_values(const TensionResult& result) {
   return {result.poisson_ratio, std::log(std::abs(result.stiffness_ratio))};
 }
 
-ReachedAccuracy BlockSearch::reached() const {
-  ReachedAccuracy reached =
-      reached_accuracy("nu, and 2G/((1-nu)kN) relative, of this block against the lattice without sides, extrapolated",
-                       fmt::format("the size of the block, {} in the case", of_case_), work_per_rows);
-  const auto [fewest, most] = std::ranges::minmax(pilots());
-  reached.pilots = fmt::format("{} of {} to {} rows",
-                               counted(std::ssize(pilots()) + std::ssize(proposed()) - 1, "block"), fewest, most);
-  reached.pilots_factor = seconds_before() / seconds();
+ReachedAccuracy reached_by_block(const CaseSearch& search) {
+  ReachedAccuracy reached = search.reached();
+  const auto [fewest, most] = std::ranges::minmax(search.pilots());
+  reached.pilots = fmt::format("{} of {} to {} rows", counted(std::ssize(search.before()), "block"), fewest, most);
+  reached.pilots_factor = search.seconds_before();
   auto& more = reached.ten_times_more;
   if (const double rows = more.value[0].second, columns = more.value[1].second; rows * columns > most_discs) {
     more.note = fmt::format(

@@ -52,11 +52,21 @@ inline constexpr const char* bound_is_compared = "the error bound is compared wi
 /// value, note}}.
 Results accuracy_results(const ReachedAccuracy& reached);
 
+/// What a search varies, and how its result is told.
+struct SearchedSetting {
+  RefinementOptions refinement;
+  std::function<AccuracySetting(std::int64_t level)> setting_of;  ///< keys of the case and their values at a level
+  std::function<std::vector<double>(Case)> values_of;             ///< solves a case
+  std::string of, knob;      ///< as in ReachedAccuracy; the observed order of the errors is added to `of`
+  double work_exponent = 1;  ///< work grows as the level to this power
+};
+
 /// Search for the coarsest setting of a case that reaches an accuracy:
 ///
 ///     do run(search.propose()); while (!search.accepts(values, seconds));
 class CaseSearch {
  public:
+  CaseSearch(const CommonOptions& options, SearchedSetting searched);
   CaseSearch(const CaseSearch&) = delete;  // the refinement refers to it
   CaseSearch& operator=(const CaseSearch&) = delete;
 
@@ -65,57 +75,38 @@ class CaseSearch {
   Case propose();
   /// Whether the values computed with it are known to be within the accuracy.
   bool accepts(std::vector<double> values, double seconds);
-
- protected:
-  using SettingOf = std::function<AccuracySetting(std::int64_t level)>;
-  /// \param setting_of keys of the case and their values at a level of the refinement
-  /// \param values_of solves a case
-  CaseSearch(const CommonOptions& options, RefinementOptions refinement, SettingOf setting_of,
-             std::function<std::vector<double>(Case)> values_of);
-  ~CaseSearch() = default;
-
-  /// All but `pilots`. Work grows as the level to the power `work_exponent`.
-  /// \param of, knob as in ReachedAccuracy; the observed order of the errors is added to `of`
-  [[nodiscard]] ReachedAccuracy reached_accuracy(const std::string& of, const std::string& knob,
-                                                 double work_exponent) const;
+  /// All but `pilots`.
+  [[nodiscard]] ReachedAccuracy reached() const;
+  /// Levels that were computed before the one accepted; the first `pilots` of them without being proposed.
+  [[nodiscard]] std::vector<std::int64_t> before() const;
   [[nodiscard]] const std::vector<std::int64_t>& pilots() const { return search_.pilots(); }
-  [[nodiscard]] const std::vector<std::int64_t>& proposed() const { return proposed_; }
-  [[nodiscard]] double seconds() const { return seconds_; }                ///< of the last level
-  [[nodiscard]] double seconds_before() const { return seconds_before_; }  ///< of all levels before it
+  [[nodiscard]] std::int64_t level() const { return proposed_.back(); }
+  /// Seconds of the levels before, over those of the last one.
+  [[nodiscard]] double seconds_before() const { return seconds_before_ / seconds_; }
 
  private:
   [[nodiscard]] Case case_of(std::int64_t level) const;
 
   CommonOptions options_;
-  double accuracy_;
-  std::string unit_;
-  SettingOf setting_of_;
-  std::function<std::vector<double>(Case)> values_of_;
-  std::function<std::int64_t(std::int64_t)> admissible_;
+  SearchedSetting searched_;
   Refinement search_;
   std::vector<std::int64_t> proposed_;
-  double seconds_ = 0, seconds_before_ = 0;
+  double seconds_ = 0, seconds_before_ = 0;  ///< of the last level, and of all before it
 };
 
 /// A tension test of a lattice misses the lattice without sides by about one over its rows. Finds the rows and columns,
 /// in the proportion of the case, for which nu, and the stiffness ratio (36) relative to itself, are within the
 /// accuracy. Sides of whole fours and one disc: gauges then sit alike in all.
-class BlockSearch final : public CaseSearch {
- public:
-  static constexpr const char* plan =
-      "blocks from 9 rows on are solved until their errors give the size that reaches it, at most 1e6 discs; below is "
-      "the block of the case";
-  /// Whether the case is such a test; where it is not there is nothing to choose.
-  static bool serves(const Case& resolved);
-  /// \param resolved read from `options`, one that it serves
-  BlockSearch(const CommonOptions& options, const Case& resolved, double accuracy);
-
-  static std::vector<double> values_of(const TensionResult& result);
-  [[nodiscard]] ReachedAccuracy reached() const;
-
- private:
-  std::string of_case_;  ///< the size in the case, in words
-};
+/// \param resolved read from `options`, one whose block can be chosen
+SearchedSetting searched_block(const Case& resolved, double accuracy);
+/// Whether the case is such a test; where it is not there is nothing to choose.
+bool block_can_be_chosen(const Case& resolved);
+inline constexpr const char* plan_of_blocks =
+    "blocks from 9 rows on are solved until their errors give the size that reaches it, at most 1e6 discs; below is "
+    "the block of the case";
+std::vector<double> searched_values(const TensionResult& result);
+/// \param search that has ended
+ReachedAccuracy reached_by_block(const CaseSearch& search);
 
 /// The error that the solver adds to the solution of a given assembly: its error bound.
 /// \throws Error (computation_failed) where the bound is above the accuracy, or not known

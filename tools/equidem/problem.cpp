@@ -19,9 +19,9 @@
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/assembly/voids.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/text.hpp"
@@ -213,11 +213,8 @@ void add_actions(Problem& problem) {
   problem.supports = problem.resolved.supports;
   problem.load_cases = problem.resolved.load_cases;
   if (problem.resolved.test) {
-    try {
-      problem.tension = tension_setup(problem.assembly, *problem.resolved.test);
-    } catch (const Error& error) {
-      throw error.at(problem.resolved.where("test"));
-    }
+    problem.tension = casefile::with_place(problem.resolved.where("test"),
+                                           [&] { return tension_setup(problem.assembly, *problem.resolved.test); });
     problem.supports = problem.tension->supports;
     problem.load_cases = {{"", problem.tension->loads}};
   }
@@ -280,6 +277,10 @@ void add_largest_void(Results& results, const Assembly& assembly) {
       .note(fmt::format(", at ({:.4g}, {:.4g}) m", found->centre.x, found->centre.y));
   results.set("largest_void/centre", found->centre);
   if (relative > 1) results.line("", "a hole that would hold another disc: moduli and speeds of such packings scatter");
+}
+
+const char* status_of(std::int64_t unstable_modes) {
+  return unstable_modes > 0 ? "unstable" : unstable_modes < 0 ? "unjudged" : "solved";
 }
 
 ResultValue known(std::int64_t count) {
@@ -526,17 +527,11 @@ void leave_out_loose(Problem& problem) {
   assembly = std::move(rest);
 }
 
-namespace {
-
-std::optional<PrestressedSprings> choice_for(const Problem& problem) {
-  try {
+static std::optional<PrestressedSprings> choice_for(const Problem& problem) {
+  return casefile::with_place(problem.resolved.where("effects.prestress"), [&] {
     return choose_prestress(problem.assembly, problem.springs.springs, problem.resolved.prestress);
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where("effects.prestress"));
-  }
+  });
 }
-
-}  // namespace
 
 bool prestress_counts(const Problem& problem) {
   if (!carries_forces(problem.assembly)) return false;
@@ -570,7 +565,7 @@ void add_forces_at_rest(Results& results, const Problem& problem) {
   if (!problem.prestress) {
     if (carries_forces(problem.assembly))
       results.line("not used",
-                   "forces at rest: solve, homogenize, stability, and quasistatic where contacts rub, take them");
+                   "forces at rest: solve, homogenize, stability, and quasistatic with frictional contacts, take them");
     return;
   }
   results.line("forces at rest", problem.prestress->sentence);

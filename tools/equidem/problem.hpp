@@ -118,12 +118,9 @@ struct SolvedCase {
   /// the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).
   double moment_per_area = 0;
   std::optional<TensionResult> tension = {};
-
-  /// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
-  [[nodiscard]] std::string status() const {
-    return equilibrium.unstable_modes > 0 ? "unstable" : equilibrium.unstable_modes < 0 ? "unjudged" : "solved";
-  }
 };
+/// "solved"; "unstable" where the assembly would give way; "unjudged" where the solver cannot tell.
+const char* status_of(std::int64_t unstable_modes);
 
 SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, const NamedLoads& loads);
 

@@ -92,6 +92,7 @@ void remove_state(const CommonOptions& options, const OutputCase& wanted, const 
 
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                  const AssemblyState& state) {
+  if (options.pictures_only) return;
   if (wanted.csv) {
     write_disc_csv(*options.out / ("discs" + suffix + ".csv"), state, options.overwrite);
     write_contact_csv(*options.out / ("contacts" + suffix + ".csv"), state, options.overwrite);

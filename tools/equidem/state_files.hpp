@@ -11,7 +11,7 @@
 
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/output/files/state.hpp"
+#include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/statics/equilibrium.hpp"
 #include "equidem/waves/wave_survey.hpp"

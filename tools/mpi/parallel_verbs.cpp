@@ -16,10 +16,10 @@
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/output/files/vtk.hpp"
 
-#include "homogenize/homogenize_results.hpp"
+#include "homogenize/homogenize.hpp"
 #include "part_problem.hpp"
 #include "rank_program.hpp"
-#include "solve/solve_results.hpp"
+#include "solve/solve.hpp"
 
 namespace equidem {
 namespace {
@@ -116,7 +116,7 @@ void deliver_of_ranks(const petsc::Ranks& ranks, const CommonOptions& options, c
                       const std::string& status, Results all, StageTimes times) {
   if (!ranks.first()) return;
   deliver(options, status, std::move(all), std::move(times),
-          {{"case.toml", [&] { write_case(options, p.problem.resolved); }}});
+          {{"case.toml", [&](const CommonOptions& into) { write_case(into, p.problem.resolved); }}});
 }
 
 void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
@@ -143,7 +143,8 @@ void solve(const petsc::Ranks& ranks, const CommonOptions& options) {
   }
   Results all = solve_results(p.problem, part_problem_results(ranks, p), results);
   all.append(rank_results(ranks, network, before));
-  deliver_of_ranks(ranks, options, p, results.front().status(), std::move(all), std::move(times));
+  deliver_of_ranks(ranks, options, p, status_of(results.front().equilibrium.unstable_modes), std::move(all),
+                   std::move(times));
 }
 
 constexpr std::array strain_states{"state_strain_xx", "state_strain_yy", "state_strain_xy"};
@@ -198,7 +199,7 @@ void homogenize(const petsc::Ranks& ranks, const CommonOptions& options) {
                                     {}, relation_of_all(p));
   all.set("strain_of_states", strain_of_states);
   all.append(rank_results(ranks, network, before));
-  deliver_of_ranks(ranks, options, p, status_of(result), std::move(all), std::move(times));
+  deliver_of_ranks(ranks, options, p, status_of(result.unstable_modes), std::move(all), std::move(times));
 }
 
 template <void (*verb)(const petsc::Ranks&, const CommonOptions&)>

@@ -3,35 +3,38 @@
 """Sukegawa (2010), chapter 8: a box of 3000 discs, ellipses or bonded pairs filled and shaken; void ratios over seeds
 beside the printed ones, surface, grains thrown, pictures; which shaking compacts best, and whether the box resonates.
 Runs whose laws the program has no longer are those of data/papers/sukegawa2010/runs.csv; --stored takes all from there.
-An interrupted computation is continued when the same command is given again."""
+An interrupted computation is continued when the same command is given again.
+
+Examples:
+  tools/papers/sukegawa2010.py --quick --out figures    a small box: a minute
+  tools/papers/sukegawa2010.py --stored --out figures   the stored runs: seconds
+"""
 import dataclasses
 import json
 import math
-import tomllib
 
 import numpy as np
 from scipy.special import stdtrit
 
-from common import (DATA, Axis, Output, Plot, Series, Table, columns_of, eq, main, mean_of, points, rows_of, samples_of)
+from common import Output, columns_of, eq, main, mean_of, rows_of, samples_of
+from shown import Page, Row, told_of
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
-TEXTS = tomllib.loads((DATA / "sukegawa2010" / "texts.toml").read_text(encoding="utf-8"))
-STORED = {"date": "2026-11-23", "commit": "ca6078f8"}
+STORED = Row(date="2026-11-23", commit="ca6078f8")
 SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
 GRAVITY, PERIOD = NUMBERS["gravity"], NUMBERS["sloshing period"]
-VARIANTS = {"": {}, "half_step": {"step_share": 0.25}, "soft": {"softness": 9.0}, "less_damping": {"damping": 0.1},
-            "printed_step": {"step": NUMBERS["time step"]}, "bulk_springs": {"bulk": "springs"}, "bulk_density": {"bulk": "all"},
-            "low_drop": {"row_share": 0.7}, "smooth": {"friction": 0.0}, "rough": {"friction": 0.5},
-            "small": {"columns": 18, "rows": 34, "softness": 9.0},
-            "mended_test": {"columns": 18, "rows": 34, "softness": 9.0, "ellipse_contact": "enlarged"},
-            "strong_bonds": {"bond_step": NUMBERS["time step"] / 10}}
-PRINTED_ROWS = (("forces in increments", "increments"), ("integrator (3.16)-(3.17)", "printed_integrator"),
-                ("c_i = 1/s m_i", "mass_damping_1"), ("c_i = 10/s m_i", "mass_damping_10"), ("beta = 1.05", "beta_1.05"))
+TOLD = told_of("sukegawa2010")
+WHOLE, INNER = ("whole_void_ratio_before", "whole_void_ratio"), ("void_ratio_before", "void_ratio")
+KEPT = ("numbers", "filling", "falling", "shaking", "pictures")  # of a run
 
 
 # ---- runs
 
-class Run(dict):
+def usual_cycles(frequency):
+    return max(2, math.floor(frequency + 0.5))
+
+
+class Run(Row):
     """A row of runs.csv: what was run, and its numbers. `filling`: the motion while the box was filled."""
     filling, falling, shaking, pictures = None, (), (), ()
 
@@ -39,48 +42,67 @@ class Run(dict):
         text = ("run", "shape", "variant")
         super().__init__({key: value if key in text else float(value) for key, value in row.items()})
 
+    def number(self, key):
+        """key: a name, that of a number of the filling, or two whose difference is wanted."""
+        if isinstance(key, tuple):
+            return self[key[0]] - self[key[1]]
+        return self.filling[key.removeprefix("filling.")] if key.startswith("filling.") else self[key]
+
     @property
-    def shown(self):
-        """With pictures, and paths of nine grains."""
-        return self["seed"] == 1 and not self["variant"] and self["cycles"] <= 10 and (
-            self["frequency_Hz"], self["acceleration_gal"]) in SHOWN
+    def title(self):
+        return f"{self.acceleration_gal:g} gal, {self.frequency_Hz:.3g} Hz"
 
     @property
     def mapped(self):
         """Part of the table over amplitudes and frequencies (sections 8.6 to 9.2)."""
-        return (self["seed"] == 1 and not self["variant"] and self["shape"] in ("discs", "bonded_pairs") and
-                self["acceleration_gal"] > 0 and self["cycles"] <= 10)
+        return (self.seed == 1 and not self.variant and self["shape"] in ("discs", "bonded_pairs") and
+                self.acceleration_gal > 0 and self.cycles <= 10)
 
 
-SHOWN = {(frequency, gal) for frequency in (10, 2, 1) for gal in (400, 800, 1200)}
+class Runs(list):
+    def alike(self, shape, gal, frequency, variant=""):
+        return [run for run in self if (run.shape, run.variant, run.acceleration_gal, run.frequency_Hz) ==
+                (shape, variant, gal, frequency)]
 
+    def values(self, key, shape="discs", gal=400, variant="", cycles=10):
+        """Finite values over the runs at 10 Hz that differ only in the seed."""
+        numbers = [run.number(key) for run in self.alike(shape, gal, 10, variant) if run.cycles == cycles]
+        return [number for number in numbers if math.isfinite(number)]
 
-def name_of(shape, variant, seed, gal, frequency, cycles):
-    usual = max(2, math.floor(frequency + 0.5))
-    return (f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz" +
-            (f"_{cycles}cycles" if cycles > usual else ""))
+    def of_seeds(self, key, shape, gal=400, frequency=10):
+        """{seed: number} of the usual runs."""
+        found = {run.seed: run.number(key) for run in self.alike(shape, gal, frequency)
+                 if run.cycles <= usual_cycles(frequency)}
+        return {seed: value for seed, value in sorted(found.items()) if math.isfinite(value)}
+
+    def mapped(self, shape, frequencies=None):
+        return [run for run in self if run.mapped and run.shape == shape and
+                (frequencies is None or run.frequency_Hz in frequencies)]
+
+    def resonance(self):
+        return sorted((run for run in self.mapped("discs") if run.acceleration_gal == 400),
+                      key=lambda run: -run.frequency_Hz)
 
 
 def plan(quick):
     """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
-    if quick:
-        rows = [(shape, "", seed, 400.0, 10.0, 10) for shape, seed in
-                (("discs", 1), ("bonded_pairs", 1), ("rigid_pairs", 1), ("ellipses", 1), ("discs", 2), ("discs", 3))]
-        rows += [(shape, "", 1, 1200.0, 2.0, 2) for shape in ("discs", "bonded_pairs")]
-        rows += [("discs", variant, 1, 400.0, 10.0, 10) for variant in ("bulk_springs", "bulk_density")]
-    else:
-        rows = [(row["shape"], row["variant"], int(row["seed"]), float(row["acceleration_gal"]), float(row["frequency_Hz"]),
-                 int(row["cycles"])) for row in rows_of("sukegawa2010/runs") if row["variant"] in VARIANTS]
-    small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
     keys = ("shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
-    return [({"run": name_of(*row), **dict(zip(keys, row))}, Fill(row[0], row[2], **{**small, **VARIANTS[row[1]]})) for row in rows]
+    small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
+    rows, found = TOLD["quick_runs"] if quick else rows_of("sukegawa2010/runs"), []
+    for row in (row for row in rows if row["variant"] in TOLD["variants"]):
+        shape, variant, seed, gal, frequency, cycles = (
+            kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys))
+        name = f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz"
+        name += f"_{cycles}cycles" if cycles > usual_cycles(frequency) else ""
+        found.append((Row(run=name, **dict(zip(keys, (shape, variant, seed, gal, frequency, cycles)))),
+                      Fill(shape, seed, **{**small, **TOLD["variants"][variant]})))
+    return found
 
 
 def kept_run(arguments):
     """A run, kept in two files where a path is given."""
     *given, path = arguments
-    names = ("numbers", "filling", "falling", "shaking", "pictures")
-    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(names, run_box(given)))}
+    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(KEPT, run_box(given)))}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
         np.savez_compressed(path.with_suffix(".npz"), *(array for one in found["pictures"] for array in one))
@@ -90,44 +112,36 @@ def kept_run(arguments):
     return found
 
 
+def read_run(path, fill):
+    found = json.loads(path.read_text(encoding="utf-8"))
+    if found["fill"] != dataclasses.asdict(fill):
+        raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
+                          "Choose another --out, or remove it")
+    with np.load(path.with_suffix(".npz")) as file:
+        arrays = list(file.values())
+    return {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
+
+
 def compute(options):
     """The runs of the plan, those that are in --out already taken from there."""
-    kept, wanted, runs = options.out and options.out / "runs", plan(options.quick), {}
-    for row, fill in wanted:
-        path = kept and kept / f"{row['run']}.json"
-        if path and path.exists():
-            found = json.loads(path.read_text(encoding="utf-8"))
-            if found["fill"] != dataclasses.asdict(fill):
-                raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
-                                  "Choose another --out, or remove it")
-            with np.load(path.with_suffix(".npz")) as file:
-                arrays = list(file.values())
-            runs[row["run"]] = {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
-    todo = [(row, fill) for row, fill in wanted if row["run"] not in runs]
-    runs.update(zip([row["run"] for row, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
-        (fill, row["acceleration_gal"], row["frequency_Hz"], row["cycles"], kept and kept / f"{row['run']}.json")
-        for row, fill in todo], 1)))
+    kept = options.out and options.out / "runs"
+    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in plan(options.quick)]
+    runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
+    todo = [one for one in wanted if one[0].run not in runs]
+    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
+        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
     done = []
-    for row, _ in wanted:
-        found = runs[row["run"]]
-        run = Run({**row, **found["numbers"]})
-        run.filling, run.falling, run.shaking, run.pictures = (found[key] for key in ("filling", "falling", "shaking", "pictures"))
-        done.append(run)
+    for row, _, _ in wanted:
+        done.append(Run({**row, **runs[row.run]["numbers"]}))
+        for key in KEPT[1:]:
+            setattr(done[-1], key, runs[row.run][key])
     return done
 
 
+# ---- words of tables
+
 def words(name):
     return name.replace("_", " ")
-
-
-# ---- tables
-
-def values_of(runs, key, shape="discs", gal=400, frequency=10, variant="", cycles=10):
-    """Finite values over the runs that differ only in the seed. key: a name, or two whose difference is wanted."""
-    numbers = [run[key] if isinstance(key, str) else run[key[0]] - run[key[1]] for run in runs
-               if (run["shape"], run["variant"], run["acceleration_gal"], run["frequency_Hz"], run["cycles"]) ==
-               (shape, variant, gal, frequency, cycles)]
-    return [number for number in numbers if math.isfinite(number)]
 
 
 def figures(value, digits):
@@ -141,68 +155,30 @@ def spread(values):
     return figures(mean.mean, 4) + (f" ± {mean.standard_deviation:.4f}" if len(values) > 1 else "")
 
 
-WHOLE, INNER = ("whole_void_ratio_before", "whole_void_ratio"), ("void_ratio_before", "void_ratio")
-
-
-def void_ratio_table(runs, before, after):
-    table = Table(" & before & printed & after & printed & change & printed & seeds")
-    for shape in SHAPES:
-        first, last = (NUMBERS.get(f"{shape}, void ratio {when}") for when in ("before", "after"))
-        beside = [f"{number:.3f}" if first else "" for number in (first or 0, last or 0, (last or 0) - (first or 0))]
-        cells = [values_of(runs, key, shape) for key in (before, after, (after, before))]
-        table.add(" & ".join([words(shape), *(f"{spread(cell)} & {printed}" for cell, printed in zip(cells, beside)), str(len(cells[2]))]))
-    return table.text()
-
-
-def variants_text(runs):
-    table = Table(" & before & after & change & inner: before & change & seeds")
-    for row in rows_of("sukegawa2010/variants"):
-        cells = [values_of(runs, key, row["shape"], float(row["gal"]), variant=row["variant"], cycles=float(row["cycles"]))
-                 for key in (*WHOLE, WHOLE[::-1], INNER[0], INNER[::-1])]
-        if cells[3]:
-            table.add(" & ".join([row["name"], *map(spread, cells), str(len(cells[3]))]))
-    return TEXTS["variants"].format(table=table.text())
+def printed(shape, *times):
+    """Printed void ratio, or the difference of two; empty where there is none."""
+    numbers = [NUMBERS.get(f"{shape}, void ratio {when}") for when in times]
+    return "" if None in numbers else f"{numbers[-1] - (numbers[0] if len(times) > 1 else 0):.3f}"
 
 
 def half_width(values):
+    """Of the interval of 95 %."""
     return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
-def printed_level(runs):
-    """Printed details, one at a time, beside the void ratio of discs under (2.16) and the printed one."""
-    printed, capped, rows = NUMBERS["discs, void ratio before"], values_of(runs, WHOLE[0], variant="printed_cap"), ""
-    for name, variant in PRINTED_ROWS:
-        found = values_of(runs, WHOLE[0], variant=variant)
-        if not found or not capped:
-            continue
-        one, mean = len(found) == 1, mean_of(found).mean
-        # With one seed: judged by the scatter of the runs with (2.16) alone.
-        half = half_width(capped) * math.sqrt(len(capped)) if one else half_width(found)
-        verdict = ("not decided" if not math.isfinite(half) else "does not explain it, too loose" if mean - half > printed else
-                   "does not explain it, too dense" if mean + half < printed else "agrees with it within the scatter")
-        rows += (f"  {name:<26} {spread(found)} against {spread(capped)} without, printed {printed:g}: {verdict}"
-                 f"{' (one seed)' if one else ''}\n")
-    radius = 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"])
+def printed_verdict(found, capped):
+    """Whether a detail explains the printed void ratio of discs before shaking. With one seed: judged by the scatter of
+    the runs with (2.16) alone."""
+    mean, wanted = mean_of(found).mean, NUMBERS["discs, void ratio before"]
+    half = half_width(capped) * math.sqrt(len(capped)) if len(found) == 1 else half_width(found)
+    return ("not decided" if not math.isfinite(half) else "does not explain it, too loose" if mean - half > wanted else
+            "does not explain it, too dense" if mean + half < wanted else "agrees with it within the scatter")
+
+
+def fastest(radius):
+    """Speed of a disc that falls under c_i read as (2.27)."""
     mass = math.pi * radius**2 * NUMBERS["density"]
-    fastest = mass * GRAVITY / (2 * math.sqrt(mass * Fill().springs()[0]))
-    height = NUMBERS["box height"]
-    return TEXTS["printed"].format(rows=rows, radius=100 * radius, fastest=fastest, time=height / fastest, height=height,
-                                       steps=height / fastest / NUMBERS["time step"]) if rows else ""
-
-
-def shakings_text(runs):
-    table = Table(" & e before & e after & change & surface, mm & centre, mm & rough, mm & after, mm & slope & thrown")
-    for shape in ("discs", "bonded_pairs"):
-        own = [run for run in runs if run.mapped and run["shape"] == shape and run["frequency_Hz"] in (1, 2, 5, 10)]
-        for run in sorted(own, key=lambda run: (-run["frequency_Hz"], run["acceleration_gal"])):
-            table.add(" & ".join([
-                f"{words(shape)}, {run['acceleration_gal']:g} gal, {run['frequency_Hz']:g} Hz",
-                *(figures(x, 4) for x in (run[INNER[0]], run[INNER[1]], run[INNER[1]] - run[INNER[0]])),
-                figures(1e3 * (run["surface_height_before_m"] - run["surface_height_m"]), 1),
-                figures(1e3 * (run["centre_height_before_m"] - run["centre_height_m"]), 2),
-                figures(1e3 * run["roughness_before_m"], 1), figures(1e3 * run["roughness_m"], 1), figures(run["largest_slope"], 2),
-                figures(run["thrown"], 0)]))
-    return TEXTS["shakings"].format(table=table.text())
+    return mass * GRAVITY / (2 * math.sqrt(mass * Fill().springs()[0]))
 
 
 # ---- sloshing
@@ -229,41 +205,21 @@ def liquid_amplification(period, width, depth):
 
 def amplification_of(run, width):
     """Swing of the centre of mass over that of a liquid whose surface tilts by a/g at once, l² a/(12 h g)."""
-    tilted = 0.01 * run["acceleration_gal"] / GRAVITY * width**2 / (12 * run["surface_height_before_m"])
-    return run["swing_m"] / tilted
+    tilted = 0.01 * run.acceleration_gal / GRAVITY * width**2 / (12 * run.surface_height_before_m)
+    return run.swing_m / tilted
 
 
-def resonance_runs(runs):
-    found = [run for run in runs if run.mapped and run["shape"] == "discs" and run["acceleration_gal"] == 400]
-    return sorted(found, key=lambda run: -run["frequency_Hz"])
-
-
-def periods_text(runs, width):
-    discs = [run for run in runs if run["shape"] == "discs" and not run["variant"]]
-    depth, table = discs[0]["surface_height_before_m"], Table(" & linear theory & (7.2) as printed")
-    for name, h in (("height of the start, 2.25 m", NUMBERS["box height"]), (f"depth of the heap, {depth:.3f} m", depth)):
-        table.add(f"{name} & {sloshing_period(width, h):.4f} s & {printed_formula_period(width, h):.4f} s")
-    sweep = Table("period & swing, mm & amplification & liquid without loss & slope & thrown")
-    for run in resonance_runs(runs):
-        period = 1 / run["frequency_Hz"]
-        sweep.add(f"discs, 400 gal, {period:.3g} s & {figures(1e3 * run['swing_m'], 2)} & {figures(amplification_of(run, width), 3)} & "
-                  f"{liquid_amplification(period, width, depth):.3f} & {run['largest_slope']:.3f} & {run['thrown']:.0f}")
-    return TEXTS["periods"].format(table=table.text(), depth=depth, sweep=sweep.text())
+def resonance_text(page, runs, width):
+    found = runs.resonance()
+    nearest = min(range(len(found)), key=lambda k: abs(1 / found[k].frequency_Hz - PERIOD), default=0)
+    if not 0 < nearest < len(found) - 1 or abs(1 / found[nearest].frequency_Hz - PERIOD) > 0.01:
+        return ""
+    left, here, right = found[nearest - 1:nearest + 2]
+    return page.text("resonance", left=left, right=right, amplitude=[amplification_of(run, width)
+                                                                    for run in (left, here, right)])
 
 
 # ---- verdicts
-
-def of_seeds(runs, key, shape, gal=400, frequency=10):
-    """{seed: number} of the usual runs."""
-    chosen = {}
-    for run in runs:
-        if (run["shape"], run["variant"], run["acceleration_gal"], run["frequency_Hz"]) == (shape, "", gal, frequency) and \
-                run["cycles"] <= max(2, math.floor(frequency + 0.5)):
-            value = run[key] if isinstance(key, str) else key(run)
-            if math.isfinite(value):
-                chosen[run["seed"]] = value
-    return dict(sorted(chosen.items()))
-
 
 def judge(differences):
     """A difference that a statement says is positive."""
@@ -280,241 +236,107 @@ def interval(values):
     return f"{mean_of(values).mean:.3g} ± {half_width(values):.1g}"
 
 
-def line(text, smaller, larger, difference, verdict):
-    return f"      {text:<66} {smaller:>8.3g} < {larger:>8.3g}, by {difference:<20} {verdict}\n"
+def sides(runs, told):
+    """{seed: number} of both sides of a comparison."""
+    found = []
+    for shape, at, factor in zip(told["shapes"], told.get("at", [[400, 10]] * 2), told.get("change", [None] * 2)):
+        numbers = runs.of_seeds(told["key"], shape, *at) if shape else dict.fromkeys((1.0, 2.0, 3.0), 0.0)
+        if factor:
+            mild = runs.of_seeds(told["key"], shape)
+            numbers = {seed: factor * abs(numbers[seed] - mild[seed]) for seed in mild if seed in numbers}
+        found.append(numbers)
+    return found
 
 
-def statement(section, text, comparisons, lines=()):
-    """Holds where all its comparisons (what, smaller, larger) do, and does not where one of them does not."""
-    rows, verdicts = "", [one["verdict"] for one in lines]
-    for one in lines:
-        rows += line(one["quantity"], float(one["smaller"]), float(one["larger"]), one["difference"], one["verdict"])
-    for what, smaller, larger in comparisons:
-        seeds = [seed for seed in smaller if seed in larger]
-        if not seeds:
-            return ""
-        differences = [larger[seed] - smaller[seed] for seed in seeds]
-        verdicts.append(judge(differences))
-        rows += line(what, *(mean_of([side[seed] for seed in seeds]).mean for side in (smaller, larger)), interval(differences),
-                     verdicts[-1])
-    verdict = next(one for one in ("does not hold", "not decided", "holds") if one in verdicts)
-    return f"  {section} {text}: {verdict.upper()}\n{rows}"
+def compared(runs, told):
+    """Over the seeds that both sides have; nothing where there are none."""
+    smaller, larger = sides(runs, told)
+    both = [(smaller[seed], larger[seed]) for seed in smaller if seed in larger]
+    differences = [b - a for a, b in both]
+    return both and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
+                        smaller=mean_of(a for a, _ in both).mean, larger=mean_of(b for _, b in both).mean)
 
 
-def statements(runs, stored):
-    def rising(what, key, first, last, of=of_seeds):
-        return f"{what}, {words(first)} < {words(last)}", of(runs, key, first), of(runs, key, last)
-
-    def in_order(what, key, of=of_seeds):
-        return [rising(what, key, "discs", "ellipses", of), rising(what, key, "ellipses", "bonded_pairs", of)]
-
-    def filling(_, key, shape):
-        return of_seeds(runs, lambda run: run.filling[key], shape)
-
-    zero = dict.fromkeys((1.0, 2.0, 3.0), 0.0)
-    lines = rows_of("sukegawa2010/filling") if stored else ()
-    text = statement("8.5.2", "while the box is filled, discs, ellipses, bonded pairs move ever more",
-                     [] if stored else in_order("path along x, m", "path_along_x_m", filling) +
-                     in_order("rotation to and fro, rad", "turned_rad", filling), lines)
-    text += statement("8.5.2", "while it is shaken they do, too",
-                      in_order("path, m", "path_m") + in_order("rotation to and fro, rad", "turned_rad"))
-    text += statement("8.5.2", "ellipses and pairs move violently just after the shaking begins",
-                      [rising("path in the first 0.1 s, m", "first_path_m", "discs", other) for other in ("ellipses", "bonded_pairs")])
-    text += statement("8.5.3", "discs on the left and on the right move towards the middle and sink",
-                      [(f"displacement {way}, m", zero, of_seeds(runs, key, "discs"))
-                       for way, key in (("inward", "inward_m"), ("downward", "sunk_m"))])
-    text += statement("8.5.3", "ellipses move far along x, those of one height the same way",
-                      [rising("displacement along x, m", "displaced_x_m", "discs", "ellipses"),
-                       rising("common to a layer", "layered", "discs", "ellipses")])
-    text += statement("8.5.3", "bonded pairs move far along x, in various directions",
-                      [rising("displacement along x, m", "displaced_x_m", "discs", "bonded_pairs"),
-                       rising("common to a layer", "layered", "bonded_pairs", "ellipses")])
-
-    def change(key, shape, gal, frequency, factor):
-        mild, strong = of_seeds(runs, key, shape), of_seeds(runs, key, shape, gal, frequency)
-        return {seed: factor * abs(strong[seed] - mild[seed]) for seed in mild if seed in strong}
-    for what, gal, frequency in (("at 10 Hz a larger amplitude changes little", 1200, 10),
-                                 ("at 400 gal a lower frequency changes little", 400, 1)):
-        text += statement("8.9.1", what, [
-            (f"{words(shape)}, change of the {name}, less than a fifth of that by both", change(key, shape, gal, frequency, 1),
-             change(key, shape, 1200, 1, 0.2)) for shape in ("discs", "bonded_pairs")
-            for name, key in (("slope", "largest_slope"), ("void ratio", "void_ratio"))])
-    text += statement("8.9.1", "large and slow shaking tilts the surface, most at 1200 gal, 1 Hz", [
-        (f"{words(shape)}, slope at 1200 gal, {a} < {b} Hz", of_seeds(runs, "largest_slope", shape, 1200, a),
-         of_seeds(runs, "largest_slope", shape, 1200, b)) for shape in ("discs", "bonded_pairs") for a, b in ((10, 2), (2, 1))])
-    for what, name, key, first, last in (
-            ("the surface of bonded pairs is rougher", "roughness", "roughness_m", "discs", "bonded_pairs"),
-            ("fewer of the bonded pairs are thrown", "thrown", "thrown", "bonded_pairs", "discs")):
-        order = "m, discs < pairs" if key == "roughness_m" else "pairs < discs"
-        text += statement("8.9.2", what, [
-            (f"{name} at {gal} gal, {frequency} Hz, {order}", of_seeds(runs, key, first, gal, frequency),
-             of_seeds(runs, key, last, gal, frequency)) for gal, frequency in ((1200, 2), (800, 1), (1200, 1))])
-    return text
-
-
-def best_shakings(runs):
-    """Section 9.2: the shaking after which the void ratio is smallest, and those that the scatter does not tell from it."""
-    text = ""
-    for shape in ("discs", "bonded_pairs"):
-        found = [(f"{run['acceleration_gal']:g} gal, {run['frequency_Hz']:.3g} Hz",
-                  of_seeds(runs, "void_ratio", shape, run["acceleration_gal"], run["frequency_Hz"]))
-                 for run in runs if run.mapped and run["shape"] == shape]
-        found = sorted((one for one in found if one[1]), key=lambda one: len(one[1]))
-        if len(found) < 2:
-            continue
-        seeds = len(found[len(found) // 2][1])  # that half of the shakings have
-        found = sorted((one for one in found if len(one[1]) >= seeds), key=lambda one: mean_of(one[1].values()).mean)
-        name, best = found[0]
-        text += f"  {words(shape)}: densest after {name}, e = {interval(list(best.values()))}, of {len(found)} shakings of {seeds} filling"
-        if seeds == 1:
-            text += ": no scatter is known\n"
-            continue
-        rivals = ""
-        for other, values in found[1:]:
-            more = [values[seed] - best[seed] for seed in best if seed in values]
-            if judge(more) != "holds":
-                rivals += f"    {other:<16} by {interval(more)}\n"
-        text += "s; " + ("NOT DECIDED within the scatter against\n" + rivals if rivals else "no other is as good within the scatter\n")
-    return "  9.2 the shaking that compacts best (void ratio away from walls)\n" + text if text else ""
-
-
-def resonance_text(runs, width):
-    found = resonance_runs(runs)
-    nearest = min(range(len(found)), key=lambda k: abs(1 / found[k]["frequency_Hz"] - PERIOD), default=0)
-    if not 0 < nearest < len(found) - 1 or abs(1 / found[nearest]["frequency_Hz"] - PERIOD) > 0.01:
+def statement(page, runs, told, stored):
+    """Holds where all its comparisons do, and does not where one of them does not."""
+    rows = rows_of("sukegawa2010/filling") if stored and "stored" in told else [
+        compared(runs, one) for one in told["compared"]]
+    if not all(rows):
         return ""
-    left, here, right = found[nearest - 1:nearest + 2]
-    amplitude = [amplification_of(run, width) for run in (left, here, right)]
-    peak = amplitude[1] > max(amplitude[0], amplitude[2])
-    return (f"  9.2 discs resonate at the period of {PERIOD:g} s: {'HOLDS' if peak else 'DOES NOT HOLD'} (one filling): amplification "
-            f"{amplitude[1]:.3f} there, {amplitude[0]:.3f} at {1 / left['frequency_Hz']:.3g} s, {amplitude[2]:.3f} at "
-            f"{1 / right['frequency_Hz']:.3g} s\n")
+    verdict = next(one for one in ("does not hold", "not decided", "holds") if one in [row.verdict for row in rows])
+    return f"  {told['section']} {told['says']}: {verdict.upper()}\n" + page.lines("comparison", rows)
 
 
-# ---- the report
-
-def csv_table(head, name):
-    table = Table(head)
-    for row in rows_of(f"sukegawa2010/{name}"):
-        table.add(" & ".join(row.values()))
-    return table.text()
-
-
-def report(runs, options, fill, missing):
-    text = "Sukegawa (2010), chapter 8: grains in a box, filled and shaken\n\n"
-    text += TEXTS["head"].format(places=fill.columns * fill.rows, rows=fill.rows, columns=fill.columns, cell=3, width=fill.width,
-                                     integrator="corrected_verlet" if options.stored else "velocity_verlet")
-    text += TEXTS["quick"].format(softness=fill.softness) if options.quick else TEXTS["start"]
-    text += (TEXTS["stored"].format(**STORED) if missing else "") + "\n"
-    text += TEXTS["void_ratios"].format(whole=void_ratio_table(runs, *WHOLE), inner=void_ratio_table(runs, *INNER))
-    before = values_of(runs, WHOLE[0])
-    solid = 1 / (1 + mean_of(before).mean)
-    text += TEXTS["margin"].format(porosities="".join(f" beta {beta:4.2f}: {1 - solid / beta**2:.4f};" for beta in (1, 1.05, 1.1))) + "\n"
-    text += "" if options.quick else variants_text(runs) + printed_level(runs)
-    text += shakings_text(runs)
-    text += TEXTS["verdicts"].format(statements=statements(runs, options.stored), best=best_shakings(runs),
-                                         resonance=resonance_text(runs, fill.width))
-    text += periods_text(runs, fill.width)
-    table = Table(" & distance & rotation, rad")
-    for run in runs:
-        if run["shape"] == "bonded_pairs" and math.isfinite(run["bond_creep"]):
-            table.add(f"{words(run['run'])} & {run['bond_creep']:.3g} & {run['bond_roll_rad']:.3g}")
-    text += TEXTS["bonds"].format(table=table.text())
-    table = Table(" & step, s & steps & largest overlap & energy error & contacts per body & seconds")
-    for run in runs:
-        if run["seed"] == 1 and run["acceleration_gal"] == 400 and run["frequency_Hz"] == 10 and \
-                (not run["variant"] and run["cycles"] <= 10 or run["variant"] == "printed_step"):
-            table.add(f"{words(run['shape'])} & {run['time_step_s']:.3g} & {run['steps']:.0f} & {run['largest_overlap']:.2g} of r_min & "
-                      f"{run['energy_error']:+.2g} & {run['coordination']:.2f} & {run['seconds']:.0f}")
-    text += TEXTS["numerics"].format(table=table.text())
-    text += TEXTS["packings"].format(table=csv_table(
-        " & discs & solid fraction & contacts & without rattlers & rattlers & overlap & moved & seconds", "packings"))
-    return text + TEXTS["ellipses"].format(table=csv_table(
-        " & at rest & time, s & void ratio & largest overlap & pairs above 0.01 & seconds", "fallen_ellipses"))
+def best_shakings(runs, shape):
+    """Section 9.2: the shaking after which the void ratio is smallest, and those that scatter does not tell from it."""
+    found = [(run.title, runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
+             for run in runs.mapped(shape)]
+    found = sorted((one for one in found if one[1]), key=lambda one: len(one[1]))
+    if len(found) < 2:
+        return ""
+    seeds = len(found[len(found) // 2][1])  # that half of the shakings have
+    found = sorted((one for one in found if len(one[1]) >= seeds), key=lambda one: mean_of(one[1].values()).mean)
+    name, best = found[0]
+    text = (f"  {words(shape)}: densest after {name}, e = {interval(list(best.values()))}, of {len(found)} shakings of "
+            f"{seeds} filling")
+    if seeds == 1:
+        return text + ": no scatter is known\n"
+    rivals = ""
+    for other, values in found[1:]:
+        more = [values[seed] - best[seed] for seed in best if seed in values]
+        if judge(more) != "holds":
+            rivals += f"    {other:<16} by {interval(more)}\n"
+    return text + "s; " + ("NOT DECIDED within the scatter against\n" + rivals if rivals else
+                           "no other is as good within the scatter\n")
 
 
 # ---- plots
 
-def void_ratio_plot(runs):
-    """Each seed before (open) and after (filled): between the walls, away from them, and as printed."""
-    series = []
-    for label, colour, marker, offset, keys in (("between the walls, each seed", "blue", "circle", -0.24, WHOLE),
-                                                ("printed", "vermilion", "square", 0, None),
-                                                ("away from walls and surface", "green", "triangle", 0.24, INNER)):
-        for after, when in enumerate(("before", "after")):
-            x, y = [], []
-            for k, shape in enumerate(SHAPES):
-                printed = NUMBERS.get(f"{shape}, void ratio {when}")
-                found = values_of(runs, keys[after], shape) if keys else [printed] if printed else []
-                x += [k + 1 + offset + (0.06 if after else -0.06)] * len(found)
-                y += found
-            series.append(points(f"{label}, {when}", x, y, colour, marker, filled=bool(after)))
-    return Plot("Void ratio before (open) and after (filled) 400 gal, 10 Hz",
-                Axis("1 discs   2 ellipses   3 bonded pairs   4 rigid pairs", 0.5, 4.5), Axis("void ratio"), series)
+def void_ratio_points(runs, key, after, offset):
+    """Each seed, beside the number of its shape: void ratios between the walls, away from them, or printed."""
+    found = []
+    for k, shape in enumerate(SHAPES):
+        number = NUMBERS.get(f"{shape}, void ratio {'after' if after else 'before'}")
+        values = runs.values(key[after], shape) if key else [number] if number else []
+        found += [{"x": k + 1 + offset + (0.06 if after else -0.06), "e": value} for value in values]
+    return found
 
 
-def over_frequency(runs, shape, title, label, key):
-    series = []
-    for gal, colour, marker in ((400, "blue", "circle"), (800, "vermilion", "square"), (1200, "green", "triangle")):
-        own = sorted((run for run in runs if run.mapped and run["shape"] == shape and run["acceleration_gal"] == gal and
-                      run["frequency_Hz"] in (1, 2, 5, 10)), key=lambda run: run["frequency_Hz"])
-        if own:
-            series.append(points(f"{gal} gal", [run["frequency_Hz"] for run in own], [run[key] for run in own], colour, marker,
-                                 joined=True))
-    return Plot(f"{words(shape)}: {title}", Axis("frequency, Hz", 0.8, 12, True), Axis(label), series)
+def less_first(rows, name, k, scale):
+    """Of one of the nine grains. name: "time", "x", "y" or "angle"; scale of positions."""
+    if name == "time":
+        return [row["time_s"] for row in rows]
+    values = np.array([row[f"{name}{k}_{'rad' if name == 'angle' else 'm'}"] for row in rows])
+    return ((values - values[0]) * (1 if name == "angle" else scale)).tolist()
 
 
-def resonance_plot(runs, width):
-    found = resonance_runs(runs)
-    depth = found[-1]["surface_height_before_m"]
-    periods = [0.01 * k for k in range(4, 261)]
-    liquid = Series("liquid, linear theory", periods, [min(50.0, liquid_amplification(x, width, depth)) for x in periods],
-                    "dashed_line")
-    discs = points("discs", [1 / run["frequency_Hz"] for run in found], [amplification_of(run, width) for run in found], "blue")
-    return Plot("Discs shaken by 400 gal: swing of their centre of mass over that of a liquid tilted by a/g",
-                Axis("period of shaking, s", 0, 2.6), Axis("amplification", 0, 4), [liquid, discs],
-                [(sloshing_period(width, depth), f"T1, depth {depth:.2f} m", "black"), (PERIOD, "printed 1.85 s", "vermilion")])
+def histories(runs, fill):
+    """Figures of the motion of nine grains: (name, title, labels, rows, abscissa, ordinate, scale, names of grains)."""
+    found = []
+    for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and len(run.falling)):
+        shape, names = run.shape, dataclasses.replace(fill, shape=run.shape).followed()[1]
+        for stage, title, rows, box, unit, scale in (
+                ("falling", "falling", run.falling, "", "m", 1),
+                ("shaken", "400 gal, 10 Hz", run.shaking, " in the box", "mm", 1e3)):
+            for what, label in (("x", f"displacement along x{box}, {unit}"), ("y", f"displacement along y, {unit}"),
+                                ("angle", "rotation, rad")):
+                found.append((f"{shape}_{stage}_{what}", f"{words(shape)}, {title}", "time, s", label, rows, "time",
+                              what, scale, names))
+        found.append((f"{shape}_paths", f"Paths, {words(shape)}, 400 gal, 10 Hz", "displacement along x in the box, mm",
+                      "displacement along y, mm", run.shaking, "x", "y", 1e3, names))
+    return found
 
 
-COLOURS = ("blue", "vermilion", "green", "black", "orange", "purple", "sky_blue", "yellow", "black")
-
-
-def nine_grains(rows, labels, x, y, scale):
-    """Curves of the nine grains, less their first values. x, y: "time", "x", "y" or "angle"; scale of positions."""
-    def less_first(name, k):
-        if name == "time":
-            return [row["time_s"] for row in rows]
-        values = np.array([row[f"{name}{k}_{'rad' if name == 'angle' else 'm'}"] for row in rows])
-        return ((values - values[0]) * (1 if name == "angle" else scale)).tolist()
-    return [Series(label, less_first(x, k), less_first(y, k), "line" if k < 8 else "dashed_line", COLOURS[k])
-            for k, label in enumerate(labels)]
-
-
-def history_plots(run, labels):
-    plots, shape = {}, run["shape"]
-    for stage, rows, unit, scale in (("falling", run.falling, "m", 1), ("shaken", run.shaking, "mm", 1e3)):
-        title = f"{words(shape)}, {'400 gal, 10 Hz' if stage == 'shaken' else 'falling'}"
-        box = " in the box" if stage == "shaken" else ""
-        for what, label in (("x", f"displacement along x{box}, {unit}"), ("y", f"displacement along y, {unit}"), ("angle", "rotation, rad")):
-            plots[f"{shape}_{stage}_{what}"] = Plot(title, Axis("time, s"), Axis(label), nine_grains(rows, labels, "time", what, scale))
-    plots[f"{shape}_paths"] = Plot(f"Paths, {words(shape)}, 400 gal, 10 Hz", Axis("displacement along x in the box, mm"),
-                                   Axis("displacement along y, mm"), nine_grains(run.shaking, labels, "x", "y", 1e3))
-    return plots
-
-
-def compaction_plot(runs):
+def compaction_curves(runs):
     """Discs shaken by 400 gal, 10 Hz for 20 s; with the printed limit of friction as stored."""
     rows = rows_of("sukegawa2010/compaction_over_time")
-    names = [row["series"] for row in rows]
-    new = next((run for run in runs if run["run"] == "discs_1_400gal_10Hz_200cycles" and run.shaking), None)
-    series = []
-    for name, colour, style in zip(dict.fromkeys(names), ("blue", "vermilion", "black", "black"), ("line",) * 2 + ("dashed_line",) * 2):
-        own = [row for row in rows if row["series"] == name]
-        x, y = ([float(row[key]) for row in own] for key in list(rows[0])[1:3])
-        if new and not series:
-            x, y = ([row[key] for row in new.shaking] for key in ("time_s", "whole_void_ratio"))
-        series.append(Series(words(name), x, y, style, colour))
-    return Plot("Discs shaken by 400 gal, 10 Hz for 20 s", Axis("time of shaking, s"), Axis("void ratio between the walls"), series)
+    time, void_ratio = list(rows[0])[1:3]
+    curves = {name: [(float(row[time]), float(row[void_ratio])) for row in rows if row.series == name]
+              for name in dict.fromkeys(row.series for row in rows)}
+    for run in runs:
+        if run.run == "discs_1_400gal_10Hz_200cycles" and run.shaking:
+            curves[next(iter(curves))] = [(row["time_s"], row["whole_void_ratio"]) for row in run.shaking]
+    return curves
 
 
 def draw_sheet(pictures, title):
@@ -523,60 +345,59 @@ def draw_sheet(pictures, title):
         from matplotlib import pyplot
         from matplotlib.collections import EllipseCollection
         columns = len(pictures) if len(pictures) < 5 else 3
-        figure, axes = pyplot.subplots(-(-len(pictures) // columns), columns, squeeze=False, layout="constrained",
-                                       figsize=(4.2 * columns, 3.6 * -(-len(pictures) // columns)))
+        rows = -(-len(pictures) // columns)
+        figure, axes = pyplot.subplots(rows, columns, squeeze=False, layout="constrained",
+                                       figsize=(4.2 * columns, 3.6 * rows))
         figure.suptitle(title)
         for one in axes.flat:
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
-            one.add_collection(EllipseCollection(2 * half_axes[:, 0], 2 * half_axes[:, 1], np.degrees(angles), units="xy",
-                                                 offsets=centres, transOffset=one.transData, array=layers, cmap="viridis",
-                                                 edgecolors="black", linewidths=0.2))
+            one.add_collection(EllipseCollection(
+                *(2 * half_axes.T), np.degrees(angles), units="xy", offsets=centres, transOffset=one.transData,
+                array=layers, cmap="viridis", edgecolors="black", linewidths=0.2))
             low, high = centres.min(axis=0) - half_axes.max(), centres.max(axis=0) + half_axes.max()
-            one.plot([0, 0], [0, high[1]], "k", [0, high[0]], [0, 0], "k", [high[0]] * 2, [0, high[1]], "k", linewidth=1)
+            one.plot([0, 0, high[0], high[0]], [high[1], 0, 0, high[1]], "k", linewidth=1)
             one.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=label)
         figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
         pyplot.close(figure)
     return draw
 
 
-def plots_of(runs, fill):
-    plots = {"void_ratio": void_ratio_plot(runs)}
-    for shape in ("discs", "bonded_pairs"):
-        for name, title, label, key in (("compaction", "void ratio after shaking one filling", "void ratio", "void_ratio"),
-                                        ("roughness", "roughness of the surface after shaking", "standard deviation, m", "roughness_m"),
-                                        ("thrown", "grains thrown while shaken", "grains", "thrown")):
-            plots[f"{name}_{shape}"] = over_frequency(runs, shape, title, label, key)
-    plots["resonance"] = resonance_plot(runs, fill.width)
-    plots["compaction_over_time"] = compaction_plot(runs)
+def sheets(runs):
+    found = {}
     for shape in SHAPES:
-        during = []
-        for run in sorted((run for run in runs if run.shown and run["shape"] == shape and len(run.pictures)),
-                          key=lambda run: (-run["frequency_Hz"], run["acceleration_gal"])):
-            title = f"{run['acceleration_gal']:g} gal, {run['frequency_Hz']:g} Hz"
-            during.append((title, run.pictures[2]))
-            if title == "400 gal, 10 Hz":
-                plots[f"{shape}_pictures"] = draw_sheet(list(zip(PICTURES, run.pictures)), f"{words(shape)}, {title}")
-        if during:
-            plots[f"{shape}_shakings"] = draw_sheet(during, f"Largest displacement of the centre of mass: {words(shape)}")
-        for run in runs:
-            if run["run"] == f"{shape}_1_400gal_10Hz" and len(run.falling):
-                plots.update(history_plots(run, dataclasses.replace(fill, shape=shape).followed()[1]))
-    return plots
+        own = [run for run in runs if run.shape == shape and run.seed == 1 and not run.variant and run.cycles <= 10 and
+               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and len(run.pictures)]
+        own.sort(key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
+        for run in own:
+            if run.title == "400 gal, 10 Hz":
+                found[f"{shape}_pictures"] = draw_sheet(list(zip(PICTURES, run.pictures)),
+                                                        f"{words(shape)}, {run.title}")
+        if own:
+            found[f"{shape}_shakings"] = draw_sheet([(run.title, run.pictures[2]) for run in own],
+                                                    f"Largest displacement of the centre of mass: {words(shape)}")
+    return found
 
 
 def reproduce(options):
-    old = [Run(row) for row in rows_of("sukegawa2010/runs")]
-    fill = plan(options.quick)[0][1]
+    old, fill = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options.quick)[0][1]
     new = [] if options.stored else compute(options)
-    missing = [] if options.quick else [run for run in old if run["run"] not in {one["run"] for one in new}]
-    by_name = {run["run"]: run for run in [*missing, *new]}
-    runs = new if options.quick else [by_name[run["run"]] for run in old]
+    by_name = {run.run: run for run in new}
+    missing = [] if options.quick else [run for run in old if run.run not in by_name]
+    runs = Runs(new if options.quick else [by_name.get(run.run, run) for run in old])
+    page = Page("sukegawa2010", globals(), vars(options), {
+        "runs": runs, "fill": fill, "width": fill.width, "missing": missing, "before": runs.values(WHOLE[0]),
+        "capped": runs.values(WHOLE[0], variant="printed_cap"),
+        "radius": 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
+        "depth": runs.of_seeds("surface_height_before_m", "discs")[1.0]})
+    text = page.text("report", resonance=resonance_text(page, runs, fill.width), statements="".join(
+        statement(page, runs, told, options.stored) for told in TOLD["statements"]), best="".join(
+            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs")))
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(report(runs, options, fill, missing), {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
-                  plots_of(runs, fill))
+    return Output(text, {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
+                  {**page.figures(), **sheets(runs)})
 
 
 if __name__ == "__main__":
-    main("sukegawa2010", __doc__, reproduce, add_options=lambda parser: parser.add_argument(
+    main("sukegawa2010", __doc__, reproduce, lambda parser: parser.add_argument(
         "--stored", action="store_true", help="tables and figures of the stored runs; nothing is computed"))

@@ -73,10 +73,7 @@ class Bodies:
         columns = fill.columns // 2 if fill.pairs else fill.columns
         n = columns * fill.rows
         least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
-        radii = [least + (most - least) * (k + random.uniform()) / n for k in range(n)]
-        for k in range(n, 1, -1):
-            other = random.below(k)
-            radii[k - 1], radii[other] = radii[other], radii[k - 1]
+        radii = random.shuffle([least + (most - least) * (k + random.uniform()) / n for k in range(n)])
         turns = [0.0 if fill.shape == "discs" else random.uniform() for _ in range(n)]
         wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
         row, column = np.divmod(np.arange(n), columns)
@@ -108,11 +105,8 @@ class Bodies:
         if self.fill.step:
             return self.fill.step
         kN, kT = self.fill.springs()
-        arm = np.zeros(len(self.mass))  # the longest of a normal force
-        if self.fill.shape == "ellipses":
-            arm = self.half_axes[:, 0] - self.half_axes[:, 1]
-        elif self.fill.shape == "rigid_pairs":
-            arm = self.radii
+        # the longest arm of a normal force
+        arm = self.radii if self.fill.shape == "rigid_pairs" else self.half_axes[:, 0] - self.half_axes[:, 1]
 
         def limit(stiffness, lever):
             moved = (0.5 / (1 / self.mass + lever**2 / self.moment)).min()
@@ -122,29 +116,23 @@ class Bodies:
 
     def tables(self):
         """Of the case file."""
-        grains = []
-        for place, angle, axes, r in zip(self.places, self.angles, self.half_axes, self.radii):
-            grain = {"position": place.tolist(), "angle": float(angle)}
-            if self.fill.shape == "ellipses":
-                grain["half_axes"] = axes.tolist()
-            elif self.fill.shape == "rigid_pairs":
-                grain["discs"] = [[-float(r), 0.0, float(r)], [float(r), 0.0, float(r)]]
-            else:
-                grain["radius"] = float(r)
-            grains.append(grain)
-        kN, kT = self.fill.springs()
-        walls = [("floor", (0, 0), (0, 1)), ("left", (0, 0), (1, 0)), ("right", (self.fill.width, 0), (-1, 0))]
+        (kN, kT), grains = self.fill.springs(), []
+        arrays = (self.places, self.angles, self.half_axes, self.radii)
+        for place, angle, axes, r in zip(*(array.tolist() for array in arrays)):
+            body = {"ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}}
+            grains.append({"position": place, "angle": angle, **body.get(self.fill.shape, {"radius": r})})
+        walls = [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [0.0, 0.0], [1.0, 0.0]),
+                 ("right", [self.fill.width, 0.0], [-1.0, 0.0])]
         tables = {"grains": {"density": self.fill.density}, "grain": grains, "springs": {"kN": kN, "kT": kT},
                   "collisions": {"law": "linear_dashpot", "damping": self.fill.damping, "friction": self.fill.friction,
                                  "walls": {"friction": NUMBERS["wall friction"]}},
-                  "wall": [{"name": name, "point": [float(x) for x in point], "normal": [float(x) for x in normal]}
-                           for name, point, normal in walls]}
+                  "wall": [dict(zip(("name", "point", "normal"), wall)) for wall in walls]}
         if self.fill.shape == "ellipses":
             tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
         if self.fill.shape == "bonded_pairs":
             dashpots = 0.5 * self.mass[::2] / self.fill.bond_step  # a tangential force also turns the disc: a third
-            tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": float(c), "tangential_dashpot": float(c) / 3}
-                              for k, c in enumerate(dashpots)]
+            tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": c, "tangential_dashpot": c / 3}
+                              for k, c in enumerate(dashpots.tolist())]
         return tables
 
 
@@ -157,7 +145,8 @@ class Moment:
         pairs = cKDTree(places).query_pairs(2 * bodies.reach.max() + bodies.diameter, output_type="ndarray")
         gaps = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) - bodies.reach[pairs].sum(axis=1)
         i, j = pairs[gaps <= bodies.diameter].T
-        _, sets = connected_components(coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places))), directed=False)
+        near = coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places)))
+        _, sets = connected_components(near, directed=False)
         self.heap = sets == np.argmax(np.bincount(sets))
         x, heights = self.surface(max(2, int(width / (4 * NUMBERS["largest radius"]))))
         self.height = heights.mean()
@@ -165,6 +154,7 @@ class Moment:
         self.roughness = math.sqrt(((heights - level - self.slope * x)**2).sum() / len(x))
         self.whole = width * self.height / bodies.area[self.heap].sum() - 1
         self.centre = (bodies.mass[:, None] * self.places).sum(axis=0) / bodies.mass.sum()
+        self.centre_height = self.centre[1]
         self.inner = self.inner_void_ratio() if inner else math.nan
 
     def parts(self, chosen):
@@ -234,7 +224,8 @@ class Stage:
     def record(self, t, moment):
         row = {"time_s": t, "whole_void_ratio": moment.whole, "centre_x_m": moment.centre[0], "slope": moment.slope}
         for k, grain in enumerate(moment.bodies.fill.followed()[0]):
-            row.update({f"x{k}_m": moment.places[grain, 0], f"y{k}_m": moment.places[grain, 1], f"angle{k}_rad": moment.angles[grain]})
+            (x, y), angle = moment.places[grain], moment.angles[grain]
+            row.update({f"x{k}_m": x, f"y{k}_m": y, f"angle{k}_rad": angle})
         self.rows.append(row)
 
     def moved(self):
@@ -248,7 +239,8 @@ class Stage:
         squares = (way[:, 0]**2).sum()
         names = ("path_m", "path_along_x_m", "first_path_m", "turned_rad")
         return {**dict(zip(names, self.ways.mean(axis=1))), "displaced_x_m": math.sqrt(squares / len(start)),
-                "inward_m": (-np.sign(middle) * way[:, 0])[outer].mean() if outer.any() else 0.0, "sunk_m": -way[:, 1].mean(),
+                "inward_m": (-np.sign(middle) * way[:, 0])[outer].mean() if outer.any() else 0.0,
+                "sunk_m": -way[:, 1].mean(),
                 "layered": (sums**2 / members).sum() / squares if squares > 0 else 0.0}
 
 
@@ -260,8 +252,8 @@ def swing_of(rows, frequency, cycles):
     if chosen.sum() < 8:
         return math.nan
     angle = 2 * math.pi * frequency * t[chosen]
-    fit = np.linalg.lstsq(np.stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)], axis=1), x[chosen], rcond=None)[0]
-    return math.hypot(fit[1], fit[2])
+    columns = np.stack([np.ones(len(angle)), np.cos(angle), np.sin(angle)], axis=1)
+    return math.hypot(*np.linalg.lstsq(columns, x[chosen], rcond=None)[0][1:])
 
 
 def run_box(arguments):
@@ -299,20 +291,23 @@ def run_box(arguments):
     contacts, energy = run.contacts, run.energy
     i, j = contacts["bodies"].T
     bonded = (i // 2 == j // 2) & (j >= 0) if fill.shape == "bonded_pairs" else np.zeros(len(i), bool)
-    numbers = {"void_ratio_before": filled.inner, "void_ratio": after.inner, "whole_void_ratio_before": filled.whole,
-               "whole_void_ratio": after.whole, "surface_height_before_m": filled.height, "surface_height_m": after.height,
-               "roughness_before_m": filled.roughness, "roughness_m": after.roughness,
-               "centre_height_before_m": filled.centre[1], "centre_height_m": after.centre[1], "largest_slope": shaking.slope,
-               "swing_m": swing_of(shaking.rows, frequency, cycles), "thrown": int(shaking.thrown.sum()),
-               "coordination": (1 + (j >= 0))[~bonded].sum() / (len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)),
-               **shaking.moved(), "bond_creep": math.nan, "bond_roll_rad": math.nan,
-               "largest_overlap": contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0] / bodies.radii.min(),
-               "time_step_s": step, "steps": run.step - round(fill.fall / step), "time_s": run.time - fill.fall,
-               "energy_error": energy["error"] / abs(energy["potential"]), "seconds": time.monotonic() - begun}
+    numbers = {name.format(when): getattr(moment_, member) for name, member in (
+        ("void_ratio{}", "inner"), ("whole_void_ratio{}", "whole"), ("surface_height{}_m", "height"),
+        ("roughness{}_m", "roughness"), ("centre_height{}_m", "centre_height"))
+               for when, moment_ in (("_before", filled), ("", after))}
+    grains = len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)
+    overlap = contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0]
+    numbers.update(
+        largest_slope=shaking.slope, swing_m=swing_of(shaking.rows, frequency, cycles), thrown=shaking.thrown.sum(),
+        coordination=(1 + (j >= 0))[~bonded].sum() / grains, **shaking.moved(), bond_creep=math.nan,
+        bond_roll_rad=math.nan, largest_overlap=overlap / bodies.radii.min(), time_step_s=step,
+        steps=run.step - round(fill.fall / step), time_s=run.time - fill.fall,
+        energy_error=energy["error"] / abs(energy["potential"]), seconds=time.monotonic() - begun)
     if fill.shape == "bonded_pairs":
         apart = [np.linalg.norm(m.places[1::2] - m.places[::2], axis=1) for m in (falling.first, after)]
         rolled = [m.angles[1::2] - m.angles[::2] for m in (falling.first, after)]
         numbers["bond_creep"] = np.mean(np.abs(apart[1] - apart[0]) / (2 * bodies.radii[::2]))
         numbers["bond_roll_rad"] = np.mean(np.abs(rolled[1] - rolled[0]))
-    drawn = [(*one.parts(np.ones(len(one.heap), bool)), np.tile(bodies.layers, len(bodies.offsets))) for one in pictures]
+    layers = np.tile(bodies.layers, len(bodies.offsets))
+    drawn = [(*one.parts(np.ones(len(one.heap), bool)), layers) for one in pictures]
     return {key: float(value) for key, value in numbers.items()}, falling.moved(), falling.rows, shaking.rows, drawn

@@ -48,6 +48,7 @@ struct BodySection {
 struct Rectangle {
   Vec2 low;   ///< m
   Vec2 high;  ///< m
+  [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
 };
 
 /// A rectangle with its lower side along a unit vector; low and high are the corners that are the lower left and the

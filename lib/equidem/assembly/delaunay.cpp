@@ -9,10 +9,8 @@
 #include <numeric>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "equidem/assembly/contact_numbers.hpp"
-#include "equidem/assembly/power_cells.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"

@@ -5,11 +5,8 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <optional>
 #include <set>
-#include <string>
 #include <string_view>
 #include <vector>
 

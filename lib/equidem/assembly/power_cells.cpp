@@ -2,14 +2,11 @@
 #include "equidem/assembly/power_cells.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "equidem/assembly/dual_cells.hpp"

@@ -2,14 +2,13 @@
 #include "equidem/assembly/touching.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
+#include <optional>
 #include <tuple>
 
 #include "equidem/assembly/sites.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 namespace equidem {
 namespace {
@@ -19,149 +18,53 @@ constexpr double rounding_gap = 1e-9;
 /// Discs wider than this many periods are taken for a mistake.
 constexpr int most_periods = 16;
 
-/// Discs sorted into squares at least one largest diameter wide, so that touching discs lie in squares that touch.
-class Grid {
- public:
-  Grid(const Assembly& assembly, double gap_tolerance) : assembly_(assembly) {
-    const double reach = 2 * (1 + std::max(gap_tolerance, rounding_gap)) *
-                         *std::max_element(assembly.radii.begin(), assembly.radii.end());
-    low_ = high_ = assembly.centres.front();
-    for (const Vec2 x : assembly.centres) {
-      low_ = {std::min(low_.x, x.x), std::min(low_.y, x.y)};
-      high_ = {std::max(high_.x, x.x), std::max(high_.y, x.y)};
-    }
-    if (assembly.period) {
-      const double narrow = std::min(assembly.period->x, assembly.period->y);
-      if (reach > most_periods * narrow) {
-        bad_input(fmt::format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", reach,
-                              most_periods, narrow),
-                  "it would touch itself that many times", "Correct the radii or the cell");
-      }
-      low_ = {0, 0};
-      high_ = *assembly.period;
-    }
-    // No more squares than discs along either direction: few discs far apart need no fine grid.
-    const auto most = static_cast<double>(assembly.size());
-    columns_ = static_cast<std::int64_t>(std::clamp(std::floor((high_.x - low_.x) / reach), 1.0, most));
-    rows_ = static_cast<std::int64_t>(std::clamp(std::floor((high_.y - low_.y) / reach), 1.0, most));
-    while (columns_ * rows_ > 4 * static_cast<std::int64_t>(assembly.size()) + 16) {
-      columns_ = (columns_ + 1) / 2;
-      rows_ = (rows_ + 1) / 2;
-    }
-    width_ = (high_.x - low_.x) / static_cast<double>(columns_);
-    height_ = (high_.y - low_.y) / static_cast<double>(rows_);
-    // A free sample may be as flat as one likes: its discs lie in neighbouring squares at most.
-    const double farthest = assembly.period ? std::numeric_limits<std::int32_t>::max() : 1;
-    reach_x_ = width_ > 0 ? static_cast<std::int64_t>(std::min(std::ceil(reach / width_), farthest)) : 0;
-    reach_y_ = height_ > 0 ? static_cast<std::int64_t>(std::min(std::ceil(reach / height_), farthest)) : 0;
-    sort_discs();
-  }
-
-  /// Call body(other disc, shift_x, shift_y) for the images of discs near a disc, itself among them.
-  template <typename Body>
-  void for_each_near(std::size_t disc, const Body& body) const {
-    const Place at = places_[disc];
-    for (std::int64_t y = at.row - reach_y_; y <= at.row + reach_y_; ++y) {
-      for (std::int64_t x = at.column - reach_x_; x <= at.column + reach_x_; ++x) {
-        std::int64_t sx = 0;
-        std::int64_t sy = 0;
-        if (assembly_.period) {
-          sx = static_cast<std::int64_t>(std::floor(static_cast<double>(x) / static_cast<double>(columns_)));
-          sy = static_cast<std::int64_t>(std::floor(static_cast<double>(y) / static_cast<double>(rows_)));
-        } else if (x < 0 || x >= columns_ || y < 0 || y >= rows_) {
-          continue;
-        }
-        const auto square = static_cast<std::size_t>((y - sy * rows_) * columns_ + (x - sx * columns_));
-        for (std::size_t k = first_[square]; k < first_[square + 1]; ++k) {
-          const std::int32_t other = sorted_[k];
-          body(other, static_cast<std::int32_t>(sx + at.moved_x - places_[other].moved_x),
-               static_cast<std::int32_t>(sy + at.moved_y - places_[other].moved_y));
-        }
-      }
-    }
-  }
-
- private:
-  /// The square of a disc, and the periods by which its centre lies outside the cell.
-  struct Place {
-    std::int64_t column = 0;
-    std::int64_t row = 0;
-    std::int64_t moved_x = 0;
-    std::int64_t moved_y = 0;
-  };
-
-  [[nodiscard]] Place place(std::size_t disc) const {
-    Vec2 x = assembly_.centres[disc];
-    Place p;
-    if (assembly_.period) {
-      p.moved_x = periods_below(x.x, assembly_.period->x, disc);
-      p.moved_y = periods_below(x.y, assembly_.period->y, disc);
-      x -= Vec2{static_cast<double>(p.moved_x) * assembly_.period->x,
-                static_cast<double>(p.moved_y) * assembly_.period->y};
-    }
-    if (width_ > 0) {
-      p.column = std::clamp<std::int64_t>(static_cast<std::int64_t>((x.x - low_.x) / width_), 0, columns_ - 1);
-    }
-    if (height_ > 0) {
-      p.row = std::clamp<std::int64_t>(static_cast<std::int64_t>((x.y - low_.y) / height_), 0, rows_ - 1);
-    }
-    return p;
-  }
-
-  void sort_discs() {
-    first_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
-    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
-      places_.push_back(place(disc));
-      ++first_[square_of(places_.back()) + 1];
-    }
-    for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
-    std::vector<std::size_t> next = first_;
-    sorted_.resize(assembly_.size());
-    for (std::size_t disc = 0; disc < assembly_.size(); ++disc) {
-      sorted_[next[square_of(places_[disc])]++] = static_cast<std::int32_t>(disc);
-    }
-  }
-
-  [[nodiscard]] std::size_t square_of(const Place& p) const {
-    return static_cast<std::size_t>(p.row * columns_ + p.column);
-  }
-
-  const Assembly& assembly_;
-  Vec2 low_;
-  Vec2 high_;
-  std::int64_t columns_ = 1;
-  std::int64_t rows_ = 1;
-  double width_ = 0;
-  double height_ = 0;
-  std::int64_t reach_x_ = 0;
-  std::int64_t reach_y_ = 0;
-  std::vector<Place> places_;
-  std::vector<std::size_t> first_;
-  std::vector<std::int32_t> sorted_;
+/// Periods by which a centre lies outside the cell.
+struct Moved {
+  std::int64_t x = 0, y = 0;
 };
+
+void check_periods(Vec2 period, double diameter) {
+  const double narrow = std::min(period.x, period.y);
+  if (diameter <= most_periods * narrow) return;
+  bad_input(fmt::format("the largest disc, of diameter {:.6g} m, spans more than {} periods of {:.6g} m", diameter,
+                        most_periods, narrow),
+            "it would touch itself that many times", "Correct the radii or the cell");
+}
 
 }  // namespace
 
 std::vector<Contact> touching_discs(const Assembly& assembly, double gap_tolerance) {
-  const Grid grid(assembly, gap_tolerance);
-  std::vector<Contact> contacts;
+  const double share = std::max(gap_tolerance, rounding_gap);
+  if (assembly.period)
+    check_periods(*assembly.period, 2 * (1 + share) * *std::max_element(assembly.radii.begin(), assembly.radii.end()));
+  std::vector<Circle> circles;  // in the cell, larger by the gap
+  std::vector<Moved> moved(assembly.size());
   for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
-    const std::size_t first = contacts.size();
-    const auto i = static_cast<std::int32_t>(disc);
-    grid.for_each_near(disc, [&](std::int32_t j, std::int32_t shift_x, std::int32_t shift_y) {
-      if (std::tuple(i, 0, 0) >= std::tuple(j, shift_x, shift_y)) return;
-      Contact contact{.i = i, .j = j, .shift_x = shift_x, .shift_y = shift_y};
-      const double distance = norm(assembly.branch(contact));
-      const double ri = assembly.radii[i], rj = assembly.radii[j];
-      if (distance - ri - rj > std::max(rounding_gap * std::min(ri, rj), gap_tolerance * (ri + rj))) return;
-      contact.lever_i = contact.lever_j = 0.5 * distance;
-      contacts.push_back(contact);
-    });
-    std::sort(contacts.begin() + static_cast<std::ptrdiff_t>(first), contacts.end(),
-              [](const Contact& a, const Contact& b) {
-                return std::tie(a.j, a.shift_x, a.shift_y) < std::tie(b.j, b.shift_x, b.shift_y);
-              });
+    Vec2 centre = assembly.centres[disc];
+    if (const auto& period = assembly.period) {
+      moved[disc] = {periods_below(centre.x, period->x, disc), periods_below(centre.y, period->y, disc)};
+      centre -= Vec2{static_cast<double>(moved[disc].x) * period->x, static_cast<double>(moved[disc].y) * period->y};
+    }
+    circles.push_back({centre, assembly.radii[disc] * (1 + share) * (1 + rounding_gap)});
   }
+  std::optional<Periods> periods;
+  if (assembly.period) periods = {{assembly.period->x, 0}, {0, assembly.period->y}};
+  std::vector<Contact> contacts;
+  for (const auto& [i, image, shift] : pairs_within(circles, periods, 0)) {
+    const std::int32_t j = image.body;
+    Contact contact{.i = i,
+                    .j = j,
+                    .shift_x = static_cast<std::int32_t>(image.a + moved[i].x - moved[j].x),
+                    .shift_y = static_cast<std::int32_t>(image.b + moved[i].y - moved[j].y)};
+    const double distance = norm(assembly.branch(contact));
+    const double ri = assembly.radii[i], rj = assembly.radii[j];
+    if (distance - ri - rj > std::max(rounding_gap * std::min(ri, rj), gap_tolerance * (ri + rj))) continue;
+    contact.lever_i = contact.lever_j = 0.5 * distance;
+    contacts.push_back(contact);
+  }
+  std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+    return std::tie(a.i, a.j, a.shift_x, a.shift_y) < std::tie(b.i, b.j, b.shift_x, b.shift_y);
+  });
   return contacts;
 }
 

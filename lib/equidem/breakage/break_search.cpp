@@ -52,6 +52,19 @@ BreakingMoment breaking_moment(const ContactForce& live, const ContactForce& dea
 
 }  // namespace
 
+TiedKeys tied_keys(std::span<const double> keys, double tied) {
+  TiedKeys found{.first = keys.size()};
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    if (keys[k] > tied) {
+      found.beyond = std::min(found.beyond, keys[k]);
+    } else {
+      ++found.others;
+      found.first = std::min(found.first, k);
+    }
+  }
+  return found;
+}
+
 std::optional<NextBreak> next_break(std::span<const ContactForce> pattern, std::span<const ContactForce> dead,
                                     const ContactStrengths& strengths, const LoadFactorSearch& search) {
   const auto moment_of = [&](std::size_t c) {
@@ -62,26 +75,17 @@ std::optional<NextBreak> next_break(std::span<const ContactForce> pattern, std::
   parallel_ranges(keys.size(), 1 << 13, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) keys[c] = moment_of(c).key();
   });
-  double least = no_break, second = no_break;
+  double least = no_break;
   for (const double key : keys) least = std::min(least, key);
   if (least == no_break) return {};
   constexpr double same = 1e-10;  // share of lambda: round-off of equal load factors
   const double reached = search.from + search.direction * least;
   const double tied = least + (std::isfinite(reached) ? same * std::max(std::abs(reached), std::abs(search.from)) : 0);
-  std::int64_t ties = -1;
-  std::size_t first = keys.size();
-  for (std::size_t c = 0; c < keys.size(); ++c) {
-    if (keys[c] > tied) {
-      second = std::min(second, keys[c]);
-    } else {
-      ++ties;
-      first = std::min(first, c);
-    }
-  }
-  const double gap = reached != 0 && std::isfinite(reached) ? (second - least) / std::abs(reached) : no_break;
-  const BreakingMoment moment = moment_of(first);
-  return NextBreak{search.from + search.direction * moment.t, first,
-                   moment.in_shear ? BreakMode::shear : BreakMode::tension, ties, gap};
+  const TiedKeys ties = tied_keys(keys, tied);
+  const double gap = reached != 0 && std::isfinite(reached) ? (ties.beyond - least) / std::abs(reached) : no_break;
+  const BreakingMoment moment = moment_of(ties.first);
+  return NextBreak{search.from + search.direction * moment.t, ties.first,
+                   moment.in_shear ? BreakMode::shear : BreakMode::tension, ties.others, gap};
 }
 
 }  // namespace equidem

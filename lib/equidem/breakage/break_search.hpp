@@ -21,6 +21,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -59,6 +60,15 @@ struct NextBreak {
   std::int64_t ties = 0;  ///< other contacts that break at the same lambda, to 1e-10: the first number goes first
   double gap = 0;         ///< of lambda, relative, to the next contact that does not tie; infinite: none
 };
+
+/// Of keys that tie for the least one, the first, with the number of the others and the least key beyond them.
+struct TiedKeys {
+  std::size_t first = 0;
+  std::int64_t others = -1;
+  double beyond = std::numeric_limits<double>::infinity();
+};
+/// \param tied the largest key that ties
+TiedKeys tied_keys(std::span<const double> keys, double tied);
 
 /// The contact that breaks next, of ties that of least number. Contacts with the forces 0 are taken as removed.
 /// \return none where no contact breaks

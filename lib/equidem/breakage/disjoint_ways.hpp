@@ -26,9 +26,9 @@ class DisjointWays {
         reached_(2 * assembly.size(), none),
         place_(assembly.size(), none) {}
 
-  /// True where without this contact no disc carries nothing any more, and no part hangs by one contact or disc, that
-  /// did not before: the other contacts of its discs can carry forces, and two ways that share nothing join them, so
-  /// that the parts of the graph which no single disc divides stay the same. False: nothing is found.
+  /// True where the network stays biconnected without this contact: no disc becomes idle, and no part is joined by one
+  /// contact or disc that was not so before, since the other contacts of its discs can carry forces, and two ways that
+  /// share nothing join them. False: nothing is found.
   [[nodiscard]] bool around(std::size_t contact);
 
  private:

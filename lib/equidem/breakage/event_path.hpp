@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A path of loading as a sequence of events: what brittle breakage and unbonded contacts have in common.
+/// A path of loading as a sequence of events, with one ledger of energy, for networks of bonds that break and of
+/// contacts with friction.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/breakage/break_search.hpp"
+#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/load_path.hpp"
 #include "equidem/breakage/path_numbers.hpp"
+#include "equidem/breakage/strengths.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
 
@@ -29,7 +39,7 @@ struct BreakEvent {
   double motion = 0;      ///< LoadPath, likewise
   Tensor2 stress;         ///< Pa, likewise
   double energy_before = 0, energy_after = 0;  ///< N, elastic, at this lambda with and without the contact
-  /// N, what the crack takes: energy_before - energy_after and the work of the loads while the contact lets go.
+  /// N, what the crack takes: energy_before - energy_after and the work of the loads while it is released.
   double energy_released = 0;
   double work = 0;  ///< N, of everything from outside, from the unloaded state to behind this event
   double load_rate = 0, motion_rate = 0;  ///< of lambda, of the network with the contact
@@ -82,9 +92,52 @@ struct LegPoint {
   void pass(PathNumbers& n) { n.pass(events_before, lambda, load, motion, load_rate, motion_rate, stress); }
 };
 
+/// Work of everything from outside, and where it went, N, from the start.
+struct PathLedger {
+  double work = 0;
+  double elastic = 0;     ///< the energy of the springs, less that at rest
+  double friction = 0;    ///< lost by slip
+  double released = 0;    ///< by bonds that broke
+  double negligible = 0;  ///< energy of forces that are round-off
+  /// The largest term; where contacts have friction, so far: forces balance to a share of the largest so far, and so
+  /// are limits met. Where all forces have vanished again, that share of an energy which is gone is missing.
+  double largest = 0;
+
+  /// All works of a step are in. \param elastic_now behind it
+  void take(double elastic_now) {
+    elastic = elastic_now;
+    largest = std::max({largest, std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
+  }
+  void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
+  /// The sum that should vanish, N.
+  [[nodiscard]] double missing() const { return work - elastic - friction - released; }
+  /// missing() over the largest of its terms.
+  [[nodiscard]] double error() const { return largest > negligible ? std::abs(missing()) / largest : 0; }
+};
+
+/// A network that breaks along a path; a path refers to it.
+struct BreakageScene {
+  const Assembly& assembly;
+  const ContactSprings& springs;
+  const ContactStrengths& strengths;
+  const LoadPath& path;
+};
+
+/// The network for a BreakableSystem: the right-hand sides of the path, the pattern first.
+BreakableNetwork breakable_network(const BreakageScene& scene, const Effects& effects, std::vector<Support> supports,
+                                   const SolverOptions& solver = {});
+
+/// The network behind the last event of a path, at its lambda.
+struct PathState {
+  std::vector<DiscMotion> motions;   ///< per disc, beside a mean strain
+  std::vector<ContactForce> forces;  ///< N/m, per contact; 0 where it is broken or open
+  std::vector<std::uint8_t> joined;  ///< per contact, whether it is neither
+};
+
+/// The events of a path, its curve and its end. Derived classes are the two networks: bonds that break
+/// (breakage_run.hpp), and contacts that also open, close, slip and stick (unbonded/unbonded_run.hpp).
 class EventPath {
  public:
-  EventPath() = default;
   virtual ~EventPath() = default;
   EventPath(const EventPath&) = delete;
   EventPath& operator=(const EventPath&) = delete;
@@ -93,20 +146,20 @@ class EventPath {
   /// \return false where the path has ended
   /// \throws Error (computation_failed) where what follows the last event cannot be computed, or of kind interrupted
   ///         where the user asked to stop; all that was found so far stays
-  virtual bool advance() = 0;
+  bool advance();
   /// Ends the path behind its last event, since what follows cannot be computed.
-  virtual void fail(std::string why) = 0;
+  void fail(std::string why) { end(PathEnd::failed, std::move(why)); }
 
-  [[nodiscard]] virtual const std::vector<BreakEvent>& events() const = 0;
-  [[nodiscard]] virtual PathEnd end() const = 0;
+  [[nodiscard]] const std::vector<BreakEvent>& events() const { return events_; }
+  [[nodiscard]] PathEnd end() const { return end_; }
   /// A sentence on the end; empty where it has not come.
-  [[nodiscard]] virtual const std::string& why() const = 0;
-  /// The start, and the ends of the legs that are done.
-  [[nodiscard]] virtual std::vector<LegPoint> leg_points() const = 0;
+  [[nodiscard]] const std::string& why() const { return why_; }
+  /// The start, and the ends of the legs that are done; none while dead loads are applied event by event.
+  [[nodiscard]] const std::vector<LegPoint>& leg_points() const { return points_; }
   /// 1 or -1: where lambda goes on a leg.
-  [[nodiscard]] virtual double direction(std::int64_t leg) const = 0;
+  [[nodiscard]] double direction(std::int64_t leg) const;
   /// Discs that carried nothing from the start.
-  [[nodiscard]] virtual const std::vector<std::int32_t>& idle() const = 0;
+  [[nodiscard]] const std::vector<std::int32_t>& idle() const { return idle_; }
   /// lambda of the last event, or where the path has ended.
   [[nodiscard]] virtual double lambda() const = 0;
   /// Whether contacts have friction: their forces depend on the path.
@@ -115,11 +168,35 @@ class EventPath {
   [[nodiscard]] virtual bool releasing() const { return false; }
   /// The load that the network as it is carries at a motion (LoadPath).
   [[nodiscard]] virtual double load_left(double motion) const = 0;
-  [[nodiscard]] virtual double elastic_energy() const = 0;  ///< N, at lambda()
-  [[nodiscard]] virtual double released() const = 0;        ///< N, by all bonds that broke
-  /// Work less everything that it went into, over the largest of these; where contacts have friction, the largest so
-  /// far.
-  [[nodiscard]] virtual double energy_error() const = 0;
+  [[nodiscard]] virtual PathLedger ledger() const = 0;  ///< at lambda()
+  /// Work less everything that it went into, over the largest of these.
+  [[nodiscard]] virtual double energy_error() const { return ledger().error(); }
+  /// None where what is left of the network does not carry its loads, or is not known.
+  [[nodiscard]] virtual std::optional<PathState> state() const = 0;
+  [[nodiscard]] virtual SolverReport solver() const = 0;
+
+ protected:
+  explicit EventPath(const BreakageScene& scene) : scene_(scene) {}
+
+  /// Goes on to the next event, to the end of a leg or to that of the path, whichever comes first.
+  virtual void step() = 0;
+  /// The network at lambda(), with the events so far before it.
+  [[nodiscard]] virtual LegPoint point() const = 0;
+  /// At point().
+  [[nodiscard]] BreakEvent event_of(std::size_t contact, BreakMode mode) const;
+  void add_leg_point() { points_.push_back(point()); }
+  void end(PathEnd why, std::string sentence);
+  /// A leg without an end has the end `none`.
+  [[nodiscard]] std::optional<double> end_of_leg() const;
+
+  BreakageScene scene_;
+  std::vector<BreakEvent> events_;
+  std::vector<LegPoint> points_;
+  std::vector<std::int32_t> idle_;
+  std::int64_t leg_ = 0;
+  bool pauses_ = false;  ///< advance() returns without an event: a bond has given up its force
+  PathEnd end_ = PathEnd::none;
+  std::string why_;
 };
 
 }  // namespace equidem

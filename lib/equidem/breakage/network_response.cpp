@@ -36,26 +36,6 @@ Tensor2 tensor_of(const double* sum) {
   return {sum[0], sum[1], sum[2], sum[3]};
 }
 
-/// Energies from works (Clapeyron).
-void halve_works(NetworkResponse& r) {
-  r.loads_by_motions[1] = r.dead_by_pattern + r.pattern_by_dead;
-  r.loads_by_motions[2] = r.pattern_by_pattern;
-  r.energy = {0.5 * r.loads_by_motions[0], r.dead_by_pattern + r.imposed[0],
-              0.5 * (r.pattern_by_pattern + r.imposed[1])};
-}
-
-/// Load and motion from the sums of work.
-void relate(NetworkResponse& r, const LoadPath& path) {
-  if (path.driven_by == DrivenBy::loads) {
-    r.load = {0, path.size};
-    r.motion = {r.pattern_by_dead / path.size, r.pattern_by_pattern / path.size};
-  } else {
-    const double by = path.driven_by == DrivenBy::strain ? path.size * r.area : path.size;
-    r.load = {r.imposed[0] / by, r.imposed[1] / by};
-    r.motion = {0, path.size};
-  }
-}
-
 }  // namespace
 
 double area_of_stress(const Assembly& assembly) {
@@ -103,16 +83,20 @@ NetworkResponse response_of(const BreakableSystem& system, const Assembly& assem
 }
 
 NetworkResponse response_of(const EquilibriumSums& sums, const LoadPath& path, double area) {
+  const auto& [by_pattern, by_dead] = sums.load_work;
   NetworkResponse r;
-  r.imposed = {sums.imposed[1], sums.imposed[0]};
-  r.area = area;
+  r.loads_by_motions = {by_dead[1], by_dead[0] + by_pattern[1], by_pattern[0]};
+  r.power = {by_dead[0] + sums.imposed[1], by_pattern[0] + sums.imposed[0]};
+  r.energy = {0.5 * by_dead[1], r.power[0], 0.5 * r.power[1]};  // Clapeyron
   if (area > 0) r.stress = {1 / area * sums.moment[1], 1 / area * sums.moment[0]};
-  r.pattern_by_dead = sums.load_work[0][1];
-  r.pattern_by_pattern = sums.load_work[0][0];
-  r.dead_by_pattern = sums.load_work[1][0];
-  r.loads_by_motions[0] = sums.load_work[1][1];
-  halve_works(r);
-  relate(r, path);
+  if (path.driven_by == DrivenBy::loads) {
+    r.load = {0, path.size};
+    r.motion = {by_pattern[1] / path.size, by_pattern[0] / path.size};
+  } else {
+    const double by = path.driven_by == DrivenBy::strain ? path.size * area : path.size;
+    r.load = {sums.imposed[1] / by, sums.imposed[0] / by};
+    r.motion = {0, path.size};
+  }
   return r;
 }
 

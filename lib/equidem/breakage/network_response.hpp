@@ -19,32 +19,22 @@ struct NetworkResponse {
   std::array<Tensor2, 2> stress{};           ///< Pa, (1/A) sum F_i l_j over contacts; 0 where its area is not known
   std::array<double, 3> energy{};            ///< N, elastic
   std::array<double, 3> loads_by_motions{};  ///< N, sum f . u of all loads
-  double dead_by_pattern = 0;                ///< N, f0 . u1
-  double pattern_by_dead = 0;                ///< N, f1 . u0
-  double pattern_by_pattern = 0;             ///< N, f1 . u1
-  std::array<double, 2> imposed{};           ///< N, the work of imposed motions or a mean strain is imposed d(lambda)
-  double area = 0;                           ///< m²; 0: not known
+  std::array<double, 2> power{};             ///< N, work of everything from outside over d(lambda)
 
   static double at(const std::array<double, 2>& c, double lambda) { return c[0] + lambda * c[1]; }
   static double at(const std::array<double, 3>& c, double lambda) { return c[0] + lambda * (c[1] + lambda * c[2]); }
   [[nodiscard]] Tensor2 stress_at(double lambda) const { return stress[0] + lambda * stress[1]; }
   [[nodiscard]] double energy_at(double lambda) const { return at(energy, lambda); }
   /// The energy that grows with lambda², N, as half of the work of the pattern (Clapeyron).
-  [[nodiscard]] double pattern_energy_by_work() const { return 0.5 * (pattern_by_pattern + imposed[1]); }
+  [[nodiscard]] double pattern_energy_by_work() const { return 0.5 * power[1]; }
   /// Work of everything from outside while lambda goes from one value to another, N.
   [[nodiscard]] double work(double from, double to) const {
-    return (to - from) * (dead_by_pattern + imposed[0]) +
-           0.5 * (to * to - from * from) * (pattern_by_pattern + imposed[1]);
+    return (to - from) * power[0] + 0.5 * (to * to - from * from) * power[1];
   }
 };
 
 /// m², of the assembly; 0: not known, and with it no stress.
 double area_of_stress(const Assembly& assembly);
-
-/// Work of the force of a contact, N/m, on a deformation, m: N.
-inline double work_of(const ContactForce& f, const ContactDeformation& d) {
-  return f.normal * d.normal + f.tangential * d.tangential;
-}
 
 /// N/m, the largest component of any contact.
 double largest_force(std::span<const ContactForce> forces);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The strengths of contacts that break in a brittle way.
+/// The strengths of contacts that break in a brittle way, and notches: contacts that are cut before anything is loaded.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
@@ -66,5 +68,14 @@ struct ContactStrengths {
 /// \throws Error (bad_input) where neither the options nor the assembly give strengths, where both do, where a number
 ///         is out of range, or where facets are asked for and not known
 ContactStrengths contact_strengths(const Assembly& assembly, const StrengthOptions& options);
+
+/// A straight cut.
+struct Notch {
+  Vec2 from, to;  ///< m
+};
+
+/// The contacts whose branch a notch crosses, also those across a period, ascending.
+/// \throws Error (bad_input) where a notch is not finite, or crosses none
+std::vector<std::size_t> contacts_across(const Assembly& assembly, std::span<const Notch> notches);
 
 }  // namespace equidem

@@ -2,101 +2,17 @@
 #include <algorithm>
 #include <utility>
 
-#include "equidem/casefile/assembly/case_tables.hpp"
+#include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/casefile/study/study_case.hpp"
+#include "equidem/casefile/texts.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
-
-constexpr const char* case_help =
-    R"(The case file is TOML and says what is computed. It is strict: an unknown key is an error that names
-its line. SI units, per metre of depth; tension positive; angles in radians, counter-clockwise.
-Paths are relative to the folder of the case file.
-
-An example:
-
-  schema = "equidem/1"
-  title  = "Abe 1996, Fig. 6"
-  [assembly]
-  kind    = "hexagonal"
-  columns = 21
-  rows    = 21
-  radius  = 0.005
-  [springs]
-  kN = 1.0e9
-  kT = 0.5e9
-  [test]
-  kind = "uniaxial_tension"
-
-Any key can be set on the command line: --set springs.kT=0.3e9 --set assembly.rows=11
-
-)";
-
-constexpr const char* grain_example =
-    R"(
-Bodies that meet, rebound and part, for 'equidem run': a case with [grains] or [[grain]] in place of
-[assembly]. The top of the file, [[schedule]] and [output] are as above; the rest is below. An
-example:
-
-  schema = "equidem/1"
-  [grains]
-  body    = "sphere"
-  density = 2500.0
-  [[grain]]
-  position = [0.0, 1.0]
-  radius   = 0.02
-  [collisions]
-  restitution      = 0.8
-  contact_duration = 1.0e-3
-  [[wall]]
-  name   = "floor"
-  point  = [0.0, 0.0]
-  normal = [0.0, 1.0]
-  [run]
-  duration = 2.0
-  gravity  = [0.0, -9.81]
-)";
-
-constexpr const char* pack_example =
-    R"(
-Bodies that fill a box, for 'equidem pack'. With [assembly] kind = "packing" beside them, [packing]
-and [settling] make an assembly for every verb, with the springs of [springs] or [material]. An
-example:
-
-  schema = "equidem/1"
-  [packing]
-  method = "growth"
-  box    = [0.3, 0.2]
-  solid_fraction = 0.8
-  [packing.radii]
-  smallest = 0.002
-  largest  = 0.004
-  [springs]
-  kN = 1.0e8
-  kT = 0.5e8
-)";
-
-constexpr const char* study_example =
-    R"(
-A study, for 'equidem study': error against time over the keys of a case. An example:
-
-  schema = "equidem/1"
-  [study]
-  verb    = "solve"
-  case    = "abe1996_fig6.toml"
-  measure = "poisson_ratio"
-  truth   = "known"
-  value   = 0.125
-  order   = 1.0
-  [[vary]]
-  key    = "assembly.rows, assembly.columns"
-  values = [9, 17, 33, 65]
-)";
 
 /// One kind of case file in help and page.
 struct Part {
@@ -109,10 +25,10 @@ struct Part {
 
 std::vector<Part> parts() {
   const std::vector<std::string_view> packing = {"packing", "packing.shape", "packing.radii", "settling"};
-  return {{"Assemblies of discs", case_help, casefile::case_file().spec(), true, packing},
-          {"Bodies that collide", grain_example, casefile::grain_file().spec(), false, {"schedule", "output"}},
-          {"Packings", pack_example, pack_file_spec()},
-          {"Studies", study_example, study_file_spec()}};
+  return {{"Assemblies of discs", assemblies_txt, casefile::case_file().spec(), true, packing},
+          {"Bodies that collide", colliding_txt, casefile::grain_file().spec(), false, {"schedule", "output"}},
+          {"Packings", packings_txt, pack_file_spec()},
+          {"Studies", studies_txt, study_file_spec()}};
 }
 
 using Describe = std::string(const casefile::FileSpec&, const casefile::TableSpec&);
@@ -123,13 +39,6 @@ std::string tables_of(const Part& part, Describe& describe) {
     if (std::ranges::find(part.left_out, table.name) == part.left_out.end()) out += describe(part.spec, table);
   return out;
 }
-
-constexpr const char* page_top = R"(# The case file
-
-The keys of all case files: [assemblies of discs](#assemblies-of-discs), [bodies that collide](#bodies-that-collide),
-[packings](#packings) and [studies](#studies). `equidem help case --markdown` prints this page, `equidem help case` its
-content as plain text.
-)";
 
 /// The introduction with its example, the lines indented by two spaces, as a block of code.
 std::string markdown_introduction(std::string_view introduction) {
@@ -196,7 +105,7 @@ std::string describe_case_table(const std::string& given) {
 }
 
 std::string case_file_page() {
-  std::string out = page_top;
+  std::string out = page_txt;
   for (const Part& part : parts()) {
     out += fmt::format("\n## {}\n\n{}", part.title, markdown_introduction(part.introduction));
     if (part.describes_top) out += "### Top of the file\n" + markdown_keys(part.spec, "");

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The springs of every contact of an assembly.
+/// The springs of every contact of an assembly, bending springs of bonds too, and all that a contact answers to the
+/// motion of its bodies.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/contact/frame.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/contact/prestress/prestress.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/material/spring_constants.hpp"
@@ -152,5 +157,42 @@ double spring_spread(const Assembly& assembly, const ContactSprings& springs);
 /// Refuse springs so far apart that the softest leaves too few digits of a double beside the stiffest.
 /// \throws Error (bad_input) with their ratio
 [[noreturn]] void refuse_spread(double spread);
+
+/// With their prestress, in the order of the numbers of the contacts.
+ContactSprings chosen_springs(const ContactSprings& springs, const std::vector<std::int32_t>& contacts);
+
+/// The force of the springs, the moment of the bending spring, and what the force that the contact carries at rest
+/// adds. \param theta_i, theta_j rotations of the two bodies, rad
+template <typename Number>
+ContactResponse<Number> contact_response(const ContactSprings& springs, std::size_t contact,
+                                         const DeformationOf<Number>& deformation, Number theta_i, Number theta_j) {
+  ContactResponse<Number> response{.force = linear_spring_force(springs[contact], deformation)};
+  if (springs.bends()) {
+    const Number moment = bending_moment(springs.bending(contact), theta_i, theta_j);
+    response.moment_i += moment;
+    response.moment_j -= moment;
+  }
+  if (const ContactPrestress* const prestress = springs.prestress(contact))
+    add_prestress(*prestress, deformation, theta_i, theta_j, response);
+  return response;
+}
+
+/// One of the two, or none: contacts carry no moments.
+struct BendingOptions {
+  std::optional<double> kM = {};          ///< >= 0, N m/rad per metre of depth, of every contact
+  std::optional<double> bond_width = {};  ///< >= 0: width w of a bond over the diameter of its smaller disc
+
+  [[nodiscard]] bool given() const { return kM || bond_width; }
+};
+
+/// Width of the bond of a contact, m; 0 where none is given.
+double bond_width(const Assembly& assembly, std::size_t contact, const BendingOptions& options);
+
+/// The springs with the bending springs of the bonds: kM as given, or that of a parallel bond, an elastic layer whose
+/// stiffness kN/w per length is spread evenly over its width w: kM = (kN/w) w³/12 = kN w²/12, kN that of the contact
+/// (Potyondy & Cundall 2004, Int. J. Rock Mech. Min. Sci. 41, 1329: a rectangle in two dimensions).
+/// \throws Error (bad_input) where both are given, a number is negative or not finite, some kT < 0, or kM is more than
+///         1e10 times kN r², r the radius of the smaller disc
+ContactSprings bending_springs(const Assembly& assembly, const ContactSprings& springs, const BendingOptions& options);
 
 }  // namespace equidem

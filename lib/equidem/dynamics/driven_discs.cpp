@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/dynamics/driven_discs.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -10,8 +9,6 @@
 
 namespace equidem {
 namespace {
-
-constexpr const char* component_names[] = {"ux", "uy", "rotation"};
 
 const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& name, const char* what) {
   const DiscGroup& discs = group(assembly, name);
@@ -72,7 +69,8 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
     const std::int32_t motions[] = {add(support.ux), add(support.uy), add(support.rotation)};
     for (const std::int32_t disc : group_with_discs(scene.assembly, support.group, "support").discs) {
       Disc& driven = disc_of(disc);
-      for (int c = 0; c < unknowns_; ++c) hold(driven, c, motions[c], support.group);
+      for (int c = 0; c < unknowns_; ++c)
+        if (motions[c] >= 0) driven.held[c] = motions[c];
     }
   }
   for (std::size_t disc = 0; !walls_.empty() && disc < scene.assembly.size(); ++disc) {
@@ -101,17 +99,6 @@ std::int32_t DrivenDiscs::add(const std::optional<Schedule>& schedule) {
   check(*schedule);
   schedules_.push_back(*schedule);
   return static_cast<std::int32_t>(schedules_.size()) - 1;
-}
-
-void DrivenDiscs::hold(Disc& disc, int component, std::int32_t schedule, const std::string& group) const {
-  if (schedule < 0) return;
-  std::int32_t& held = disc.held[component];
-  if (held >= 0 && !(schedules_[held] == schedules_[schedule])) {
-    bad_input(
-        fmt::format("the support of '{}' prescribes {} of a disc a second time", group, component_names[component]),
-        "another support gives it a different motion", "Prescribe each component of a disc once");
-  }
-  held = schedule;
 }
 
 void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const {

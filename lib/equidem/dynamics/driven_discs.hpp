@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,8 +22,8 @@ struct DrivingWork {
 /// Supports, loads and walls that act on single discs, stored by strip. Other discs cost nothing.
 class DrivenDiscs {
  public:
-  /// \throws Error (bad_input) on a group that does not exist or is empty, a motion prescribed twice, a load that is
-  ///         not finite
+  /// \param scene checked (loop_choice.hpp)
+  /// \throws Error (bad_input) on a group that does not exist or is empty, a load that is not finite
   DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
 
   /// Find the discs that are acted upon and store their velocities, which the loop overwrites. `time` is that of the
@@ -69,7 +68,6 @@ class DrivenDiscs {
     std::int32_t schedule = -1;
   };
   std::int32_t add(const std::optional<Schedule>& schedule);
-  void hold(Disc& disc, int component, std::int32_t schedule, const std::string& group) const;
   void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
   [[nodiscard]] double with_damping(double free, double v, double share) const;
   [[nodiscard]] double without_damping(double a, double v, double share) const;

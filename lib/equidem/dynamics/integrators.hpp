@@ -2,8 +2,7 @@
 /// \file
 /// An integrator as a sequence of stages, with its order and its limit of stability.
 ///
-/// An integrator is one file of this folder that defines a constant of type IntegrationScheme, and its name in the list
-/// of integrators.hpp.
+/// An integrator is a constant of type IntegrationScheme, and its name in the list of Integrator.
 ///
 /// Central differences: v(t + h/2) = v(t - h/2) + h a(t), u(t + h) = u(t) + h v(t + h/2).
 ///
@@ -20,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "equidem/core/names.hpp"
@@ -45,7 +43,6 @@ enum class MassDamping {
 struct IntegrationScheme {
   int order = 2;                 ///< where forces depend on positions, and for mass-proportional damping
   int force_evaluations = 1;     ///< per step
-  bool velocities_lag = false;   ///< velocities lag by half a step
   bool half_step_start = false;  ///< initial half kick before the first step
   bool takes_dashpots = true;    ///< forces may depend on velocities
   StabilityLimit limit = StabilityLimit::undamped;
@@ -59,16 +56,13 @@ struct IntegrationScheme {
   double first_drift = 0;  ///< time by which motions are stored ahead between steps, in time steps
 };
 
-}  // namespace equidem
-
-namespace equidem::integrators {
+namespace integrators {
 
 /// Mass-proportional damping is central and does not change the limit omega h = 2; a contact dashpot (zeta > 0, from
 /// relative velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²) - zeta).
 inline constexpr IntegrationScheme leapfrog{
     .order = 2,
     .force_evaluations = 1,
-    .velocities_lag = true,
     .half_step_start = true,
     .limit = StabilityLimit::central_differences,
     .stability_limit = [](double zeta) { return 2 * (std::sqrt(1 + zeta * zeta) - zeta); },
@@ -79,10 +73,6 @@ inline constexpr IntegrationScheme leapfrog{
               {.keep = (1 - damped / 2) / (1 + damped / 2), .kick = h / (1 + damped / 2), .drift = h, .duration = h}};
         },
 };
-
-}  // namespace equidem::integrators
-
-namespace equidem::integrators {
 
 /// Order 1; unstable without damping: omega h < min(4 zeta, 1/zeta), zeta of all damping.
 inline constexpr IntegrationScheme thesis{
@@ -98,23 +88,15 @@ inline constexpr IntegrationScheme thesis{
         },
 };
 
-}  // namespace equidem::integrators
-
-namespace equidem::integrators {
-
 inline constexpr IntegrationScheme velocity_verlet{
     .order = leapfrog.order,
     .force_evaluations = leapfrog.force_evaluations,
-    .velocities_lag = false,
     .half_step_start = true,
     .limit = leapfrog.limit,
     .stability_limit = leapfrog.stability_limit,
     .stages = leapfrog.stages,
 };
 
-}  // namespace equidem::integrators
-
-namespace equidem::integrators {
 namespace omelyan {
 
 inline constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054, chi = -0.06626458266981849;
@@ -176,9 +158,7 @@ inline constexpr IntegrationScheme fourth_order{
     .first_drift = omelyan::xi,
 };
 
-}  // namespace equidem::integrators
-
-namespace equidem {
+}  // namespace integrators
 
 enum class Integrator { leapfrog, velocity_verlet, thesis, fourth_order };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "equidem/contact/finite_bond.hpp"
@@ -14,7 +13,6 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
-#include "equidem/dynamics/walls.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 

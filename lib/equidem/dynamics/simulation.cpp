@@ -1,22 +1,169 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "equidem/dynamics/simulation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <utility>
+#include <functional>
+#include <thread>
 
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/dynamics/driven_discs.hpp"
+#include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
-#include "equidem/dynamics/simulation_implementation.hpp"
-#include "equidem/dynamics/stepper.hpp"
-#include "equidem/dynamics/walls.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 namespace equidem {
+
+/// Work to be done on one strip for one stage (counted through all steps): reads this strip and its neighbours as the
+/// stage before left them.
+using StripWork = std::function<void(std::int32_t strip, std::int64_t stage)>;
+
+namespace {
+
+/// Threads wait for one another between waves of a few microseconds.
+class SpinBarrier {
+ public:
+  explicit SpinBarrier(int threads) : threads_(threads) {}
+
+  void wait() {
+    const int round = round_.load(std::memory_order_acquire);
+    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
+      arrived_.store(0, std::memory_order_relaxed);
+      round_.fetch_add(1, std::memory_order_release);
+      round_.notify_all();
+      return;
+    }
+    wait_while_equal(round_, round);
+  }
+
+ private:
+  const int threads_;
+  alignas(64) std::atomic<int> arrived_{0};
+  alignas(64) std::atomic<int> round_{0};
+};
+
+/// Run body(thread) on `threads` threads at the same time.
+void run_together(int threads, const std::function<void(int)>& body) {
+  std::vector<std::thread> others;
+  for (int k = 1; k < threads; ++k) others.emplace_back([&body, k] { body(k); });
+  body(0);
+  for (std::thread& other : others) other.join();
+}
+
+/// Order of strips in time stepping: several steps at once while data are in the cache, on all threads.
+///
+/// Perform stages 0 .. stages - 1 on all strips. A stage of a strip starts after this strip and both neighbours have
+/// completed the previous stage.
+///
+/// Stage s begins two waves after stage s - 1 and follows it from strip to strip: `depth` stages (as many per thread)
+/// are in progress at a time, on data in the cache and on strips that are not adjacent, so that threads share them.
+/// With fewer stages than threads the strips of one stage are divided among threads.
+/// \param threads largest number of threads, limited to that of parallel loops: with few discs per strip,
+///        synchronization costs more than it gains The work and data of every strip do not depend on threads or depth;
+///        results are bit-identical.
+void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, const StripWork& work) {
+  if (strips == 0 || stages == 0) return;
+  threads = std::clamp(threads, 1, thread_count());
+  SpinBarrier barrier(threads);
+  if (stages < threads) {
+    run_together(threads, [&](int thread) {
+      const auto begin = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * thread / threads);
+      const auto end = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * (thread + 1) / threads);
+      for (std::int64_t stage = 0; stage < stages; ++stage) {
+        for (std::int32_t strip = begin; strip < end; ++strip) work(strip, stage);
+        if (threads > 1) barrier.wait();
+      }
+    });
+    return;
+  }
+  // Stage s visits strip l in wave start(s) + l; a new block of `depth` stages follows when the first stage of the last
+  // one is through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one
+  // another: strips pass through its own cache before the next thread has them.
+  depth = (std::max(depth, 1) + threads - 1) / threads * threads;
+  const std::int64_t block = std::max<std::int64_t>(strips, 2L * depth);
+  const auto start = [&](std::int64_t stage) { return stage / depth * block + 2 * (stage % depth); };
+  const std::int64_t waves = start(stages - 1) + strips;
+  std::vector<int> thread_of(static_cast<std::size_t>(depth));
+  for (int k = 0; k < depth; ++k) thread_of[k] = static_cast<int>(static_cast<std::int64_t>(k) * threads / depth);
+  struct UnderWay {
+    std::int64_t stage, start;
+    int of_block;
+  };
+  const auto follow = [&](UnderWay& one) {
+    ++one.stage;
+    one.start += ++one.of_block < depth ? 2 : block - 2 * (depth - 1);
+    if (one.of_block == depth) one.of_block = 0;
+  };
+  run_together(threads, [&](int thread) {
+    UnderWay first{0, 0, 0};
+    for (std::int64_t wave = 0; wave < waves; ++wave) {
+      while (first.stage < stages && wave - first.start >= strips) follow(first);
+      for (UnderWay one = first; one.stage < stages && one.start <= wave; follow(one)) {
+        const std::int64_t strip = wave - one.start;
+        if (strip < strips && thread_of[one.of_block] == thread) work(static_cast<std::int32_t>(strip), one.stage);
+      }
+      if (threads > 1) barrier.wait();
+    }
+  });
+}
+
+}  // namespace
+
+struct Simulation::Implementation {
+  Scene scene;
+  SimulationOptions options;
+  Effects effects;
+  LoopKind kind;
+  StepFunction step_function = nullptr;
+  std::vector<Stage> stages;
+  BodyArrays bodies;
+  LaneVector<std::int32_t> first, neighbour;
+  LaneVector<double> geometry, inverse_inertia;
+  LoopData data;
+  DrivenDiscs driven;
+  std::vector<Dissipation> dissipation;  // per strip
+  std::int64_t steps = 0;
+  int parity = 0;
+  EnergyLedger at_start;  // including sums that begin half a step before the start
+
+  Implementation(const Scene& scene_in, const SimulationOptions& options_in);
+
+  [[nodiscard]] bool staggered() const { return scheme_of(options.integrator).half_step_start; }
+  [[nodiscard]] double time_at(std::int64_t step) const { return static_cast<double>(step) * options.time_step; }
+
+  void list_contacts();
+  void keep_inertia();
+  void start();
+  void advance(std::int64_t count);
+  void do_strip(std::int32_t strip, const Stage& stage, int from, double time, double time_after);
+  /// Velocities after a trial stage, and its contributions to the ledger.
+  struct Trial {
+    std::vector<DiscMotion> velocities;
+    Dissipation dissipation;
+    DrivingWork work;
+  };
+  /// \param relative velocities that dashpots read; empty without dashpots
+  /// \param driven_too with supports, loads and walls
+  [[nodiscard]] Trial try_stage(const Stage& stage, LaneVector<double> motion, LaneVector<double> velocity,
+                                LaneVector<double> relative, bool driven_too = true) const;
+  /// Half the kick of leapfrog, from the velocities half a step behind to those of now.
+  [[nodiscard]] Trial half_kick() const;
+  /// Forces on the discs displaced by `motions`, dampers aside; of springs and gravity alone, or of all that acts.
+  [[nodiscard]] std::vector<DiscForce> forces_at(const std::vector<DiscMotion>& motions, bool driven_too) const;
+  [[nodiscard]] std::vector<DiscMotion> synchronous_velocities() const;
+  [[nodiscard]] std::vector<DiscMotion> motions() const;
+  [[nodiscard]] double elastic_energy(const std::vector<DiscMotion>& now) const;
+  void add_half_kick(const std::vector<DiscMotion>& now, EnergyLedger& ledger) const;
+  [[nodiscard]] EnergyLedger raw_ledger() const;
+  [[nodiscard]] EnergyLedger ledger() const;
+};
+
 namespace {
 
 constexpr int lane_count = DiscLayout::lanes;

@@ -2,7 +2,6 @@
 #include "equidem/dynamics/time_step.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -10,7 +9,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/waves/vibration.hpp"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"

@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The contacts of colliding bodies as callers see them.
+
 #include "equidem/grains/grain_simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
-#include "equidem/grains/contacts/flow_step.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
+
 namespace {
 
 /// A refused step costs at most as many steps more; to keep a state so seldom costs less than a hundredth of them.
@@ -163,7 +165,7 @@ void GrainSimulation::Implementation::find_impulses(BlockMove move) {
   collide_bodies(system, collide, at_once ? move : nullptr);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
   if (at_once || !move) return;
-  system.bodies.blocks.each([&](std::size_t block) { move(system, block, system.free_flight); });
+  system.bodies.blocks.each([&](std::size_t block) { move(system, block); });
 }
 
 void GrainSimulation::Implementation::update_candidates() {
@@ -192,13 +194,13 @@ void GrainSimulation::advance(std::int64_t steps) {
   for (std::int64_t k = 0; k < steps; ++k) {
     const std::int64_t now = self.system.step;
     const GrainCounters counters = self.system.counters;
-    if (self.kept.arrays.empty() || now - self.kept.step >= steps_between_kept_states) self.kept = save();
+    if (!self.kept || now - self.kept->step >= steps_between_kept_states) self.kept = self.state();
     try {
-      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept.step >= steps_between_kept_states;
+      self.system.contacts.near.record = k + 1 == steps || now + 1 - self.kept->step >= steps_between_kept_states;
       self.make_step();
     } catch (...) {
       // the failed step has changed contacts: repeat the steps from an earlier state to its start
-      go_back_to(self.kept);
+      self.go_back_to(*self.kept);
       while (self.system.step < now) {
         self.system.contacts.near.record = self.system.step + 1 == now;
         self.make_step();
@@ -313,69 +315,30 @@ const Effects& GrainSimulation::effects() const {
   return implementation_->effects;
 }
 
-namespace {
-
-/// As they were in the last step.
-std::pair<Vec2, Vec2> arms_of_discs(const GrainSystem& system, const Candidate& candidate) {
-  const double radius = system.bodies.constants[static_cast<std::size_t>(candidate.i)].radius;
-  if (candidate.j < 0) return {radius * candidate.normal, {}};
-  const double sum = radius + system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))].radius;
-  const double lever = radius / sum * (sum - candidate.overlap);
-  return {lever * candidate.normal, (lever - (sum - candidate.overlap)) * candidate.normal};
-}
-
-std::pair<Vec2, Vec2> arms_of(const GrainSystem& system, std::size_t c) {
-  if (system.shapes.parts.empty()) return arms_of_discs(system, system.contacts.candidates[c]);
-  return {system.contacts.part_pairs[c].arm_i, system.contacts.part_pairs[c].arm_j};
-}
-
-}  // namespace
-
 std::vector<GrainContact> GrainSimulation::contacts() const {
   const GrainSystem& system = implementation_->system;
   std::vector<GrainContact> contacts;
-  const auto add = [&](const Candidate& candidate, std::pair<Vec2, Vec2> arms) {
-    if (!candidate.touching || candidate.steps == 0) return;
-    GrainContact contact;
-    std::tie(contact.arm_i, contact.arm_j) = arms;
-    contact.i = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(candidate.i)]);
-    contact.overlap = candidate.overlap;
-    contact.closing = candidate.closing;
-    contact.normal = candidate.normal;
-    contact.normal_force = candidate.impulse / system.dt();
-    contact.tangential_force = candidate.tangential_impulse / system.dt();
-    contact.mode = candidate.mode;
-    contact.steps = candidate.steps;
-    if (candidate.j < 0) {
-      contact.j = ~static_cast<std::int32_t>(system.walls.wall_of[static_cast<std::size_t>(~candidate.j)]);
-    } else {
-      const std::int32_t other = system.body_of(candidate.j);
-      contact.j = static_cast<std::int32_t>(system.bodies.grain_of[static_cast<std::size_t>(other)]);
-      if (contact.j < contact.i) {
-        std::swap(contact.i, contact.j);
-        contact.normal = -contact.normal;
-        std::swap(contact.arm_i, contact.arm_j);
-      }
-    }
-    contacts.push_back(contact);
-  };
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      const Candidate candidate = candidate_of(system, block, p);
-      add(candidate, arms_of_discs(system, candidate));
-    }
+  for (const ContactState& state : contact_states(system)) {
+    if (state.steps == 0) continue;
+    GrainContact& contact =
+        contacts.emplace_back(GrainContact{.i = static_cast<std::int32_t>(system.bodies.grain_of[state.i]),
+                                           .overlap = state.overlap,
+                                           .closing = state.closing,
+                                           .normal = state.normal,
+                                           .arm_i = state.arm_i,
+                                           .arm_j = state.arm_j,
+                                           .normal_force = state.impulse / system.dt(),
+                                           .tangential_force = state.tangential_impulse / system.dt(),
+                                           .mode = state.mode,
+                                           .steps = state.steps});
+    contact.j =
+        static_cast<std::int32_t>(state.j < 0 ? ~system.walls.wall_of[~state.j] : system.bodies.grain_of[state.j]);
+    if (contact.j < 0 || contact.j > contact.i) continue;
+    std::swap(contact.i, contact.j);
+    contact.normal = -contact.normal;
+    std::swap(contact.arm_i, contact.arm_j);
   }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      const auto [candidate, pair] = candidate_of(system, list, p);
-      add(candidate, {pair.arm_i, pair.arm_j});
-    }
-  });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
-    add(system.contacts.candidates[c], arms_of(system, c));
-  std::stable_sort(contacts.begin(), contacts.end(), [](const GrainContact& a, const GrainContact& b) {
-    return std::pair(a.i, a.j) < std::pair(b.i, b.j);
-  });
+  std::ranges::stable_sort(contacts, {}, [](const GrainContact& c) { return std::pair(c.i, c.j); });
   return contacts;
 }
 
@@ -384,9 +347,7 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
   const auto shift_of = [&](const GrainContact& c) {
     if (!system.cell.active || c.j < 0) return Vec2{};
     const auto place = [&](std::int32_t grain) {
-      return system.bodies
-          .motions[static_cast<std::size_t>(system.bodies.place_of_grain[static_cast<std::size_t>(grain)])]
-          .position;
+      return system.bodies.motions[system.bodies.place_of_grain[grain]].position;
     };
     const Vec2 apart = place(c.j) - place(c.i);
     return system.cell.now.shift(image_inside(system.cell.now, {}, apart));
@@ -541,6 +502,117 @@ double GrainSimulation::bytes_per_body() const {
       (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
       (system.bonds.breakable ? system.bonds.breakable->bytes() : 0) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.constants.size());
+}
+
+namespace {
+
+/// Grains that are one body.
+struct RestingBody {
+  std::vector<std::size_t> grains;
+  std::vector<Vec2> places;  ///< of the grains, beside one another where they are in a periodic cell, m
+  Vec2 centre{};             ///< of mass, m
+  double radius = 0;         ///< of the circle about the centre that holds all grains, m
+};
+
+/// The bodies of a scene, and of each grain the number of its body.
+class RestingBodies {
+ public:
+  RestingBodies(const std::vector<Grain>& grains, std::span<const GrainBond> bonds,
+                const std::optional<PeriodicCell>& cell)
+      : of_(grains.size(), none), tied_(grains.size()) {
+    for (const GrainBond& bond : bonds) {
+      if (bond.has_springs()) continue;
+      tied_[bond.i].push_back(bond.j);
+      tied_[bond.j].push_back(bond.i);
+    }
+    for (std::size_t grain = 0; grain < grains.size(); ++grain)
+      if (of_[grain] == none) add_body(grain, grains, cell);
+  }
+
+  [[nodiscard]] std::size_t of(std::size_t grain) const { return of_[grain]; }
+  [[nodiscard]] const std::vector<RestingBody>& all() const { return bodies_; }
+
+ private:
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+
+  void add_body(std::size_t first, const std::vector<Grain>& grains, const std::optional<PeriodicCell>& cell) {
+    RestingBody body{.grains = {first}, .places = {grains[first].position}};
+    of_[first] = bodies_.size();
+    for (std::size_t k = 0; k < body.grains.size(); ++k) {
+      for (const std::size_t other : tied_[body.grains[k]]) {
+        if (of_[other] != none) continue;
+        of_[other] = bodies_.size();
+        Vec2 branch = grains[other].position - grains[body.grains[k]].position;
+        if (cell) {
+          const Periods periods = periods_of(*cell);
+          branch += periods.shift(image_inside(periods, {}, branch));
+        }
+        body.grains.push_back(other);
+        body.places.push_back(body.places[k] + branch);
+      }
+    }
+    double mass = 0;
+    for (std::size_t k = 0; k < body.grains.size(); ++k) {
+      const double own = grains[body.grains[k]].inertia.mass;
+      mass += own;
+      body.centre += own / mass * (body.places[k] - body.centre);
+    }
+    for (std::size_t k = 0; k < body.grains.size(); ++k)
+      body.radius = std::max(body.radius, norm(body.places[k] - body.centre) + grains[body.grains[k]].radius);
+    bodies_.push_back(std::move(body));
+  }
+
+  std::vector<std::size_t> of_;
+  std::vector<std::vector<std::size_t>> tied_;
+  std::vector<RestingBody> bodies_;
+};
+
+struct Load {
+  Vec2 force;
+  double moment = 0;  ///< about the centre of the grain
+};
+
+}  // namespace
+
+Unbalance unbalance_of(const GrainSimulation& simulation, std::span<const GrainBond> bonds, Vec2 gravity) {
+  const std::vector<Grain> grains = simulation.grains();
+  const RestingBodies bodies(grains, bonds, simulation.placed_cell());
+  std::vector<Load> loads(grains.size());
+  for (std::size_t k = 0; k < grains.size(); ++k) loads[k].force = grains[k].inertia.mass * gravity;
+  // of body_contacts() those of contacts() come first, with an arm to each body as the step has taken it
+  const std::vector<GrainContact> contacts = simulation.contacts();
+  double carried = 0, carriers = 0;
+  std::size_t number = 0;
+  for (const BodyContact& contact : simulation.body_contacts()) {
+    const std::size_t c = number++;
+    const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+    if (contact.j >= 0 && bodies.of(i) == bodies.of(j)) continue;
+    loads[i].force += contact.force;
+    loads[i].moment += cross(contact.arm, contact.force) + contact.bending_moment;
+    if (contact.j >= 0) {
+      const Vec2 arm = c < contacts.size() ? contacts[c].arm_j
+                                           : contact.arm - (grains[j].position + contact.shift - grains[i].position);
+      loads[j].force -= contact.force;
+      loads[j].moment -= cross(arm, contact.force) + contact.bending_moment;
+    }
+    carried += norm(contact.force);
+    carriers += 1;
+  }
+  double sum = 0, largest = 0;
+  for (const RestingBody& body : bodies.all()) {
+    Load all;
+    for (std::size_t k = 0; k < body.grains.size(); ++k) {
+      const Load& load = loads[body.grains[k]];
+      all.force += load.force;
+      all.moment += load.moment + cross(body.places[k] - body.centre, load.force);
+    }
+    const double unbalanced = std::hypot(norm(all.force), all.moment / body.radius);
+    sum += unbalanced;
+    largest = std::max(largest, unbalanced);
+  }
+  const double mean = carriers > 0 ? carried / carriers : 0;
+  if (!(mean > 0)) return {INFINITY, INFINITY};
+  return {sum / static_cast<double>(bodies.all().size()) / mean, largest / mean};
 }
 
 }  // namespace equidem

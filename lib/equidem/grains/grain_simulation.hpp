@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Simulation of colliding bodies in time.
+///
+/// Unbalanced forces and moments, which vanish at rest.
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "equidem/contact/effects.hpp"
@@ -19,8 +21,8 @@ struct GrainContact {
   std::int32_t j = 0;                             ///< grain; negative: wall ~j
   double overlap = 0;                             ///< overlap at the start of the last step, m
   double closing = 0;                             ///< closing speed at the start of the last step, m/s
-  Vec2 normal;                                    ///< unit, from i to j
-  Vec2 arm_i, arm_j;                              ///< from the centres of mass to the contact point, m; {} for a wall
+  Vec2 normal = {};                               ///< unit, from i to j
+  Vec2 arm_i = {}, arm_j = {};                    ///< from the centres of mass to the contact point, m; {} for a wall
   double normal_force = 0, tangential_force = 0;  ///< mean over the step, N
   int mode = 0;            ///< case of the map that was used (ContactStep::mode); 0 for other laws
   std::int64_t steps = 0;  ///< number of steps since the contact began
@@ -82,10 +84,7 @@ class GrainSimulation final : public AnySimulation {
   /// One for each servo wall, in the caller's order.
   [[nodiscard]] std::vector<ServoReport> servos() const;
   [[nodiscard]] double bytes_per_body() const override;
-  /// Arrays: motions (n, 3): position, angle; velocities (n, 3): velocity, spin; contacts as the loop stores them;
-  /// impulses (n, 3) and bonds (b, 3) of the last step, if the next step needs them; losses: the terms of the ledger;
-  /// counters; walls (w, 6): impulse before the last step and in it, its moment, work; servos: ServoState; start:
-  /// potential, energy; where bonds break, breaks (k, 6): BondBreak.
+  /// Arrays of GrainState, bodies and walls in the order of the loops.
   [[nodiscard]] SavedState save() const override;
   void restore(const SavedState& state) override;
 
@@ -100,10 +99,19 @@ class GrainSimulation final : public AnySimulation {
   void stop_all();
 
  private:
-  void go_back_to(const SavedState& state);
-
   struct Implementation;
   Hidden<Implementation> implementation_;
 };
+
+/// Unbalanced loads of bodies over the mean contact force: sqrt(F² + (M/R)²), M the moment about the centre of mass, R
+/// the radius of the circle about it that holds the body. Infinite without contacts.
+struct Unbalance {
+  double mean = 0, largest = 0;
+};
+
+/// Unbalanced loads: forces and moments of contacts and of bonds with springs, plus weights. Grains that are tied by
+/// dashpots alone, which creep under any force, are one body. \param bonds of the simulation that have not broken, in
+/// any order
+Unbalance unbalance_of(const GrainSimulation& simulation, std::span<const GrainBond> bonds, Vec2 gravity);
 
 }  // namespace equidem

@@ -1,18 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The parts of a GrainSimulation.
-///
-/// The numbers of a contact in the array `contacts` of GrainSimulation::save.
+/// The parts of a GrainSimulation, and what it goes on from.
 #pragma once
 
-#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
-#include "equidem/grains/contacts/flow_step.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
+
+/// Bodies, bonds, walls and parts in the order of the loops.
+struct GrainState {
+  std::int64_t step = 0;
+  std::vector<GrainMotion> motions = {};
+  std::vector<ContactState> contacts = {};
+  std::vector<BodyImpulse> impulses = {};  ///< of the last step, if the next step needs them
+  std::vector<BondModes> bonds = {};       ///< impulses of the last step
+  std::vector<BondBreak> breaks = {};
+  EnergyLedger lost = {};
+  GrainCounters counters = {};
+  std::vector<WallLoad> walls = {};
+  std::vector<ServoMotion> servos = {};
+  double potential = 0, energy = 0;  ///< at the start, J
+  CellMotion cell = {};
+  std::vector<PeriodicImage> crossed = {};  ///< as MovingCell::crossed
+};
 
 struct GrainSimulation::Implementation {
   GrainSystem system;
@@ -20,7 +37,10 @@ struct GrainSimulation::Implementation {
   CandidateLoop collide = nullptr;  ///< force laws and maps
   FlowFunction flow = nullptr;      ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
-  SavedState kept;  ///< a recent state, restored when a step fails
+  std::optional<GrainState> kept;  ///< a recent state, restored when a step fails
+
+  [[nodiscard]] GrainState state() const;
+  void go_back_to(const GrainState& state);
 
   void make_step();
   /// Step of a simultaneous law: all contacts together.
@@ -53,21 +73,5 @@ struct GrainSimulation::Implementation {
 
 /// The effects of a scene of colliding bodies, with the reason for each inactive one.
 Effects effects_of(const GrainScene& scene, const GrainOptions& options);
-
-/// Places of numbers in a row: i, j, steps, mode, then the other members of a Candidate; in a periodic cell the periods
-/// of the image; in scenes with shapes the two parts and the arms to the contact point.
-struct ContactColumns {
-  static constexpr std::size_t i = 0, j = 1, steps = 2, mode = 3, stretch = 4, overlap = 5, closing = 6, normal = 7,
-                               impulse = 9, moment = 10, tangential_impulse = 11, parted = 12;
-  std::size_t image = 13;  ///< a, b
-  std::size_t part = 13;   ///< of i, of j
-  std::size_t arm = 13;    ///< x and y of i, of j
-  std::size_t count = 13;  ///< of all numbers
-
-  explicit ContactColumns(const GrainSystem& system) {
-    if (system.cell.active) part = arm = count = image + 2;
-    if (!system.shapes.parts.empty()) arm = part + 2, count = arm + 4;
-  }
-};
 
 }  // namespace equidem

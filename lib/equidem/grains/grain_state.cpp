@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What a simulation goes on from: kept for a step that fails, handed on to the next stage, saved in files.
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -9,154 +10,249 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
 
-constexpr std::size_t numbers_per_image = 2;
-constexpr std::size_t numbers_per_impulse = 3;
-constexpr std::size_t numbers_per_bond = 3;
+constexpr const char* go_on_with = "Resume with the scene that the state was saved from";
 
-constexpr std::size_t numbers_per_wall = 6;
-constexpr double ServoState::*servo_saved[] = {
-    &ServoState::way,     &ServoState::speed,  &ServoState::passed_speed,   &ServoState::free_way,
-    &ServoState::wanted,  &ServoState::force,  &ServoState::largest_wanted, &ServoState::overshoot,
-    &ServoState::pace,    &ServoState::errors, &ServoState::steps,          &ServoState::touched,
-    &ServoState::reached, &ServoState::side,   &ServoState::excess,         &ServoState::peak,
-    &ServoState::arrived};
-
-constexpr std::int64_t GrainCounters::*counters_saved[] = {&GrainCounters::evaluations, &GrainCounters::contacts,
-                                                           &GrainCounters::rebuilds, &GrainCounters::sweeps,
-                                                           &GrainCounters::doubtful};
-static_assert(sizeof(GrainCounters) == std::size(counters_saved) * sizeof(std::int64_t), "a counter is not saved");
-
-void append(std::vector<double>& numbers, const PartPair& pair) {
-  for (const double number : {static_cast<double>(pair.i), static_cast<double>(pair.j), pair.arm_i.x, pair.arm_i.y,
-                              pair.arm_j.x, pair.arm_j.y}) {
-    numbers.push_back(number);
+/// As they were in the last step.
+void set_arms_of_discs(const GrainSystem& system, const Candidate& candidate, PartPair& parts) {
+  const double radius = system.bodies.constants[candidate.i].radius;
+  if (candidate.j < 0) {
+    parts.arm_i = radius * candidate.normal;
+    return;
   }
+  const double sum = radius + system.bodies.constants[system.body_of(candidate.j)].radius;
+  const double distance = sum - candidate.overlap, lever = radius / sum * distance;
+  parts.arm_i = lever * candidate.normal;
+  parts.arm_j = (lever - distance) * candidate.normal;
 }
 
-void append(std::vector<double>& numbers, const PeriodicImage& image) {
-  numbers.push_back(image.a);
-  numbers.push_back(image.b);
+// The numbers of rows of a saved state.
+
+constexpr auto motion_numbers = [](auto& m, const auto& visit) {
+  visit(m.position.x), visit(m.position.y), visit(m.velocity.x), visit(m.velocity.y), visit(m.spin), visit(m.angle);
+};
+
+/// Images in periodic cells, parts and arms in scenes with shapes.
+auto contact_numbers(const GrainSystem& system) {
+  return [cell = system.cell.active, shapes = !system.shapes.parts.empty()](auto& c, const auto& visit) {
+    visit(c.i), visit(c.j), visit(c.steps), visit(c.mode), visit(c.parted), visit(c.overlap), visit(c.closing);
+    visit(c.normal.x), visit(c.normal.y), visit(c.impulse), visit(c.moment), visit(c.tangential_impulse);
+    visit(c.stretch);
+    if (cell) visit(c.a), visit(c.b);
+    if (!shapes) return;
+    visit(c.part_i), visit(c.part_j), visit(c.arm_i.x), visit(c.arm_i.y), visit(c.arm_j.x), visit(c.arm_j.y);
+  };
 }
 
-PartPair pair_of(const double* numbers) {
-  PartPair pair;
-  pair.i = static_cast<std::int32_t>(numbers[0]);
-  pair.j = static_cast<std::int32_t>(numbers[1]);
-  pair.arm_i = {numbers[2], numbers[3]};
-  pair.arm_j = {numbers[4], numbers[5]};
-  return pair;
-}
+constexpr auto impulse_numbers = [](auto& push, const auto& visit) {
+  visit(push.impulse.x), visit(push.impulse.y), visit(push.torque);
+};
 
-bool is_of(const double* numbers, const PartPair& pair) {
-  return numbers[0] == static_cast<double>(pair.i) && numbers[1] == static_cast<double>(pair.j);
-}
+constexpr auto mode_numbers = [](auto& m, const auto& visit) {
+  visit(m.normal), visit(m.tangential), visit(m.rolling);
+};
 
-PeriodicImage image_of(const double* numbers, std::int32_t body) {
-  return {body, static_cast<std::int32_t>(numbers[1]), static_cast<std::int32_t>(numbers[0])};
-}
+constexpr auto loss_numbers = [](auto& ledger, const auto& visit) {
+  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) visit(ledger.*term.value);
+};
 
-void append(std::vector<double>& numbers, const Candidate& candidate) {
-  numbers.insert(numbers.end(),
-                 {static_cast<double>(candidate.i), static_cast<double>(candidate.j),
-                  static_cast<double>(candidate.steps), static_cast<double>(candidate.mode), candidate.stretch,
-                  candidate.overlap, candidate.closing, candidate.normal.x, candidate.normal.y, candidate.impulse,
-                  candidate.moment, candidate.tangential_impulse, candidate.parted ? 1.0 : 0.0});
-}
+static_assert(sizeof(GrainCounters) == 5 * sizeof(std::int64_t), "a counter is not saved");
+constexpr auto counter_numbers = [](auto& c, const auto& visit) {
+  visit(c.evaluations), visit(c.contacts), visit(c.rebuilds), visit(c.sweeps), visit(c.doubtful);
+};
 
-void take(const double* numbers, Candidate& candidate) {
-  using At = ContactColumns;
-  candidate.i = static_cast<std::int32_t>(numbers[At::i]);
-  candidate.j = static_cast<std::int32_t>(numbers[At::j]);
-  candidate.steps = static_cast<std::int64_t>(numbers[At::steps]);
-  candidate.mode = static_cast<int>(numbers[At::mode]);
-  candidate.stretch = numbers[At::stretch];
-  candidate.overlap = numbers[At::overlap];
-  candidate.closing = numbers[At::closing];
-  candidate.normal = {numbers[At::normal], numbers[At::normal + 1]};
-  candidate.impulse = numbers[At::impulse];
-  candidate.moment = numbers[At::moment];
-  candidate.tangential_impulse = numbers[At::tangential_impulse];
-  candidate.parted = numbers[At::parted] != 0;
-  candidate.touching = true;
+constexpr auto load_numbers = [](auto& load, const auto& visit) {
+  visit(load.impulse.x), visit(load.impulse.y), visit(load.step_impulse.x), visit(load.step_impulse.y);
+  visit(load.step_angular), visit(load.work);
+};
+
+constexpr auto servo_numbers = [](auto& s, const auto& visit) {
+  visit(s.way), visit(s.speed), visit(s.passed_speed), visit(s.pace), visit(s.free_way), visit(s.wanted),
+      visit(s.force);
+  visit(s.largest_wanted), visit(s.excess), visit(s.overshoot), visit(s.peak), visit(s.errors), visit(s.steps);
+  visit(s.touched), visit(s.reached), visit(s.arrived), visit(s.side);
+};
+
+constexpr auto cell_numbers = [](auto& cell, const auto& visit) {
+  for (auto* periods : {&cell.now, &cell.before})
+    for (auto* vector : {&periods->a, &periods->b}) visit(vector->x), visit(vector->y);
+  for (auto* tensor : {&cell.gradient, &cell.moment, &cell.stress})
+    visit(tensor->xx), visit(tensor->xy), visit(tensor->yx), visit(tensor->yy);
+  visit(cell.strain.xx), visit(cell.strain.yy), visit(cell.strain.xy);
+  for (auto& c : cell.controls) {
+    visit(c.wanted), visit(c.stress), visit(c.rate), visit(c.stiffness), visit(c.viscosity), visit(c.largest_wanted);
+    visit(c.overshoot), visit(c.errors), visit(c.steps), visit(c.reached), visit(c.side);
+  }
+};
+
+constexpr auto image_numbers = [](auto& image, const auto& visit) { visit(image.a), visit(image.b); };
+
+/// Whether the contacts of a saved state are between bodies, walls and parts of the scene.
+bool are_of_scene(const GrainSystem& system, const std::vector<ContactState>& contacts) {
+  const auto bodies = std::ssize(system.bodies.constants), walls = std::ssize(system.walls.loads);
+  const auto parts = std::max<std::ptrdiff_t>(1, std::ssize(system.shapes.body_of_part));
+  return std::ranges::all_of(contacts, [&](const ContactState& c) {
+    const bool part = c.part_i >= 0 && c.part_i < parts && c.part_j >= 0 && c.part_j < parts;
+    return part && c.i >= 0 && c.i < bodies && c.j < bodies && (c.j >= 0 || ~c.j < walls);
+  });
 }
 
 }  // namespace
 
-SavedState GrainSimulation::save() const {
-  const GrainSystem& system = implementation_->system;
-  std::vector<double> contacts, losses, counts, impulses, bonds, walls, servos;
-  std::size_t listed = system.contacts.candidates.size();
-  for (const PairBlock& block : system.contacts.near.blocks) listed += block.count;
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) { listed += list.count; });
-  contacts.reserve(listed * ContactColumns(system).count);
-  const auto append_imaged = [&](Candidate candidate, PartPair pair) {
-    const PeriodicImage image = system.is_image(candidate.j) ? system.image(candidate.j) : PeriodicImage{candidate.j};
-    candidate.j = image.body;
-    append(contacts, candidate);
-    if (system.cell.active) append(contacts, image);
-    if (system.shapes.parts.empty()) return;
-    pair.j = system.own_part(pair.j);
-    append(contacts, pair);
-  };
-  for (const PairBlock& block : system.contacts.near.blocks)
-    for (std::size_t p = 0; p < block.count; ++p)
-      if (block.touching(p))
-        append_imaged(candidate_of(system, block, p), parts_of_discs(system, block.first(p), block.second(p)));
+ContactState state_of(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+  ContactState state{.i = candidate.i,
+                     .j = candidate.j,
+                     .part_i = parts.i,
+                     .part_j = parts.j,
+                     .mode = candidate.mode,
+                     .parted = candidate.parted,
+                     .steps = candidate.steps,
+                     .overlap = candidate.overlap,
+                     .closing = candidate.closing,
+                     .normal = candidate.normal,
+                     .impulse = candidate.impulse,
+                     .moment = candidate.moment,
+                     .tangential_impulse = candidate.tangential_impulse,
+                     .stretch = candidate.stretch,
+                     .arm_i = parts.arm_i,
+                     .arm_j = parts.arm_j};
+  if (!system.is_image(candidate.j)) return state;
+  const PeriodicImage& image = system.image(candidate.j);
+  state.j = image.body;
+  state.a = image.a;
+  state.b = image.b;
+  if (!system.shapes.parts.empty()) state.part_j = system.own_part(parts.j);
+  return state;
+}
+
+void take(const ContactState& state, Candidate& candidate) {
+  candidate.touching = true;
+  candidate.parted = state.parted;
+  candidate.mode = state.mode;
+  candidate.steps = state.steps;
+  candidate.overlap = state.overlap;
+  candidate.closing = state.closing;
+  candidate.normal = state.normal;
+  candidate.impulse = state.impulse;
+  candidate.moment = state.moment;
+  candidate.tangential_impulse = state.tangential_impulse;
+  candidate.stretch = state.stretch;
+}
+
+std::vector<ContactState> contact_states(const GrainSystem& system) {
+  const bool shapes = !system.shapes.parts.empty();
+  std::vector<ContactState> states;
+  for (const PairBlock& block : system.contacts.near.blocks) {
+    for (std::size_t p = 0; p < block.count; ++p) {
+      if (!block.touching(p)) continue;
+      const Candidate candidate = candidate_of(system, block, p);
+      PartPair parts = parts_of_discs(system, candidate.i, candidate.j);
+      set_arms_of_discs(system, candidate, parts);
+      states.push_back(state_of(system, candidate, parts));
+    }
+  }
   each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
-      const auto [candidate, pair] = candidate_of(system, list, p);
-      append_imaged(candidate, pair);
+      const auto [candidate, parts] = candidate_of(system, list, p);
+      states.push_back(state_of(system, candidate, parts));
     }
   });
   for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
-    if (!system.contacts.candidates[c].touching) continue;
-    append(contacts, system.contacts.candidates[c]);
-    if (system.cell.active) append(contacts, PeriodicImage{});
-    if (!system.shapes.parts.empty()) append(contacts, system.contacts.part_pairs[c]);
+    const Candidate& candidate = system.contacts.candidates[c];
+    if (!candidate.touching) continue;
+    PartPair parts;
+    if (shapes) parts = system.contacts.part_pairs[c];
+    if (!shapes) set_arms_of_discs(system, candidate, parts);
+    states.push_back(state_of(system, candidate, parts));
   }
-  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) losses.push_back(system.lost.*term.value);
-  for (const auto counter : counters_saved) counts.push_back(static_cast<double>(system.counters.*counter));
-  if (implementation_->keeps_impulses()) {  // the others find all impulses of a step in that step
-    impulses.reserve(numbers_per_impulse * system.bodies.impulses.size());
-    for (const BodyImpulse& push : system.bodies.impulses)
-      impulses.insert(impulses.end(), {push.impulse.x, push.impulse.y, push.torque});
-  }
-  for (const TiedPair& bond : system.bonds.tied) {
-    const BondModes impulse = last_impulse(system, bond);
-    bonds.insert(bonds.end(), {impulse.normal, impulse.tangential, impulse.rolling});
-  }
-  for (const WallLoad& load : system.walls.loads)
-    walls.insert(walls.end(), {load.impulse.x, load.impulse.y, load.step_impulse.x, load.step_impulse.y,
-                               load.step_angular, load.work});
-  for (const ServoState& servo : system.walls.servos)
-    for (const auto number : servo_saved) servos.push_back(servo.*number);
-  SavedState state{.step = system.step,
-                   .arrays = {{"motions", 3, numbers_of(motions())},
-                              {"velocities", 3, numbers_of(velocities())},
-                              {"contacts", ContactColumns(system).count, std::move(contacts)},
-                              {"impulses", numbers_per_impulse, std::move(impulses)},
-                              {"bonds", numbers_per_bond, std::move(bonds)},
-                              {"losses", 1, std::move(losses)},
-                              {"counters", 1, std::move(counts)},
-                              {"walls", numbers_per_wall, std::move(walls)},
-                              {"servos", std::size(servo_saved), std::move(servos)},
-                              {"start", 1, {implementation_->potential_at_start, implementation_->energy_at_start}}}};
-  if (const auto& breakable = system.bonds.breakable)
-    state.arrays.push_back({"breaks", numbers_per_break, numbers_of(breakable->breaks)});
-  if (system.cell.active) {
-    std::vector<double> crossed;
-    for (const std::int32_t place : system.bodies.place_of_grain)
-      append(crossed, system.cell.crossed[static_cast<std::size_t>(place)]);
-    state.arrays.push_back({"cell", 1, numbers_of_cell(system.cell)});
-    state.arrays.push_back({"crossed", numbers_per_image, std::move(crossed)});
-  }
+  return states;
+}
+
+GrainState GrainSimulation::Implementation::state() const {
+  GrainState state{.step = system.step,
+                   .motions = system.bodies.motions,
+                   .contacts = contact_states(system),
+                   .impulses = {},
+                   .bonds = {},
+                   .breaks = {},
+                   .lost = system.lost,
+                   .counters = system.counters,
+                   .walls = system.walls.loads,
+                   .servos = {system.walls.servos.begin(), system.walls.servos.end()},
+                   .potential = potential_at_start,
+                   .energy = energy_at_start,
+                   .cell = system.cell,
+                   .crossed = system.cell.crossed};
+  if (keeps_impulses()) state.impulses = system.bodies.impulses;  // the others find all of a step in that step
+  for (const TiedPair& bond : system.bonds.tied) state.bonds.push_back(last_impulse(system, bond));
+  if (const auto& breakable = system.bonds.breakable) state.breaks = breakable->breaks;
   return state;
+}
+
+SavedState GrainSimulation::save() const {
+  const GrainSystem& system = implementation_->system;
+  GrainState state = implementation_->state();
+  SavedState saved{.step = state.step,
+                   .arrays = {saved_rows("motions", std::move(state.motions), motion_numbers),
+                              saved_rows("contacts", std::move(state.contacts), contact_numbers(system)),
+                              saved_rows("impulses", std::move(state.impulses), impulse_numbers),
+                              saved_rows("bonds", std::move(state.bonds), mode_numbers),
+                              saved_rows("breaks", std::move(state.breaks), break_numbers),
+                              saved_rows("losses", std::vector{state.lost}, loss_numbers),
+                              saved_rows("counters", std::vector{state.counters}, counter_numbers),
+                              saved_rows("walls", std::move(state.walls), load_numbers),
+                              saved_rows("servos", std::move(state.servos), servo_numbers),
+                              saved_rows("start", std::vector{state.potential, state.energy}, one_number)}};
+  if (!system.cell.active) return saved;
+  saved.arrays.push_back(saved_rows("cell", std::vector{state.cell}, cell_numbers));
+  saved.arrays.push_back(saved_rows("crossed", std::move(state.crossed), image_numbers));
+  return saved;
+}
+
+void GrainSimulation::restore(const SavedState& saved) {
+  const GrainSystem& system = implementation_->system;
+  const auto losses = rows_in<EnergyLedger>(saved, "losses", loss_numbers);
+  const auto counters = rows_in<GrainCounters>(saved, "counters", counter_numbers);
+  const auto start = rows_in<double>(saved, "start", one_number);
+  GrainState state{.step = saved.step,
+                   .motions = rows_in<GrainMotion>(saved, "motions", motion_numbers),
+                   .contacts = rows_in<ContactState>(saved, "contacts", contact_numbers(system)),
+                   .impulses = rows_in<BodyImpulse>(saved, "impulses", impulse_numbers),
+                   .bonds = rows_in<BondModes>(saved, "bonds", mode_numbers),
+                   .breaks = rows_in<BondBreak>(saved, "breaks", break_numbers),
+                   .walls = rows_in<WallLoad>(saved, "walls", load_numbers),
+                   .servos = rows_in<ServoMotion>(saved, "servos", servo_numbers)};
+  std::size_t bonds = system.bonds.tied.size();
+  if (const auto& breakable = system.bonds.breakable) {
+    check_breaks(system, state.breaks);
+    bonds = breakable->all.size() - state.breaks.size();
+  }
+  const std::size_t bodies = system.bodies.motions.size();
+  if (state.motions.size() != bodies || !are_of_scene(system, state.contacts) ||
+      state.impulses.size() != (implementation_->keeps_impulses() ? bodies : 0) || state.bonds.size() != bonds ||
+      losses.size() != 1 || counters.size() != 1 || state.walls.size() != system.walls.loads.size() ||
+      state.servos.size() != system.walls.servos.size() || start.size() != 2) {
+    bad_input(fmt::format("the state is of {}", counted(std::ssize(state.motions), "grain")),
+              fmt::format("the scene has {}", bodies), go_on_with);
+  }
+  state.lost = losses[0];
+  state.counters = counters[0];
+  state.potential = start[0];
+  state.energy = start[1];
+  if (system.cell.active) {
+    const auto cells = rows_in<CellMotion>(saved, "cell", cell_numbers);
+    state.crossed = rows_in<PeriodicImage>(saved, "crossed", image_numbers);
+    if (cells.size() != 1 || state.crossed.size() != bodies)
+      bad_input("the state is of another periodic cell", "it has other numbers than this one", go_on_with);
+    state.cell = cells[0];
+  }
+  implementation_->go_back_to(state);
+  implementation_->kept.reset();
 }
 
 std::vector<BondBreak> GrainSimulation::breaks() const {
@@ -165,81 +261,32 @@ std::vector<BondBreak> GrainSimulation::breaks() const {
 }
 
 void GrainSimulation::stop_all() {
-  SavedState state = save();
-  GrainSystem& system = implementation_->system;
-  system.lost.lost_dashpot += implementation_->potential_and_kinetic().second;
-  state["losses"].clear();
-  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) state["losses"].push_back(system.lost.*term.value);
-  std::fill(state["velocities"].begin(), state["velocities"].end(), 0.0);
-  restore(state);
+  GrainState state = implementation_->state();
+  state.lost.lost_dashpot += implementation_->potential_and_kinetic().second;
+  for (GrainMotion& motion : state.motions) motion.velocity = {}, motion.spin = 0;
+  implementation_->go_back_to(state);
+  implementation_->kept.reset();
 }
 
-void GrainSimulation::restore(const SavedState& state) {
-  go_back_to(state);
-  implementation_->kept = {};
-}
-
-void GrainSimulation::go_back_to(const SavedState& state) {
-  GrainSystem& system = implementation_->system;
-  const ContactColumns columns(system);
+void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   const bool shapes = !system.shapes.parts.empty();
-  const std::size_t impulses =
-      implementation_->keeps_impulses() ? numbers_per_impulse * system.bodies.motions.size() : 0;
-  std::vector<BondBreak> breaks;
-  std::size_t bonds = system.bonds.tied.size();
-  if (const auto& breakable = system.bonds.breakable) {
-    breaks = breaks_of(state["breaks"]);
-    check_breaks(system, breaks);
-    bonds = breakable->all.size() - breaks.size();
-  }
-  const std::vector<double>&places = state["motions"], &velocities = state["velocities"], &contacts = state["contacts"];
-  const std::vector<double>&losses = state["losses"], &counts = state["counters"];
-  if (places.size() != 3 * system.bodies.motions.size() || velocities.size() != places.size() ||
-      contacts.size() % columns.count != 0 || state["impulses"].size() != impulses ||
-      state["bonds"].size() != numbers_per_bond * bonds ||
-      losses.size() != energy_terms(BodyFamily::colliding).size() || counts.size() != std::size(counters_saved) ||
-      state["walls"].size() != numbers_per_wall * system.walls.loads.size() ||
-      state["servos"].size() != std::size(servo_saved) * system.walls.servos.size() || state["start"].size() != 2) {
-    bad_input(fmt::format("the state is of {}", counted(static_cast<long long>(places.size() / 3), "grain")),
-              fmt::format("the scene has {}", system.bodies.motions.size()),
-              "Resume with the scene that the state was saved from");
-  }
-  if (system.bonds.breakable) restore_breaks(system, std::move(breaks));
+  if (system.bonds.breakable) restore_breaks(system, state.breaks);
   system.step = state.step;
-  implementation_->potential_at_start = state["start"][0];
-  implementation_->energy_at_start = state["start"][1];
+  potential_at_start = state.potential;
+  energy_at_start = state.energy;
   if (system.cell.active) {
-    const std::vector<double>& crossed = state["crossed"];
-    if (crossed.size() != numbers_per_image * system.bodies.motions.size() || !take_numbers(state["cell"], system.cell))
-      bad_input("the state is of another periodic cell", "it has other numbers than this one",
-                "Resume with the scene that the state was saved from");
-    for (std::size_t k = 0; k < system.cell.crossed.size(); ++k)
-      system.cell.crossed[k] = image_of(crossed.data() + numbers_per_image * system.bodies.grain_of[k], 0);
+    static_cast<CellMotion&>(system.cell) = state.cell;
+    system.cell.next = system.cell.now;
+    system.cell.crossed = state.crossed;
   }
-  const double* loss = losses.data();
-  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value = *loss++;
-  for (std::size_t k = 0; k < system.bodies.motions.size(); ++k) {
-    const double *x = places.data() + 3 * system.bodies.grain_of[k],
-                 *v = velocities.data() + 3 * system.bodies.grain_of[k];
-    system.bodies.motions[k] = {{x[0], x[1]}, {v[0], v[1]}, v[2], x[2]};
-    if (impulses == 0) continue;
-    const double* push = state["impulses"].data() + numbers_per_impulse * k;
-    system.bodies.impulses[k] = {{push[0], push[1]}, push[2]};
-  }
+  system.lost = state.lost;
+  system.bodies.motions = state.motions;
+  if (!state.impulses.empty()) system.bodies.impulses = state.impulses;
   system.bodies.cleared = false;
-  for (std::size_t b = 0; b < bonds; ++b) {
-    const double* impulse = state["bonds"].data() + numbers_per_bond * b;
-    take_last_impulse(system, system.bonds.tied[b], {impulse[0], impulse[1], impulse[2]});
-  }
-  const double* wall = state["walls"].data();
-  for (WallLoad& load : system.walls.loads) {
-    load = {{wall[0], wall[1]}, {wall[2], wall[3]}, wall[4], wall[5]};
-    wall += numbers_per_wall;
-  }
-  const double* servo_number = state["servos"].data();
-  for (ServoState& servo : system.walls.servos)
-    for (const auto number : servo_saved) servo.*number = *servo_number++;
-  system.free_flight = false;
+  for (std::size_t b = 0; b < state.bonds.size(); ++b) take_last_impulse(system, system.bonds.tied[b], state.bonds[b]);
+  system.walls.loads = state.walls;
+  for (std::size_t s = 0; s < state.servos.size(); ++s)
+    static_cast<ServoMotion&>(system.walls.servos[s]) = state.servos[s];
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
   find_images_of_bonds(system);
   place_walls(system);
@@ -247,56 +294,27 @@ void GrainSimulation::go_back_to(const SavedState& state) {
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
   system.contacts.part_pairs.clear();
-  std::vector<Candidate> near;
-  std::vector<ImagedContact> imaged;
-  std::vector<std::pair<Candidate, PartPair>> near_parts;
-  std::vector<const double*> others;
-  for (std::size_t at = 0; at < contacts.size(); at += columns.count) {
-    Candidate contact;
-    take(contacts.data() + at, contact);
-    const double* numbers = contacts.data() + at;
-    const bool discs = contact.j >= 0 && are_discs(system, contact.i, contact.j);
-    const bool listed = contact.j >= 0 && (discs ? system.contacts.near.active : system.contacts.near_parts.active);
-    if (listed && system.cell.active) {
-      imaged.push_back({contact, shapes ? pair_of(numbers + columns.part) : PartPair{},
-                        image_of(numbers + columns.image, contact.j)});
-    } else if (listed && discs) {
-      near.push_back(contact);
-    } else if (listed) {
-      near_parts.emplace_back(contact, pair_of(numbers + columns.part));
-    } else {
-      others.push_back(numbers);
-    }
-  }
   if (system.contacts.near.active) load_pair_bodies(system);
-  if (system.meets_images()) {
-    list_contacts(system, imaged);
-  } else {
-    if (system.contacts.near.active) take_near_pairs(system, near);
-    if (system.contacts.near_parts.active) take_near_parts(system, std::move(near_parts));
-  }
+  list_contacts(system, state.contacts);
   find_candidates(system);
+  std::vector<Candidate>& candidates = system.contacts.candidates;
   std::size_t c = 0;
-  for (const double* contact : others) {
-    const auto i = static_cast<std::int32_t>(contact[0]);
-    const auto j = static_cast<std::int32_t>(contact[1]);
-    const double* numbers = contact + columns.part;
+  for (const ContactState& contact : state.contacts) {
+    if (is_listed(system, contact)) continue;
     const auto is_it = [&] {
-      if (system.contacts.candidates[c].i != i || system.contacts.candidates[c].j != j) return false;
-      return !shapes || is_of(numbers, system.contacts.part_pairs[c]);
+      if (candidates[c].i != contact.i || candidates[c].j != contact.j) return false;
+      const auto& parts = system.contacts.part_pairs;
+      return !shapes || (parts[c].i == contact.part_i && parts[c].j == contact.part_j);
     };
-    while (c < system.contacts.candidates.size() && !is_it()) ++c;
-    if (c == system.contacts.candidates.size()) {
-      bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged",
-                "Resume with the scene that the state was saved from");
-    }
-    take(contact, system.contacts.candidates[c]);
+    while (c < candidates.size() && !is_it()) ++c;
+    if (c == candidates.size())
+      bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged", go_on_with);
+    take(contact, candidates[c]);
     if (!shapes) continue;
-    system.contacts.part_pairs[c].arm_i = {numbers[2], numbers[3]};
-    system.contacts.part_pairs[c].arm_j = {numbers[4], numbers[5]};
+    system.contacts.part_pairs[c].arm_i = contact.arm_i;
+    system.contacts.part_pairs[c].arm_j = contact.arm_j;
   }
-  const double* count = counts.data();
-  for (const auto counter : counters_saved) system.counters.*counter = static_cast<std::int64_t>(*count++);
+  system.counters = state.counters;
 }
 
 }  // namespace equidem

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
@@ -15,7 +16,6 @@
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
@@ -60,12 +60,18 @@ struct Candidate {
   Sliding sliding;       // constant
 };
 
-/// A contact of two bodies of a periodic cell, i < j, with their parts where there are shapes, and the image of j that
-/// i meets.
-struct ImagedContact {
-  Candidate contact;
-  PartPair parts;
-  PeriodicImage image;
+/// A contact as it is reported, saved and handed on.
+struct ContactState {
+  std::int32_t i = 0, j = 0;            ///< bodies, or a body and a wall ~j
+  std::int32_t part_i = 0, part_j = 0;  ///< as in PartPair
+  std::int32_t a = 0, b = 0;            ///< of the image of j that i meets, as in PeriodicImage
+  int mode = 0;
+  bool parted = false;
+  std::int64_t steps = 0;
+  double overlap = 0, closing = 0;
+  Vec2 normal = {};
+  double impulse = 0, moment = 0, tangential_impulse = 0, stretch = 0;
+  Vec2 arm_i = {}, arm_j = {};  ///< from the centres of mass to the contact point, m; {} for a wall
 };
 
 /// Displacement and velocity of a wall in the present step.
@@ -112,10 +118,8 @@ struct BlockSums {
   [[nodiscard]] ContactSums sums() { return {lost, &on_walls}; }
 };
 
-/// The control of a servo wall at the start of a step.
-struct ServoState {
-  std::size_t wall = 0, mirror = 0;    ///< places of the walls; equal: no mirror
-  std::size_t between[2] = {};         ///< places of the walls between which the length is measured
+/// What the control of a servo wall goes on from at the start of a step.
+struct ServoMotion {
   double way = 0;                      ///< m
   double speed = 0, passed_speed = 0;  ///< in the present step and in the one before, m/s
   double pace = 0;                     ///< mean speed of the last steps, m/s
@@ -124,13 +128,18 @@ struct ServoState {
   double largest_wanted = 0;           ///< N
   double excess = 0;                   ///< mean F - W over the time 1/sqrt(k/m) or so, over largest_wanted
   double overshoot = 0, peak = 0;      ///< largest excess, largest F - W of a step over largest_wanted
-  double speed_of_push = 0;            ///< m/s, if the speed is not given: at which a body pushes by 1 N
   double errors = 0, steps = 0;        ///< sum of |F - W| over largest_wanted, number of its steps
   double touched = 0, reached = 0;     ///< 0 or 1
   double arrived = 0;                  ///< 1: W was reached in this stage or before
   double side = 0;                     ///< 1, -1: the force began above or below the wanted one; 0: not known yet
 
   void count_anew() { excess = overshoot = peak = errors = steps = largest_wanted = reached = side = 0; }
+};
+
+struct ServoState : ServoMotion {
+  std::size_t wall = 0, mirror = 0;  ///< places of the walls; equal: no mirror
+  std::size_t between[2] = {};       ///< places of the walls between which the length is measured
+  double speed_of_push = 0;          ///< m/s, if the speed is not given: at which a body pushes by 1 N
 };
 
 /// The bodies sorted by position.
@@ -211,10 +220,9 @@ struct GrainSystem {
   MovingCell cell;
 
   std::int64_t step = 0;
-  bool free_flight = false;  ///< all impulses are zero
-  double longest_way = 0;    ///< square of the longest displacement of a body in the present step, m²
-  double deepest = 0;        ///< deepest overlap of the present step, m
-  EnergyLedger lost;         ///< losses and work since the start
+  double longest_way = 0;  ///< square of the longest displacement of a body in the present step, m²
+  double deepest = 0;      ///< deepest overlap of the present step, m
+  EnergyLedger lost;       ///< losses and work since the start
   GrainCounters counters;
 
   [[nodiscard]] ContactSums sums() { return {lost, &walls.loads}; }
@@ -222,9 +230,8 @@ struct GrainSystem {
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
   [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
-    const int other = candidate.j >= 0 ? bodies.constants[static_cast<std::size_t>(body_of(candidate.j))].kind
-                                       : scene.walls[static_cast<std::size_t>(~candidate.j)].kind;
-    return scene.between(bodies.constants[static_cast<std::size_t>(candidate.i)].kind, other);
+    const int other = candidate.j >= 0 ? bodies.constants[body_of(candidate.j)].kind : scene.walls[~candidate.j].kind;
+    return scene.between(bodies.constants[candidate.i].kind, other);
   }
   /// The image that a number behind those of all bodies stands for.
   [[nodiscard]] const PeriodicImage& image(std::int32_t j) const {
@@ -237,9 +244,8 @@ struct GrainSystem {
   [[nodiscard]] std::int32_t body_of(std::int32_t j) const { return is_image(j) ? image(j).body : j; }
   /// The part that a part of an image stands for; itself otherwise.
   [[nodiscard]] std::int32_t own_part(std::int32_t part) const {
-    const std::int32_t holder = shapes.body_of_part[static_cast<std::size_t>(part)];
-    return part + shapes.first_part[static_cast<std::size_t>(body_of(holder))] -
-           shapes.first_part[static_cast<std::size_t>(holder)];
+    const std::int32_t holder = shapes.body_of_part[part];
+    return part + shapes.first_part[body_of(holder)] - shapes.first_part[holder];
   }
   /// Whether bodies meet images of others.
   [[nodiscard]] bool meets_images() const {
@@ -247,16 +253,16 @@ struct GrainSystem {
   }
   /// Place of a body or an image at the start of the step.
   [[nodiscard]] Vec2 position_of(std::int32_t j) const {
-    const Vec2 own = bodies.motions[static_cast<std::size_t>(body_of(j))].position;
+    const Vec2 own = bodies.motions[body_of(j)].position;
     return is_image(j) ? own + cell.now.shift(image(j)) : own;
   }
   /// Likewise of bodies.next.
   [[nodiscard]] Vec2 next_position_of(std::int32_t j) const {
-    const Vec2 own = bodies.next[static_cast<std::size_t>(body_of(j))].position;
+    const Vec2 own = bodies.next[body_of(j)].position;
     return is_image(j) ? own + cell.next.shift(image(j)) : own;
   }
   [[nodiscard]] double dissipation(const Candidate& candidate) const {
-    return dissipations[static_cast<std::size_t>(&properties(candidate) - scene.pairs.data())];
+    return dissipations[&properties(candidate) - scene.pairs.data()];
   }
 };
 
@@ -283,6 +289,12 @@ void find_candidates(GrainSystem& system);
 /// Ensure that the candidates contain every pair that may touch while no body moves further than `reach`, and add
 /// `reach` to the motion counted. \return whether the candidates were found again
 bool refresh_candidates(GrainSystem& system, double reach);
+
+/// The contacts of pairs and of walls, those of pairs of discs first.
+std::vector<ContactState> contact_states(const GrainSystem& system);
+ContactState state_of(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
+/// Set the state of a contact, its bodies and constants aside.
+void take(const ContactState& state, Candidate& candidate);
 
 /// Longest displacement of a body or wall in this step, m.
 double reach_of(const GrainSystem& system);

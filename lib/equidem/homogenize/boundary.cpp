@@ -7,7 +7,7 @@
 
 #include "equidem/assembly/contact_numbers.hpp"
 #include "equidem/assembly/power_cells.hpp"
-#include "equidem/contact/chosen_springs.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/motion/saved_state.hpp"
 
-#include <algorithm>
-#include <utility>
-
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 
@@ -18,6 +15,11 @@ const std::vector<double>& SavedState::operator[](std::string_view name) const {
 
 std::vector<double>& SavedState::operator[](std::string_view name) {
   return const_cast<std::vector<double>&>(std::as_const(*this)[name]);
+}
+
+void refuse_saved_number(std::string_view array, double number) {
+  bad_input(fmt::format("the array '{}' of the saved state has {} where no such number can be", array, number),
+            "it is of another case, or damaged", "Continue with the case that the state was saved from");
 }
 
 std::vector<double> numbers_of(std::span<const DiscMotion> motions) {

@@ -12,16 +12,17 @@
 
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/quantity_list.hpp"
+#include "equidem/output/texts.hpp"
 
 namespace equidem {
+
 namespace {
 
 const std::set<std::string>& unit_symbols() {
   static const std::set<std::string> all = [] {
     std::set<std::string> found{"J", "J/m"};  // of energies, by the kind of bodies
-    for (const ResultQuantity& quantity : quantities)
-      if (*quantity.unit != '\0') found.insert(quantity.unit);
+    for (const ResultQuantity& quantity : result_quantities())
+      if (!quantity.unit.empty()) found.insert(quantity.unit);
     return found;
   }();
   return all;
@@ -93,7 +94,7 @@ std::string finite_text(const ResultValue& value) {
 const ResultQuantity* longest_match(std::string_view path) {
   static const std::unordered_map<std::string_view, const ResultQuantity*> by_path = [] {
     std::unordered_map<std::string_view, const ResultQuantity*> found;
-    for (const ResultQuantity& quantity : quantities) found.emplace(quantity.path, &quantity);
+    for (const ResultQuantity& quantity : result_quantities()) found.emplace(quantity.path, &quantity);
     return found;
   }();
   for (std::string_view front = path;;) {
@@ -106,15 +107,30 @@ const ResultQuantity* longest_match(std::string_view path) {
 
 }  // namespace
 
-std::optional<NumberMeaning> meaning_of(std::string_view path) {
+const std::vector<ResultQuantity>& result_quantities() {
+  static const std::vector<ResultQuantity> all = [] {
+    std::vector<ResultQuantity> rows;
+    TableCells cells;
+    std::string_view rest = quantities_csv;
+    for (take_record(rest); !rest.empty();) {  // the first record names the columns
+      cells.split(take_record(rest), ',');
+      const auto& row = cells.all();
+      rows.push_back({std::string(row[0]), std::string(row[1]), std::string(row[2]), row[3] == "machine"});
+    }
+    return rows;
+  }();
+  return all;
+}
+
+std::optional<ResultQuantity> meaning_of(std::string_view path) {
   for (std::string_view rest = path;;) {
     const ResultQuantity* best = longest_match(rest);
     if (best != nullptr) {
       std::string label = best->label;
-      for (const std::string_view word : parts_of(rest.substr(std::string_view(best->path).size()), '/'))
+      for (const std::string_view word : parts_of(rest.substr(best->path.size()), '/'))
         if (!word.empty()) label += fmt::format(", {}", word);
       std::ranges::replace(label, '_', ' ');
-      return NumberMeaning{best->unit, label, best->of_machine};
+      return ResultQuantity{best->path, best->unit, label, best->of_machine};
     }
     const std::size_t slash = rest.find('/');
     if (slash == std::string_view::npos) return std::nullopt;
@@ -204,7 +220,7 @@ std::string describe_result() {
       "report     text that is printed without --json\n"
       "version    of the program\n\n"
       "Names of numbers, which may stand below those of other objects, units and meanings:\n\n";
-  for (const ResultQuantity& quantity : quantities)
+  for (const ResultQuantity& quantity : result_quantities())
     text += fmt::format("  {:<36} {:<6} {}\n", with_points(quantity.path), quantity.unit, quantity.label);
   return text;
 }

@@ -12,17 +12,20 @@
 
 namespace equidem {
 
-/// The meaning of a number of a result.
-struct NumberMeaning {
-  std::string unit;   ///< symbol, "Pa"; empty: a count or a ratio
-  std::string label;  ///< "shear modulus G"
-  bool of_machine;    ///< it depends on the machine, on the time or on how often a computation was interrupted
+/// Unit and meaning of a number of results; those that a verb states itself come before it.
+struct ResultQuantity {
+  std::string path;         ///< its keys, "/" between those of nested objects
+  std::string unit;         ///< symbol, "Pa"; empty: a count or a ratio
+  std::string label;        ///< "shear modulus G"
+  bool of_machine = false;  ///< it depends on the machine, on the time or on how often a computation was interrupted
 };
+/// The rows of quantities.csv.
+const std::vector<ResultQuantity>& result_quantities();
 
 /// The meaning by the keys of the number, "/" between those of nested objects, positions in lists left out or not; none
 /// where it is not known. A meaning of "shear_modulus" is also that of "bounds/shear_modulus" and, with the rest of its
 /// keys, that of "shear_modulus/mean".
-std::optional<NumberMeaning> meaning_of(std::string_view path);
+std::optional<ResultQuantity> meaning_of(std::string_view path);
 
 /// Objects "units" and "labels" with an entry for each number, vector and matrix of the results that has a meaning;
 /// keys of nested objects are joined by '.', positions in lists left out: "points.energy".

@@ -153,4 +153,11 @@ const Result* find_result(const Results& results, std::string_view path);
 /// effects {active: [names], inactive: {name: why}}.
 void add_effects(Results& results, const Effects& effects);
 
+/// The number at a path of keys and positions such as "poisson_ratio.plane_strain" or "stress.0" in a JSON text; none
+/// where there is none.
+std::optional<double> number_in_json(std::string_view text, const std::string& path);
+
+/// The version of the library, "0.2.0".
+std::string library_version();
+
 }  // namespace equidem

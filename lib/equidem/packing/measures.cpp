@@ -1,37 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "equidem/packing/measures.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <cstddef>
+#include <map>
+#include <numbers>
+#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/packing/overlaps.hpp"
 
 namespace equidem {
+
 namespace {
 
 constexpr double touching_gap = 1e-8;  // of the smaller radius
-
-double mean_diameter(const GrainPacking& packing) {
-  return 2 * std::accumulate(packing.radii.begin(), packing.radii.end(), 0.0) / static_cast<double>(packing.size());
-}
-
-/// The lowest top of all columns.
-double lowest_surface(const GrainPacking& packing) {
-  double largest = 0;
-  for (const Grain& grain : packing.grains) largest = std::max(largest, grain.radius);
-  const auto columns = std::max<std::size_t>(1, static_cast<std::size_t>(packing.box.size.x / (4 * largest)));
-  std::vector<double> tops(columns, 0);
-  for (const Grain& grain : packing.grains) {
-    const double share = std::clamp(grain.position.x / packing.box.size.x, 0.0, 1.0);
-    double& top = tops[std::min(columns - 1, static_cast<std::size_t>(share * static_cast<double>(columns)))];
-    top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));
-  }
-  return *std::min_element(tops.begin(), tops.end());
-}
 
 /// Inverse of the distance from a point that lies `sunk` below the surface to the centre of curvature of the place that
 /// reaches farthest along n.
@@ -79,21 +66,16 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_
   };
   const double largest = *std::max_element(packing.radii.begin(), packing.radii.end());
   const double margin = gap_of(largest, largest);
-  const auto whole = [](double shift, double period) {
-    return period > 0 ? static_cast<std::int32_t>(std::lround(shift / period)) : 0;
-  };
-  PairFinder finder;
-  for (const BodyPair& pair : finder.within(packing.box, circles, margin)) {
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
-    if (packing.body_of(i) == packing.body_of(j) && pair.shift == Vec2{}) continue;
+  for (const CirclePair& pair : pairs_within(circles, packing.box.periods(), margin)) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
+    if (i == j || (packing.body_of(i) == packing.body_of(j) && pair.shift == Vec2{})) continue;
     const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
-    const double gap = gap_of(radius_of(packing, pair.i), radius_of(packing, pair.j));
+    const double gap = gap_of(radius_of(packing, pair.i), radius_of(packing, pair.j.body));
     for_touches(outlines[i], outlines[j], branch, gap, [&](const Touch& touch) {
       // Midway between the points of the two surfaces, then nearer to the smaller one.
       const Vec2 middle = 0.5 * (touch.arm_i + touch.arm_j + branch);
       const double sunk_i = touch.share * touch.overlap, sunk_j = touch.overlap - sunk_i;
-      contacts.push_back({pair.i, pair.j, whole(pair.shift.x, packing.box.size.x),
-                          whole(pair.shift.y, packing.box.size.y), touch.overlap, touch.normal,
+      contacts.push_back({pair.i, pair.j.body, pair.j.a, pair.j.b, touch.overlap, touch.normal,
                           middle + (0.5 - touch.share) * touch.overlap * touch.normal,
                           curvature(outlines[i].part(touch.part_i), touch.normal, sunk_i),
                           curvature(outlines[j].part(touch.part_j), -touch.normal, sunk_j)});
@@ -122,29 +104,23 @@ std::vector<BondCount> bond_counts(const GrainPacking& packing) {
   return bond_counts(gaps, packing.size());
 }
 
-Region measured_region(const GrainPacking& packing) {
-  const Vec2 size = packing.box.size;
-  const Region whole = {{0, 0}, size};
+Rectangle measured_region(const GrainPacking& packing) {
+  const Rectangle whole = {{0, 0}, packing.box.size};
   if (packing.box.periodic()) return whole;
-  const double diameter = mean_diameter(packing);
-  const bool open = packing.box.sides == PackingBox::Sides::open_top;
-  const double top = open ? lowest_surface(packing) - 3 * diameter : size.y - 2 * diameter;
-  const Region region = {{2 * diameter, 2 * diameter}, {size.x - 2 * diameter, top}};
-  const bool large = region.high.x - region.low.x > 2 * diameter && region.high.y - region.low.y > 2 * diameter;
-  return large ? region : whole;
+  const GrainBox box{.inside = whole, .lid = packing.box.sides != PackingBox::Sides::open_top};
+  return measured_region(packing.grains, packing.clumps, box).value_or(whole);
 }
 
 namespace {
 
 /// Area of the bodies, m²; in a periodic box also of the images that reach in across its sides.
-double covered_area(const GrainPacking& packing, const Region& region) {
+double covered_area(const GrainPacking& packing, const Rectangle& region) {
   const int images = packing.box.periodic() ? 1 : 0;
   double covered = 0;
   for (int y = -images; y <= images; ++y) {
     for (int x = -images; x <= images; ++x) {
       const Vec2 shift = {x * packing.box.size.x, y * packing.box.size.y};
-      const Region seen = {region.low - shift, region.high - shift};
-      for (const Grain& grain : packing.grains) covered += clipped_area(grain, packing.clumps, seen);
+      covered += clipped_area(packing.grains, packing.clumps, {region.low - shift, region.high - shift});
     }
   }
   return covered;
@@ -152,7 +128,7 @@ double covered_area(const GrainPacking& packing, const Region& region) {
 
 }  // namespace
 
-void check_region(const PackingBox& box, const Region& region) {
+void check_region(const PackingBox& box, const Rectangle& region) {
   const Vec2 size = box.size, sides = region.high - region.low;
   if (!(sides.x > 0 && sides.y > 0)) {
     bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
@@ -165,7 +141,7 @@ void check_region(const PackingBox& box, const Region& region) {
   }
 }
 
-PackingMeasures measure(const GrainPacking& packing, std::optional<Region> region) {
+PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> region) {
   PackingMeasures result;
   result.region = region ? *region : measured_region(packing);
   check_region(packing.box, result.region);
@@ -178,9 +154,7 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Region> regio
   if (region && !(covered > 0)) {
     bad_input("no body reaches into the region measured", "it has no void ratio", "Give one that holds some bodies");
   }
-  result.solid_fraction = covered / result.region.area();
-  result.porosity = 1 - result.solid_fraction;
-  result.void_ratio = result.porosity / result.solid_fraction;
+  static_cast<SolidMeasures&>(result) = solid_measures(covered, result.region);
 
   std::vector<std::vector<std::int32_t>> partners(packing.size());
   for (const PackingContact& contact : contacts_of(packing)) {
@@ -205,14 +179,251 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Region> regio
   for (std::size_t k = 0; k < partners.size(); ++k) {
     ends += static_cast<double>(partners[k].size());
     if (rattles[k]) continue;
-    ends_without_rattlers +=
-        static_cast<double>(std::count_if(partners[k].begin(), partners[k].end(), [&](std::int32_t other) {
-          return other < 0 || !rattles[static_cast<std::size_t>(other)];
-        }));
+    ends_without_rattlers += static_cast<double>(std::count_if(
+        partners[k].begin(), partners[k].end(), [&](std::int32_t other) { return other < 0 || !rattles[other]; }));
   }
   const double count = static_cast<double>(partners.size()), rest = count - static_cast<double>(result.rattlers);
   result.coordination = ends / count;
   result.coordination_without_rattlers = rest > 0 ? ends_without_rattlers / rest : 0;
+  return result;
+}
+
+namespace {
+
+/// Forces on i are the negatives of those on j; neither normal nor tangential force changes where i and j change
+/// places.
+ContactForce force_on_first(const GrainContact& contact) {
+  return {-contact.normal_force, -contact.tangential_force};
+}
+
+/// The settled contact of the same bodies, of clumps the nearest; null where there is none.
+class SettledContacts {
+ public:
+  explicit SettledContacts(const std::vector<GrainContact>& contacts) {
+    for (const GrainContact& contact : contacts) {
+      const bool swapped = contact.j >= 0 && contact.j < contact.i;
+      by_bodies_[swapped ? std::pair(contact.j, contact.i) : std::pair(contact.i, contact.j)].push_back(
+          {&contact, swapped ? contact.arm_j : contact.arm_i});
+    }
+  }
+
+  [[nodiscard]] const GrainContact* find(const PackingContact& wanted) const {
+    const auto found = by_bodies_.find({wanted.i, wanted.j});
+    if (found == by_bodies_.end()) return nullptr;
+    const auto distance = [&](const Placed& placed) { return norm(placed.arm - wanted.arm_i); };
+    return std::ranges::min_element(found->second, {}, distance)->contact;
+  }
+
+ private:
+  struct Placed {
+    const GrainContact* contact;
+    Vec2 arm;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Placed>> by_bodies_;
+};
+
+}  // namespace
+
+std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std::vector<PackingContact>& contacts,
+                                         const std::optional<SpringConstants>& springs) {
+  std::vector<ContactForce> forces;
+  if (!packing.contacts.empty()) {
+    const SettledContacts settled(packing.contacts);
+    for (const PackingContact& contact : contacts) {
+      const GrainContact* const found = contact.overlap > 0 ? settled.find(contact) : nullptr;
+      forces.push_back(found == nullptr ? ContactForce{} : force_on_first(*found));
+    }
+  } else if (packing.jammed && springs) {
+    for (const PackingContact& contact : contacts) forces.push_back({-springs->kN * std::max(contact.overlap, 0.0), 0});
+  }
+  return forces;
+}
+
+namespace {
+
+/// The centre behind a wall of the body that mirrors one at the wall.
+Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
+  switch (wall) {
+    case 0:
+      return {centre.x, -centre.y};
+    case 1:
+      return {-centre.x, centre.y};
+    case 2:
+      return {2 * box.x - centre.x, centre.y};
+    default:
+      return {centre.x, 2 * box.y - centre.y};
+  }
+}
+
+/// Centre of mass of a body of the packing, m.
+Vec2 centre_of(const GrainPacking& packing, std::size_t body) {
+  if (packing.bonds.empty()) return packing.grains[body].position;
+  return 0.5 * (packing.grains[2 * body].position + packing.grains[2 * body + 1].position);
+}
+
+/// From the centre of its body to that of a grain.
+Vec2 place_in_body(const GrainPacking& packing, std::size_t grain) {
+  if (packing.bonds.empty()) return {};
+  return packing.grains[grain].position - centre_of(packing, packing.body_of(grain));
+}
+
+BodySection section_of(const GrainPacking& packing, std::size_t body) {
+  BodySection section;
+  const std::size_t grains = packing.bonds.empty() ? 1 : 2;
+  for (std::size_t k = grains * body; k < grains * (body + 1); ++k) {
+    const Grain& grain = packing.grains[k];
+    const double area = area_of(grain, packing.clumps);
+    const Vec2 place = place_in_body(packing, k);
+    section.area += area;
+    section.polar_moment += area * (grain.inertia.moment / grain.inertia.mass + dot(place, place));
+  }
+  return section;
+}
+
+void add_body(const GrainPacking& packing, std::size_t body, Vec2 centre, Assembly& assembly) {
+  assembly.centres.push_back(centre);
+  if (packing.shape == PackingShape::Kind::disc) {
+    assembly.radii.push_back(packing.radii[body]);
+    return;
+  }
+  assembly.sections.push_back(section_of(packing, body));
+  assembly.radii.push_back(std::sqrt(assembly.sections.back().area / std::numbers::pi));
+}
+
+/// The smallest rectangle along the walls that holds all bodies.
+Rectangle outline_of_all(const GrainPacking& packing) {
+  Rectangle box{.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
+  for (const Grain& grain : packing.grains) {
+    const Outline outline = outline_of(grain, packing.clumps);
+    const auto reach = [&](Vec2 direction) { return reach_along(outline, direction); };
+    const Vec2 x = grain.position;
+    box.low = {std::min(box.low.x, x.x - reach({-1, 0})), std::min(box.low.y, x.y - reach({0, -1}))};
+    box.high = {std::max(box.high.x, x.x + reach({1, 0})), std::max(box.high.y, x.y + reach({0, 1}))};
+  }
+  return box;
+}
+
+/// Contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
+struct BodyContacts {
+  std::vector<PackingContact> places;
+  std::vector<ContactForce> forces;  ///< of each place; empty: none are known
+
+  [[nodiscard]] const ContactForce* force(std::size_t contact) const {
+    return forces.empty() ? nullptr : &forces[contact];
+  }
+};
+
+BodyContacts contacts_of_bodies(const GrainPacking& packing, const NetworkOptions& options) {
+  BodyContacts contacts{.places = contacts_of(packing, options.gap_tolerance), .forces = {}};
+  contacts.forces = carried_forces(packing, contacts.places, options.springs);
+  for (PackingContact& contact : contacts.places) {
+    const auto i = static_cast<std::size_t>(contact.i);
+    contact.arm_i += place_in_body(packing, i);
+    contact.i = static_cast<std::int32_t>(packing.body_of(i));
+    if (contact.j >= 0) contact.j = static_cast<std::int32_t>(packing.body_of(static_cast<std::size_t>(contact.j)));
+  }
+  return contacts;
+}
+
+/// \param found between bodies of the assembly
+/// \param force that it carries at rest; null: not known
+/// \param has_walls whether some contacts of the assembly are with walls, which are flat
+void add_contact(PackingShape::Kind shape, const PackingContact& found, const ContactForce* force, bool has_walls,
+                 const std::optional<SpringConstants>& springs, Assembly& assembly) {
+  Contact contact{.i = found.i, .j = found.j, .shift_x = found.shift_x, .shift_y = found.shift_y};
+  const Vec2 branch = assembly.branch(contact);
+  if (shape == PackingShape::Kind::disc) {
+    const double distance = norm(branch), ri = assembly.radii[contact.i];
+    contact.lever_i = distance * ri / (ri + assembly.radii[contact.j]);
+    contact.lever_j = distance - contact.lever_i;
+  } else {
+    const Vec2 n = found.normal, s = perpendicular(n), rest = branch - found.arm_i;
+    const double round_off = 1e-12 * (norm(found.arm_i) + norm(rest));
+    const auto offset = [&](Vec2 arm) { return std::abs(dot(arm, s)) > round_off ? dot(arm, s) : 0.0; };
+    contact.lever_i = dot(found.arm_i, n);
+    contact.lever_j = dot(rest, n);
+    assembly.contact_arms.push_back({n, offset(found.arm_i), offset(rest)});
+  }
+  assembly.contacts.push_back(contact);
+  if (force != nullptr) {
+    assembly.contact_normal_force.push_back(force->normal);
+    assembly.contact_tangential_force.push_back(force->tangential);
+    if (!assembly.contact_arms.empty() || has_walls) {
+      assembly.contact_curvature_i.push_back(found.curvature_i);
+      assembly.contact_curvature_j.push_back(found.curvature_j);
+    }
+  }
+  if (!springs) return;
+  assembly.contact_kN.push_back(springs->kN);
+  assembly.contact_kT.push_back(springs->kT);
+}
+
+/// 1 for the bodies with two contacts or more, counted without the bodies that have fewer.
+std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
+  std::vector<std::vector<std::int32_t>> partners(bodies);
+  for (const PackingContact& c : contacts) {
+    partners[c.i].push_back(c.j);
+    if (c.j >= 0) partners[c.j].push_back(c.i);
+  }
+  std::vector<char> held = rattlers_of(partners, 2);
+  for (char& value : held) value = value ? 0 : 1;
+  return held;
+}
+
+}  // namespace
+
+Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  Assembly assembly;
+  assembly.kind = "packing";
+  assembly.gap_tolerance = options.gap_tolerance;
+  for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
+  if (packing.box.periodic()) {
+    assembly.period = packing.box.size;
+  } else {
+    assembly.box = outline_of_all(packing);
+  }
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    if (contacts.places[c].j < 0) continue;
+    add_contact(packing.shape, contacts.places[c], contacts.force(c), false, options.springs, assembly);
+  }
+  return assembly;
+}
+
+HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  const BodyContacts contacts = contacts_of_bodies(packing, options);
+  const std::vector<char> held = held_by_two(contacts.places, packing.size());
+  HeldNetwork result;
+  Assembly& assembly = result.assembly;
+  assembly.kind = "packing";
+  std::vector<std::int32_t> number(packing.size(), -1);
+  for (std::size_t k = 0; k < packing.size(); ++k) {
+    if (!held[k]) continue;
+    number[k] = static_cast<std::int32_t>(assembly.size());
+    add_body(packing, k, centre_of(packing, k), assembly);
+    result.bodies.push_back(static_cast<std::int32_t>(k));
+  }
+  DiscGroup walls;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>
+      mirrors;  // of a body at a wall, which it may touch twice
+  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
+    PackingContact found = contacts.places[c];
+    const auto i = static_cast<std::size_t>(found.i);
+    if (!held[i] || (found.j >= 0 && !held[found.j])) continue;
+    if (found.j >= 0) {
+      found.j = number[found.j];
+    } else {
+      const auto [mirror, is_new] = mirrors.try_emplace({found.i, found.j}, static_cast<std::int32_t>(assembly.size()));
+      if (is_new) {
+        walls.discs.push_back(mirror->second);
+        add_body(packing, i, mirrored(centre_of(packing, i), ~found.j, packing.box.size), assembly);
+      }
+      found.j = mirror->second;
+    }
+    found.i = number[i];
+    add_contact(packing.shape, found, contacts.force(c), true, options.springs, assembly);
+  }
+  if (!walls.discs.empty()) assembly.groups["walls"] = walls;
   return result;
 }
 

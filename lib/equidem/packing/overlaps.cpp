@@ -1,55 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/packing/overlaps.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/core/progress.hpp"
-#include "equidem/packing/outline.hpp"
 
 namespace equidem {
-
-const std::vector<BodyPair>& PairFinder::within(const PackingBox& box, std::span<const Circle> circles, double margin) {
-  const std::size_t count = circles.size();
-  circles_.assign(circles.begin(), circles.end());
-  owner_.clear();
-  shift_.assign(count, {});
-  double largest = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    owner_.push_back(static_cast<std::int32_t>(k));
-    largest = std::max(largest, circles[k].radius);
-  }
-  if (box.periodic()) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const double reach = circles[k].radius + largest + margin;
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-          const Vec2 shift = {x * box.size.x, y * box.size.y};
-          const Vec2 place = circles[k].centre + shift;
-          const bool near =
-              place.x > -reach && place.x < box.size.x + reach && place.y > -reach && place.y < box.size.y + reach;
-          if ((x == 0 && y == 0) || !near) continue;
-          circles_.push_back({place, circles[k].radius});
-          owner_.push_back(static_cast<std::int32_t>(k));
-          shift_.push_back(shift);
-        }
-      }
-    }
-  }
-  const NeighbourList& list = finder_.within(circles_, margin);
-  pairs_.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const auto q = static_cast<std::size_t>(list.partner[static_cast<std::size_t>(p)]);
-      const std::int32_t j = owner_[q];
-      // A pair across a side is found from both ends; it counts at the first.
-      if (q >= count && j <= static_cast<std::int32_t>(i)) continue;
-      pairs_.push_back({static_cast<std::int32_t>(i), j, shift_[q]});
-    }
-  }
-  return pairs_;
-}
 
 namespace {
 
@@ -68,9 +24,9 @@ struct Forces {
   }
 };
 
-void push_discs(const Bodies& bodies, std::span<const BodyPair> pairs, Forces& out) {
-  for (const BodyPair& pair : pairs) {
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+void push_discs(const Bodies& bodies, std::span<const CirclePair> pairs, Forces& out) {
+  for (const CirclePair& pair : pairs) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
     const Vec2 branch = bodies.centres[j] + pair.shift - bodies.centres[i];
     const double reach = bodies.radii[i] + bodies.radii[j], square = dot(branch, branch);
     if (square >= reach * reach) continue;
@@ -83,10 +39,10 @@ void push_discs(const Bodies& bodies, std::span<const BodyPair> pairs, Forces& o
 }
 
 /// The gradient is exact: a force along the common normal at the closest points.
-void push_shapes(const Bodies& bodies, std::span<const Outline> outlines, double lever, std::span<const BodyPair> pairs,
-                 Forces& out) {
-  for (const BodyPair& pair : pairs) {
-    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j);
+void push_shapes(const Bodies& bodies, std::span<const Outline> outlines, double lever,
+                 std::span<const CirclePair> pairs, Forces& out) {
+  for (const CirclePair& pair : pairs) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
     const Vec2 branch = bodies.centres[j] + pair.shift - bodies.centres[i];
     for_touches(outlines[i], outlines[j], branch, 0, [&](const Touch& touch) {
       const Vec2 push = touch.overlap * touch.normal;
@@ -163,7 +119,7 @@ class Pushed {
       }
       circles_.push_back({x, shape_.reach * bodies_.radii[k]});
     }
-    pairs_ = &finder_.within(box_, circles_, margin_);
+    pairs_ = &finder_.within(circles_, box_.periods(), margin_);
     moved_ = 0;
   }
 
@@ -186,7 +142,7 @@ class Pushed {
   std::vector<Vec2> weights_;
   std::vector<Outline> outlines_;
   std::vector<Circle> circles_;
-  const std::vector<BodyPair>* pairs_ = nullptr;
+  const std::vector<CirclePair>* pairs_ = nullptr;
 };
 
 /// Sums over all unknowns.

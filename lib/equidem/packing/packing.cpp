@@ -6,11 +6,10 @@
 #include <numbers>
 #include <utility>
 
-#include "equidem/core/error.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/packing/overlaps.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
 namespace equidem {

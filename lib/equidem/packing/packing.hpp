@@ -10,6 +10,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/packing/methods.hpp"
 #include "equidem/packing/packing_shape.hpp"
@@ -27,6 +28,10 @@ struct PackingBox {
   } sides = Sides::walls;
 
   [[nodiscard]] bool periodic() const { return sides == Sides::periodic; }
+  /// None where nothing repeats.
+  [[nodiscard]] std::optional<Periods> periods() const {
+    return periodic() ? std::optional<Periods>({{size.x, 0}, {0, size.y}}) : std::nullopt;
+  }
   [[nodiscard]] double area() const { return size.x * size.y; }
 };
 

@@ -8,7 +8,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {

@@ -82,8 +82,8 @@ PlacedBodies::SizeClass& PlacedBodies::class_of(double radius) {
 }
 
 std::vector<std::int32_t>& PlacedBodies::cell(SizeClass& sizes, Vec2 place) {
-  return sizes.cells[static_cast<std::size_t>(cell_of(place.y, box_.size.y, sizes.rows) * sizes.columns +
-                                              cell_of(place.x, box_.size.x, sizes.columns))];
+  return sizes
+      .cells[cell_of(place.y, box_.size.y, sizes.rows) * sizes.columns + cell_of(place.x, box_.size.x, sizes.columns)];
 }
 
 void PlacedBodies::add(Vec2 place, double radius, double angle) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/core/random.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/packing/overlaps.hpp"
 
 namespace equidem {
 
@@ -56,8 +56,7 @@ class PlacedBodies {
       const Span rows = span_of(place.y, reach, box_.size.y, sizes.rows);
       for (std::int64_t row = rows.first; row <= rows.last; ++row) {
         for (std::int64_t column = columns.first; column <= columns.last; ++column) {
-          const auto& cell = sizes.cells[static_cast<std::size_t>(remainder(row, sizes.rows) * sizes.columns +
-                                                                  remainder(column, sizes.columns))];
+          const auto& cell = sizes.cells[remainder(row, sizes.rows) * sizes.columns + remainder(column, sizes.columns)];
           if (std::any_of(cell.begin(), cell.end(), body)) return true;
         }
       }

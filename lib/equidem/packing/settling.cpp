@@ -5,11 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/grain_time_step.hpp"
-#include "equidem/grains/stages/unbalance.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/material/wave_speed_springs.hpp"
 

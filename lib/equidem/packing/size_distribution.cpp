@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/packing/size_distribution.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/random.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/methods.hpp"

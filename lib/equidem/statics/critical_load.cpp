@@ -7,7 +7,7 @@
 #include <limits>
 #include <memory>
 
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
@@ -21,11 +21,6 @@
 
 namespace equidem {
 namespace {
-
-void check(const CriticalLoadOptions& options) {
-  if (options.largest > 0) return;
-  bad_input(fmt::format("largest = {}", options.largest), "the search ends at a factor above 0", "Correct it");
-}
 
 /// K + lambda K_g with the motions held that nothing resists.
 class LoadPencil final : public StiffnessPencil {
@@ -137,8 +132,9 @@ void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
 
 CriticalLoad find_critical_load(const Assembly& assembly, const ContactSprings& springs,
                                 std::span<const Support> supports, const CriticalLoadOptions& options) {
-  check(options);
-  equidem::check(assembly);
+  if (!(options.largest > 0))
+    bad_input(fmt::format("largest = {}", options.largest), "the search ends at a factor above 0", "Correct it");
+  check(assembly);
   CriticalLoad result;
   const auto not_sought = [&](const char* why) {
     result.sought = false;

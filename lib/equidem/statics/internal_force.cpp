@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/statics/internal_force.hpp"
 
-#include "equidem/contact/contact_response.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/threads.hpp"
 

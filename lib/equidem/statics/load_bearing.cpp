@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "equidem/assembly/contact_numbers.hpp"
-#include "equidem/contact/chosen_springs.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/contact_graph.hpp"

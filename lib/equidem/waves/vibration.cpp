@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/contact/viscous_bond.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"

@@ -17,7 +17,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/network.hpp"
 #include "equidem/packing/packing.hpp"
 
 #include "module.hpp"

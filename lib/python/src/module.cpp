@@ -5,7 +5,7 @@
 #include <string>
 
 #include "equidem/core/threads.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem::python {
 namespace {

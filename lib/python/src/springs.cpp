@@ -11,7 +11,7 @@
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "verbs.hpp"
+
 #include <algorithm>
-#include <string>
 #include <utility>
 #include <variant>
 
@@ -12,7 +13,6 @@
 
 #include "case_inputs.hpp"
 #include "result.hpp"
-#include "verb_run.hpp"
 
 namespace equidem::python {
 namespace {

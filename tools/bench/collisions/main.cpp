@@ -15,7 +15,6 @@
 
 #include "bench.hpp"
 #include "loops.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {

@@ -13,7 +13,6 @@
 
 #include "bench.hpp"
 #include "scene.hpp"
-#include "text_table.hpp"
 
 namespace equidem::bench {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "calibrate/calibrate_strengths.hpp"
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -10,16 +11,143 @@
 #include "equidem/breakage/calibrate/calibrate_strength.hpp"
 #include "equidem/breakage/load_path.hpp"
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
-#include "calibrate/calibrate_results.hpp"
 #include "problem.hpp"
 
 namespace equidem {
 namespace {
+
+/// The second strength beside the tensile one.
+struct SecondStrength {
+  std::string key, unit, unit_of_ratio;
+};
+
+SecondStrength second_of(const StrengthTargets& wanted) {
+  if (wanted.compressive) return {"compressive", "Pa", ""};
+  return {"toughness", "Pa sqrt(m)", "sqrt(m)"};
+}
+
+void add_error(Results& out, const std::string& key, double error, const std::string& unit) {
+  std::isfinite(error) ? out.add(key, "+-", error, unit, {.digits = 2}) : out.set(key, nullptr);
+}
+
+void add_wanted_strengths(Results& out, const StrengthTargets& wanted) {
+  const SecondStrength second = second_of(wanted);
+  out.line("wanted")
+      .add("target/tensile", "tensile", wanted.tensile, "Pa")
+      .add("target/" + second.key, second.key, wanted.second(), second.unit)
+      .add("target/strength_ratio", "ratio", wanted.second() / wanted.tensile, second.unit_of_ratio);
+}
+
+void add_tests(Results& out, const StrengthTargetCase& target, const StrengthSample& sample,
+               const StrengthCalibration& found) {
+  const std::string how = fmt::format(
+      "ends along {} moved apart{}, {} plates, until the load has fallen to {:g} % of its peak",
+      to_string(target.test.axis), target.wanted.compressive ? " and together" : ", without and with notches",
+      to_string(target.test.ends), 100 * target.test.fallen_to);
+  out.line("tests", how);
+  out.line("").add("width", "width", sample.width(), "m").add("tests", "", found.tests, "test", {Shown::count});
+  out.add("sample_count", "of", std::ssize(found.samples), "sample", {Shown::count});
+  if (found.samples.size() == 1)
+    out.line("", "one sample: neither the assembly nor the strengths are random, or one was asked for: no scatter");
+}
+
+void add_found_strengths(Results& out, const StrengthCalibration& found, const StrengthTargetCase& target,
+                         BondLength length) {
+  const std::string unit = length == BondLength::none ? "N/m" : "Pa";
+  out.line("contacts").add("contact_strength/tension", "tension", found.tension, unit, {.digits = 9});
+  add_error(out, "contact_strength/tension_error", found.tension_error, unit);
+  out.line("").add("contact_strength/shear", "shear", found.shear, unit, {.digits = 9});
+  add_error(out, "contact_strength/shear_error", found.shear_error, unit);
+  out.add("contact_strength/shear_over_tension", "shear over tension", found.shear / found.tension);
+  out.line("").add("contact_strength/friction", "friction", found.friction, "", {.digits = 9});
+  if (target.shear_over_tension) {
+    add_error(out, "contact_strength/friction_error", found.friction_error, "");
+  } else {
+    out.note(", as given").set("contact_strength/friction_error", found.friction_error);
+  }
+  if (found.shear / found.tension >= largest_shear_over_tension)
+    out.line("", "contacts break in tension alone: any larger strength in shear gives the same");
+}
+
+void add_mean(Results& out, const std::string& key, const std::string& name, const MeanEstimate& mean, double wanted,
+              const std::string& unit) {
+  const std::string place = "achieved/" + key;
+  out.line(name).add(place, "", mean.mean, unit, {.digits = 9});
+  add_error(out, place + "_error", mean.standard_error, unit + " (standard error)");
+  std::isfinite(mean.standard_deviation)
+      ? out.add(place + "_deviation", "samples scatter by", mean.standard_deviation, unit, {.digits = 2})
+      : out.set(place + "_deviation", nullptr);
+  constexpr double rounding = 1e-12;
+  const double off = mean.mean / wanted - 1;
+  std::abs(off) > rounding ? out.add(place + "_off", "off by", off, "", {Shown::percent})
+                           : out.note(", as wanted").set(place + "_off", off);
+}
+
+void add_reached_strengths(Results& out, const StrengthTargets& wanted, const StrengthCalibration& found) {
+  const SecondStrength second = second_of(wanted);
+  add_mean(out, "tensile", "tensile", found.tensile, wanted.tensile, "Pa");
+  add_mean(out, second.key, second.key, found.second, wanted.second(), second.unit);
+  std::vector<Results> rows;
+  for (const TestedSample& one : found.samples) {
+    Results row;
+    row.add("seed", "seed", static_cast<std::int64_t>(one.seed))
+        .add("tensile", "tensile", one.tensile, "Pa")
+        .add(second.key, second.key, one.second, second.unit)
+        .add("strength_ratio", "ratio", one.second / one.tensile, second.unit_of_ratio, {.digits = 4})
+        .add("events", "broken", one.events)
+        .add("in_shear", "of them in shear", one.in_shear);
+    rows.push_back(std::move(row));
+  }
+  out.table("samples", std::move(rows));
+}
+
+void add_feasible(Results& out, const StrengthTargetCase& target, const StrengthCalibration& found) {
+  const SecondStrength second = second_of(target.wanted);
+  const std::string unknown = target.shear_over_tension ? "friction" : "shear_over_tension";
+  const auto shown = [](double ratio) {
+    return std::isfinite(ratio) ? fmt::format("{:.4g}", ratio) : std::string("no bound");
+  };
+  out.line("feasible ratio", fmt::format("{} over tensile from {} to {}{}, for {} from {:g} to {:g}", second.key,
+                                         shown(found.lowest_ratio()), shown(found.highest_ratio()),
+                                         second.unit_of_ratio.empty() ? "" : " " + second.unit_of_ratio,
+                                         target.shear_over_tension ? "friction" : "shear over tension",
+                                         found.tried.front().value, found.tried.back().value));
+  out.set("feasible_strength_ratio", std::vector<double>{found.lowest_ratio(), found.highest_ratio()},
+          second.unit_of_ratio);
+  std::vector<Results> tried;
+  for (const TriedValue& one : found.tried)
+    tried.push_back(Results().set(unknown, one.value).set("strength_ratio", one.ratio, second.unit_of_ratio));
+  out.set("tried", std::move(tried));
+}
+
+/// Tells of supports, loads and paths of the case, in whose place the tests stand.
+void add_unused(Results& out, const Case& resolved) {
+  static constexpr std::array tables{"test", "support", "load", "strain"};
+  std::vector<std::string> unused = resolved.headings(tables);
+  if (resolved.quasistatic != QuasistaticCase{}) unused.emplace_back("[quasistatic]");
+  if (!unused.empty()) out.line("not used", joined(unused) + ": the tests of [strength_target] take their place");
+}
+
+/// \param first sample, whose width the report tells
+Results strength_results(const Problem& problem, const StrengthSample& first, const StrengthCalibration& found) {
+  const Case& resolved = problem.resolved;
+  const StrengthTargetCase& target = *resolved.strength_target;
+  const StrengthOptions given = resolved.strength.value_or(StrengthOptions{});
+  Results out = problem_results(problem, derive_effects(problem.assembly, problem.springs.springs, resolved.rotation));
+  add_unused(out, resolved);
+  add_wanted_strengths(out, target.wanted);
+  add_tests(out, target, first, found);
+  add_found_strengths(out, found, target, given.bond_length);
+  add_reached_strengths(out, target.wanted, found);
+  add_feasible(out, target, found);
+  out.line("energy").add("energies/error", "in every test closed to", found.energy_error, "", {Shown::power, 1});
+  return out;
+}
 
 /// Samples as asked for; one where neither the assembly nor the strengths are random.
 std::int64_t number_of_samples(const Case& resolved) {
@@ -80,6 +208,22 @@ void check_alone(const Case& resolved) {
 
 }  // namespace
 
+void add_found_file(Results& results, std::vector<OutputPart>& parts, const std::string& noun,
+                    const std::optional<std::filesystem::path>& path, const std::string& text) {
+  const std::string name = noun + " file", key = noun + "_file";
+  if (!path) {
+    results.block(fmt::format("\n{} (--{} FILE writes it):\n{}\n", name, noun, text)).set(key, nullptr);
+    return;
+  }
+  results.line(name).add(key, "", path->string());
+  const auto write = [place = *path, text](const CommonOptions& into) { write_file(place, text, into.overwrite); };
+  parts.push_back({"the " + name, write, OutputPart::file});
+}
+
+Results refusal_results(const Error& refusal) {
+  return Results().line("NOT FEASIBLE", refusal.what()).set("refusal", refusal.what());
+}
+
 int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read) {
   check_alone(read);
   const OutputPlan plan(options);
@@ -121,18 +265,14 @@ int calibrate_strengths(const CommonOptions& options, const std::optional<std::f
   strengths.friction = found.friction;
   const std::string text = text_of_strengths(resolved, found, strengths);
   Results results = strength_results(problem, samples.front().sample, found);
+  std::vector<OutputPart> parts{{"case.toml", [&](const CommonOptions& into) { write_case(into, resolved); }}};
   if (refusal) {
     results.append(refusal_results(*refusal));
     results.line("strength file", "none: what is above has the nearest ratio that was found")
         .set("strength_file", nullptr);
-    path.reset();
-  } else if (path) {
-    results.line("strength file").add("strength_file", "", path->string());
   } else {
-    results.block("\nstrength file (--strength FILE writes it):\n" + text + "\n").set("strength_file", nullptr);
+    add_found_file(results, parts, "strength", path, text);
   }
-  std::vector<OutputPart> parts{{"case.toml", [&] { write_case(options, resolved); }}};
-  if (path) parts.push_back({"the strength file", [&] { write_file(*path, text, options.overwrite); }});
   deliver(options, refusal ? "not_feasible" : "calibrated", std::move(results), problem.times, parts);
   if (refusal) throw *refusal;
   if (path) say(options, fmt::format("strengths written to {}", path->string()));

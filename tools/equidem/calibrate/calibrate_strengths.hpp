@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
 
@@ -14,5 +16,12 @@ namespace equidem {
 /// \param file to which the strengths found are written; none: strength.toml in --out
 /// \throws Error (bad_input) where [material] stands beside [strength_target]; as calibrate_strength
 int calibrate_strengths(const CommonOptions& options, const std::optional<std::filesystem::path>& file, Case read);
+
+/// Writes what was found into its file, or into the report where none is named.
+/// \param noun "springs", "strength"
+void add_found_file(Results& results, std::vector<OutputPart>& parts, const std::string& noun,
+                    const std::optional<std::filesystem::path>& path, const std::string& text);
+/// What was asked for, moduli or strengths, is out of reach: `refusal`, and its line.
+Results refusal_results(const Error& refusal);
 
 }  // namespace equidem

@@ -2,25 +2,384 @@
 #include "homogenize/ensemble.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/core/threads.hpp"
+#include "equidem/homogenize/ensemble/ensemble.hpp"
+#include "equidem/homogenize/ensemble/ensemble_accuracy.hpp"
+#include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/plots/plot.hpp"
 
-#include "homogenize/ensemble_report.hpp"
+#include "accuracy.hpp"
 #include "problem.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr const char* statistics_name = "ensemble.csv";
+constexpr std::array ensemble_plot_names{"shear_modulus", "poisson_ratio", "scatter"};
+
+/// An ensemble as it was asked for, and what came of it.
+struct EnsembleResult {
+  std::string title;
+  EnsemblePlan plan;
+  std::optional<double> accuracy;  ///< relative, wanted
+  std::vector<EnsembleSample> samples;
+  EnsembleStatistics statistics;
+};
+
+std::string with_unit(const EnsembleQuantity& quantity, const std::string& what = "") {
+  return quantity.name + what + (quantity.modulus ? "_Pa" : "");
+}
+
+/// One row per cell: discs, seed, discs_built, the moduli, refusal.
+Table samples_table(const std::vector<EnsembleSample>& samples) {
+  Table table;
+  table.add("discs", samples, &EnsembleSample::discs).add("seed", samples, &EnsembleSample::seed);
+  table.add("discs_built", samples, [](const EnsembleSample& sample) { return sample.cell.discs; });
+  for (const EnsembleQuantity& quantity : ensemble_quantities) {
+    table.add(with_unit(quantity), samples, [&](const EnsembleSample& sample) {
+      return sample.refused() ? std::nullopt : std::optional(sample.cell.moduli.*quantity.value);
+    });
+  }
+  return table.add("refusal", samples, &EnsembleSample::refusal);
+}
+
+/// Reads a table of samples_table; numbers have the same bits.
+/// \throws Error (bad_input) where the file is another table or damaged
+std::vector<EnsembleSample> read_samples(const std::filesystem::path& path) {
+  const StoredTable table(path, samples_table({}), "ensemble",
+                          "Choose another --out, or leave out --resume and pass --overwrite");
+  std::vector<EnsembleSample> samples(table.rows());
+  for (std::size_t row = 0; row < samples.size(); ++row) {
+    EnsembleSample& sample = samples[row];
+    sample.discs = table.integer(row, 0);
+    sample.seed = static_cast<std::uint64_t>(table.integer(row, 1));
+    sample.cell.discs = table.integer(row, 2);
+    for (std::size_t q = 0; q < ensemble_quantities.size(); ++q)
+      sample.cell.moduli.*ensemble_quantities[q].value = table.number(row, 3 + q);
+    sample.refusal = table.text(row, 3 + ensemble_quantities.size());
+  }
+  return samples;
+}
+
+/// One row per size: discs, mean_discs, samples, refused, and of each quantity the mean, standard deviation, standard
+/// error and confidence limits.
+Table statistics_table(const EnsembleStatistics& statistics) {
+  const auto& sizes = statistics.sizes;
+  Table table;
+  table.add("discs", sizes, &EnsembleSize::discs).add("mean_discs", sizes, &EnsembleSize::mean_discs);
+  table.add("samples", sizes, [](const EnsembleSize& size) { return size.estimates.front().samples; });
+  table.add("refused", sizes, &EnsembleSize::refused);
+  for (std::size_t q = 0; q < ensemble_quantities.size(); ++q) {
+    const auto column = [&](const char* what, const auto& value) {
+      table.add(with_unit(ensemble_quantities[q], what), sizes,
+                [&](const EnsembleSize& size) { return std::invoke(value, size.estimates[q]); });
+    };
+    column("_mean", &MeanEstimate::mean);
+    column("_standard_deviation", &MeanEstimate::standard_deviation);
+    column("_standard_error", &MeanEstimate::standard_error);
+    column("_low", &MeanEstimate::low);
+    column("_high", &MeanEstimate::high);
+  }
+  return table;
+}
+
+constexpr std::size_t shear_modulus = 1, poisson_ratio = 2;
+
+Plot plot_means(const EnsembleResult& result, std::size_t quantity, const std::string& label) {
+  const EnsembleQuantity& q = ensemble_quantities[quantity];
+  Series samples{.label = "one cell",
+                 .style = SeriesStyle::points,
+                 .colour = PlotColour::sky_blue,
+                 .filled = false,
+                 .column = "sample"};
+  for (const EnsembleSample& sample : result.samples) {
+    if (sample.refused()) continue;
+    samples.add(static_cast<double>(sample.cell.discs), sample.cell.moduli.*q.value);
+  }
+  Series mean{.label = "mean", .style = SeriesStyle::line_with_points, .colour = PlotColour::blue, .column = "mean"};
+  Series low{.label = fmt::format("{:.4g} % interval of the mean", 100 * result.statistics.confidence),
+             .style = SeriesStyle::dashed_line,
+             .colour = PlotColour::blue,
+             .column = "low"};
+  Series high{.style = SeriesStyle::dashed_line, .colour = PlotColour::blue, .column = "high"};
+  for (const EnsembleSize& size : result.statistics.sizes) {
+    const MeanEstimate& e = size.estimates[quantity];
+    if (e.samples == 0) continue;
+    mean.add(size.mean_discs, e.mean);
+    low.add(size.mean_discs, e.low());
+    high.add(size.mean_discs, e.high());
+  }
+  Plot plot{.title = literal(result.title),
+            .x = {.label = "discs in the cell, N", .logarithmic = true},
+            .y = {.label = label},
+            .series = {samples},
+            .enhanced = true};
+  const SizeDependence& d = result.statistics.dependence[quantity];
+  if (d.drifts) {
+    Series fit{.label = "fit: limit + b/N", .style = SeriesStyle::line, .column = "fit"};
+    constexpr int pieces = 100;
+    const double from = mean.x.front(), to = mean.x.back();
+    for (int k = 0; k <= pieces; ++k) {
+      const double discs = from * std::pow(to / from, static_cast<double>(k) / pieces);
+      fit.add(discs, *d.limit + d.drift / discs);
+    }
+    plot.series.push_back(fit);
+  }
+  const bool bounded = std::any_of(low.y.begin(), low.y.end(), [](double y) { return std::isfinite(y); });
+  if (bounded) plot.series.insert(plot.series.end(), {low, high});
+  plot.series.push_back(mean);
+  return plot;
+}
+
+Plot plot_scatter(const EnsembleResult& result) {
+  Plot plot{.title = literal(result.title),
+            .x = {.label = "discs in the cell, N", .logarithmic = true},
+            .y = {.label = "scatter of one cell (moduli: over the mean)", .logarithmic = true},
+            .enhanced = true};
+  constexpr std::array colours{PlotColour::green, PlotColour::blue, PlotColour::vermilion};
+  constexpr std::array markers{Marker::square, Marker::circle, Marker::triangle};
+  for (std::size_t q = 0; q < colours.size(); ++q) {
+    const SizeDependence& d = result.statistics.dependence[q];
+    if (!d.scattered) continue;
+    Series measured{
+        .label = fmt::format("{}, line N^{{-{:.2f}}}", with_symbols(ensemble_quantities[q].symbol), d.exponent),
+        .style = SeriesStyle::points,
+        .colour = colours[q],
+        .marker = markers[q]};
+    Series law{.style = SeriesStyle::dashed_line,
+               .colour = colours[q],
+               .column = fmt::format("law_{}", ensemble_quantities[q].name)};
+    for (const EnsembleSize& size : result.statistics.sizes) {
+      const MeanEstimate& e = size.estimates[q];
+      if (!(e.standard_deviation > 0)) continue;
+      const double unit = ensemble_quantities[q].modulus ? std::abs(e.mean) : 1;
+      measured.add(size.mean_discs, e.standard_deviation / unit);
+      law.add(size.mean_discs, d.amplitude * std::pow(size.mean_discs, -d.exponent) / unit);
+    }
+    if (measured.x.empty()) continue;
+    plot.series.push_back(law);
+    plot.series.push_back(measured);
+  }
+  return plot;
+}
+
+/// Name and plot: means with their confidence limits and all samples against size, of G and of nu (plane strain); the
+/// scatter of K, G and nu against size, where they scatter.
+std::vector<std::pair<std::string, Plot>> ensemble_plots(const EnsembleResult& result) {
+  std::vector<std::pair<std::string, Plot>> plots;
+  const bool any = std::any_of(result.samples.begin(), result.samples.end(),
+                               [](const EnsembleSample& sample) { return !sample.refused(); });
+  if (!any) return plots;
+  plots.emplace_back(ensemble_plot_names[0], plot_means(result, shear_modulus, "shear modulus G, Pa"));
+  plots.emplace_back(ensemble_plot_names[1], plot_means(result, poisson_ratio, "Poisson's ratio ν (plane strain)"));
+  Plot scatter = plot_scatter(result);
+  if (!scatter.series.empty()) plots.emplace_back(ensemble_plot_names[2], std::move(scatter));
+  return plots;
+}
+
+/// K, G and nu: the others follow from them.
+constexpr std::size_t reported_quantities = 3;
+constexpr std::size_t anisotropy_index = ensemble_quantities.size() - 1;
+
+/// Keys of ensemble_quantities in the JSON, those of `equidem homogenize`.
+constexpr std::array quantity_keys{"bulk_modulus_2d",
+                                   "shear_modulus",
+                                   "poisson_ratio/plane_strain",
+                                   "poisson_ratio/plane_stress",
+                                   "young_modulus/plane_strain",
+                                   "young_modulus/plane_stress",
+                                   "anisotropy"};
+
+void add_table(Results& out, const EnsembleStatistics& statistics, std::size_t quantity) {
+  const EnsembleQuantity& q = ensemble_quantities[quantity];
+  const std::string interval = fmt::format("{} interval of the mean", percent(statistics.confidence, 4));
+  std::vector<Results> rows;
+  for (const EnsembleSize& size : statistics.sizes) {
+    const MeanEstimate& e = size.estimates[quantity];
+    const double relative = e.mean != 0 ? e.standard_deviation / std::abs(e.mean) : MeanEstimate::unknown;
+    rows.push_back(Results()
+                       .add("", "  discs", size.discs)
+                       .add("", "cells", e.samples)
+                       .add("", "mean", e.mean, "", {.digits = 7})
+                       .add("", interval, std::vector{e.low(), e.high()})
+                       .add("", "sd of one cell", e.standard_deviation, "", {.digits = 3})
+                       .add("", "sd/mean", relative, "", {Shown::percent, 3}));
+  }
+  out.block(fmt::format("{}{}\n", q.symbol, q.modulus ? ", Pa" : "")).table("", std::move(rows));
+}
+
+std::string describe_scatter(const SizeDependence& d, double confidence) {
+  if (!d.measured_exponent) return "";
+  const double t = student_critical_value(confidence, d.freedom);
+  const double error = t * d.exponent_error;
+  constexpr double too_wide = 0.5;  // an error that does not tell the exponent from 0
+  if (d.exponent == 0.5 && error > too_wide) {
+    return fmt::format(
+        "  these samples do not tell how the scatter falls with size (exponent known to ± {:.2g}); N^-1/2 of many "
+        "independent patches is used below\n",
+        error);
+  }
+  const std::string text =
+      fmt::format("  scatter {} as N^{:.2f} (± {:.2f}): ", *d.measured_exponent < 0 ? "grows" : "falls",
+                  -*d.measured_exponent, error);
+  if (d.exponent == 0.5) return text + "compatible with N^-1/2 of many independent patches, which is used below\n";
+  return text + "not the N^-1/2 of many independent patches; the exponent measured is used below\n";
+}
+
+std::string describe_drift(const EnsembleStatistics& statistics, std::size_t quantity) {
+  const SizeDependence& d = statistics.dependence[quantity];
+  if (!d.limit) return "";
+  const double t = student_critical_value(statistics.confidence, d.freedom);
+  const char* unit = ensemble_quantities[quantity].modulus ? " Pa" : "";
+  const EnsembleSize& largest = statistics.sizes.back();
+  if (!d.drifts) {
+    return fmt::format("  size: no drift seen; mean = limit + b/N would have b = {:.3g} ± {:.2g}{}\n", d.drift,
+                       t * d.drift_error, unit);
+  }
+  return fmt::format(
+      "  size: the mean drifts as {:.6g} + {:.3g}/N{} (limit ± {:.2g}, b ± {:.2g}): at N = {:.0f} it is still "
+      "{:.2g}{} from the limit\n",
+      *d.limit, d.drift, unit, t * d.limit_error, t * d.drift_error, largest.mean_discs,
+      std::abs(d.drift) / largest.mean_discs, unit);
+}
+
+std::string describe_need(const EnsembleResult& result, std::size_t quantity) {
+  const EnsembleStatistics& statistics = result.statistics;
+  const SizeDependence& d = statistics.dependence[quantity];
+  const char* symbol = ensemble_quantities[quantity].symbol;
+  const double confidence = statistics.confidence;
+  if (!d.scattered) {
+    const bool several = statistics.sizes.front().estimates[quantity].samples > 1;
+    return several ? "  all cells agree to round-off: any size does\n" : "";
+  }
+  const EnsembleSize& largest = statistics.sizes.back();
+  const double one =
+      student_critical_value(confidence, d.freedom) * d.amplitude * std::pow(largest.mean_discs, -d.exponent);
+  const char* unit = ensemble_quantities[quantity].modulus ? " Pa" : "";
+  std::string text;
+  if (largest.estimates[quantity].samples > 0) {
+    text += fmt::format(
+        "  with {} confidence one cell of {:.0f} discs lies within {:.2g}{} of the mean, the mean of {} within "
+        "{:.2g}{}\n",
+        percent(confidence), largest.mean_discs, one, unit, result.plan.samples, one / std::sqrt(result.plan.samples),
+        unit);
+  }
+  if (!result.accuracy) return text;
+  const auto alone = needed_discs(statistics, quantity, *result.accuracy, 1);
+  const auto averaged = needed_discs(statistics, quantity, *result.accuracy, result.plan.samples);
+  if (!alone || !averaged) {
+    return text + fmt::format("  {} is 0 within its error, or its scatter does not fall: no size reaches {} of it\n",
+                              symbol, percent(*result.accuracy));
+  }
+  const auto smallest = std::find_if(statistics.sizes.begin(), statistics.sizes.end(),
+                                     [&](const EnsembleSize& size) { return size.estimates[quantity].samples > 0; });
+  const auto discs = [&](std::int64_t needed) {
+    return fmt::format("{} discs{}", needed, static_cast<double>(needed) < smallest->mean_discs + 1 ? " at most" : "");
+  };
+  return text + fmt::format("  {} of {} with {} confidence needs one cell of {}, or the mean of {} cells of {}\n",
+                            percent(*result.accuracy), symbol, percent(confidence), discs(*alone), result.plan.samples,
+                            discs(*averaged));
+}
+
+void add_refusals(Results& out, const EnsembleResult& result) {
+  constexpr std::size_t named = 5;
+  std::vector<Results> refusals;
+  std::string text;
+  for (const EnsembleSample& sample : result.samples) {
+    if (!sample.refused()) continue;
+    refusals.push_back(Results().set("discs", sample.discs).set("seed", sample.seed).set("why", sample.refusal));
+    if (refusals.size() <= named)
+      text += fmt::format("  {} discs, seed {}: {}\n", sample.discs, sample.seed, sample.refusal);
+  }
+  out.set("refusals", refusals);
+  if (refusals.empty()) return;
+  if (refusals.size() > named) text += fmt::format("  and {} more, named in samples.csv\n", refusals.size() - named);
+  out.block(fmt::format("{} of {} have no moduli; the means are those of the others, not of all such cells:\n{}\n",
+                        counted(std::ssize(refusals), "cell"), result.samples.size(), text));
+}
+
+void add_sizes(Results& out, const EnsembleStatistics& statistics) {
+  std::vector<Results> sizes;
+  for (const EnsembleSize& size : statistics.sizes) {
+    Results one;
+    one.set("discs", size.discs).set("mean_discs", size.mean_discs);
+    one.set("samples", size.estimates.front().samples).set("refused", size.refused);
+    for (std::size_t q = 0; q < quantity_keys.size(); ++q) {
+      const MeanEstimate& e = size.estimates[q];
+      one.set(quantity_keys[q], Results()
+                                    .set("mean", e.mean)
+                                    .set("standard_deviation", e.standard_deviation)
+                                    .set("standard_error", e.standard_error)
+                                    .set("confidence_interval", std::vector{e.low(), e.high()}));
+    }
+    sizes.push_back(std::move(one));
+  }
+  out.set("ensemble", sizes);
+}
+
+/// Dependence of a quantity on the size of the cell, and the required size.
+void add_dependence(Results& out, const EnsembleResult& result, std::size_t quantity) {
+  const SizeDependence& d = result.statistics.dependence[quantity];
+  const std::string key = std::string("/") + quantity_keys[quantity];
+  const auto if_known = [](bool is_known, double value) { return is_known ? value : MeanEstimate::unknown; };
+  out.set("scatter_exponent" + key,
+          Results()
+              .set("value", d.measured_exponent)
+              .set("standard_error", if_known(d.measured_exponent.has_value(), d.exponent_error))
+              .set("used", d.exponent));
+  const bool limit = d.limit.has_value();
+  out.set("size_limit" + key, Results()
+                                  .set("value", d.limit)
+                                  .set("standard_error", if_known(limit, d.limit_error))
+                                  .set("drift", if_known(limit, d.drift))
+                                  .set("drift_standard_error", if_known(limit, d.drift_error))
+                                  .set("drifts", d.drifts));
+  const auto needed = [&](std::int64_t samples) {
+    return result.accuracy ? needed_discs(result.statistics, quantity, *result.accuracy, samples) : std::nullopt;
+  };
+  out.set("needed_discs" + key,
+          Results().set("one_cell", needed(1)).set("mean_of_samples", needed(result.plan.samples)));
+}
+
+/// Keys: ensemble: list of {discs, mean_discs, samples, refused, the quantities of `homogenize`, each {mean,
+/// standard_deviation, standard_error, confidence_interval}}; scatter_exponent, size_limit and needed_discs of each
+/// quantity but the anisotropy; title, confidence, accuracy, refusals.
+Results ensemble_results(const EnsembleResult& result) {
+  const EnsembleStatistics& statistics = result.statistics;
+  Results out;
+  out.block("\n").set("title", result.title).set("confidence", statistics.confidence).set("accuracy", result.accuracy);
+  add_refusals(out, result);
+  for (std::size_t q = 0; q < ensemble_quantities.size(); ++q) {
+    add_table(out, statistics, q);
+    if (q < reported_quantities) {
+      out.block(describe_scatter(statistics.dependence[q], statistics.confidence) + describe_drift(statistics, q) +
+                describe_need(result, q));
+    }
+    out.block("\n");
+    if (q != anisotropy_index) add_dependence(out, result, q);
+  }
+  add_sizes(out, statistics);
+  return out;
+}
+
+/// The key and value that make a random assembly periodic.
+const char* joins_sides(const AssemblyCase& assembly) {
+  return assembly.packing ? "packing.sides = \"periodic\"" : "assembly.periodic = true";
+}
 
 HomogenizeOptions options_of(const Case& resolved) {
   const auto& boundary = resolved.homogenize.boundary;
@@ -126,25 +485,22 @@ int dry_run(const CommonOptions& options, const Case& resolved, const EnsemblePl
   return 0;
 }
 
-}  // namespace
-
-const char* joins_sides(const AssemblyCase& assembly) {
-  return assembly.packing ? "packing.sides = \"periodic\"" : "assembly.periodic = true";
-}
-
+/// Builds and homogenizes one cell.
 HomogenizedCell homogenize_cell(const Case& resolved, std::int64_t discs, std::uint64_t seed) {
   const Assembly cell = build_cell(resolved, discs, seed);
   return homogenize_cell(cell, build_springs(resolved, cell).springs, options_of(resolved));
 }
 
-void check_ensemble_outputs(const CommonOptions& options) {
-  const OutputPlan plan(options);
+void check_ensemble_outputs(const CommonOptions& options, bool resume = false) {
+  const OutputPlan plan(options, resume);
   plan.expect_results();
   for (const char* name : {"samples.csv", statistics_name}) plan.expect(name);
   for (const char* name : ensemble_plot_names) plan.expect_plot(name);
 }
 
-Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan) {
+/// Title, cells, springs and effects; those of the first cell stand for all.
+/// \param plan what is sampled, in words; empty: left out
+Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t seed, const std::string& plan = {}) {
   const std::string boundary = to_string(options_of(resolved).boundary);
   const Assembly first = first_cell(resolved, discs, seed);
   const BuiltSprings springs = build_springs(resolved, first);
@@ -160,24 +516,71 @@ Results cell_results(const Case& resolved, std::int64_t discs, std::uint64_t see
   return results;
 }
 
+/// Writes samples, statistics and plots into --out, and delivers the results.
+/// \param save_samples writes the table of the samples
 void deliver_ensemble(const CommonOptions& options, const EnsembleResult& result, Results results, StageTimes times,
                       const std::function<void()>& save_samples, const std::optional<Error>& failure) {
   const bool complete = !failure || failure->kind() != ErrorKind::interrupted;
   results.set("complete", complete);
-  const auto plots = ensemble_plots(result);
-  std::vector<OutputPart> parts;
-  if (options.out) parts.push_back({"samples.csv", save_samples});
-  if (options.out && complete) {
-    parts.push_back({statistics_name,
-                     [&] { write_csv(*options.out / statistics_name, statistics_table(result.statistics), true); }});
-    for (const auto& plot : plots)
-      parts.push_back({plot.first, [&] { write_plot(*options.out, plot.first, plot.second, true); }});
+  std::vector<OutputPart> parts{{"samples.csv", [&](const CommonOptions& /*into*/) { save_samples(); }}};
+  if (complete) {
+    parts.push_back({statistics_name, [&](const CommonOptions& into) {
+                       write_csv(*into.out / statistics_name, statistics_table(result.statistics), true);
+                     }});
+    for (const auto& [name, plot] : ensemble_plots(result)) {
+      const auto draw = [name, plot](const CommonOptions& into) { write_plot(*into.out, name, plot, true); };
+      parts.push_back({name, draw, OutputPart::page});
+    }
   }
   deliver(options, "done", std::move(results), std::move(times), parts, failure);
-  hand_over([plots](const CommonOptions& into) {
-    for (const auto& [name, plot] : plots) write_plot(*into.out, name, plot, into.overwrite);
-  });
 }
+
+/// Fewer bodies jam earlier, so that many of their cells could not be packed.
+constexpr std::int64_t smallest_packing = 128;
+
+AccuracySetting setting_of(const EnsembleSetting& setting) {
+  return {{"ensemble.discs", static_cast<double>(setting.discs)},
+          {"ensemble.samples", static_cast<double>(setting.samples)}};
+}
+
+double work_of(const AccurateEnsemble& sampled) {
+  double work = 0;
+  for (const EnsembleSample& sample : sampled.samples) work += EnsembleSetting{sample.discs, 1}.work();
+  return work;
+}
+
+ReachedAccuracy reached_by(const AccurateEnsemble& sampled, const EnsembleAccuracy& wanted, double seconds) {
+  ReachedAccuracy reached{
+      .requested = wanted.accuracy,
+      .estimated = sampled.estimated,
+      .of = fmt::format(
+          "K and G relative, nu (plane strain) as it is, mean of {} cells of {} discs against infinite cells, with "
+          "{:.4g} % confidence, scatter and drift together",
+          sampled.chosen.samples, sampled.chosen.discs, 100 * wanted.confidence),
+      .knob = "size and number of cells",
+      .value = setting_of(sampled.chosen),
+      .pilots = {},
+      .ten_times_more = {}};
+  std::vector<std::string> pilots;
+  for (const std::int64_t discs : sampled.plan.discs) {
+    if (discs == sampled.chosen.discs) continue;
+    const auto cells = std::ranges::count(sampled.samples, discs, &EnsembleSample::discs);
+    pilots.push_back(fmt::format("{} cells of {} discs", cells, discs));
+  }
+  reached.pilots = joined(pilots);
+  reached.pilots_factor = work_of(sampled) / sampled.chosen.work() - 1;
+  auto& more = reached.ten_times_more;
+  more.time_factor = sampled.ten_times_more.work() / sampled.chosen.work();
+  more.seconds = seconds * sampled.ten_times_more.work() / work_of(sampled);
+  more.value = setting_of(sampled.ten_times_more);
+  if (sampled.estimated <= wanted.accuracy / 10) more.note = has_it_already;
+  if (sampled.ten_times_more.samples == 0) more.note = "cannot be had: cells of any size are off by more";
+  if (sampled.ten_times_more.all_discs() > wanted.most_discs)
+    more.note = fmt::format("cannot be had: it takes {:.2g} discs in all", sampled.ten_times_more.all_discs());
+  return reached;
+}
+
+}  // namespace
 
 int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool resume) {
   const EnsembleCase& asked = *resolved.ensemble;
@@ -189,9 +592,7 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
   OutputPlan(options).expect_json();
   if (options.dry_run) return dry_run(options, resolved, plan, std::move(results));
   require_memory_of_cells(resolved, plan);
-  CommonOptions written = options;
-  written.overwrite = options.overwrite || resume;
-  check_ensemble_outputs(written);
+  check_ensemble_outputs(options, resume);
   const auto lock = lock_out(options);
   const std::vector<EnsembleSample> kept = samples_to_keep(options, resume);
 
@@ -222,6 +623,63 @@ int homogenize_ensemble(const CommonOptions& options, const Case& resolved, bool
       computation_failed("none of the cells has moduli",
                          "the first: " + without_full_stop(result.samples.front().refusal), "");
   });
+  deliver_ensemble(
+      options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
+  return 0;
+}
+
+int homogenize_to_accuracy(const CommonOptions& options, const Case& resolved, double accuracy) {
+  if (!resolved.assembly.periodic()) {
+    bad_input_at(resolved.where("assembly"), "--accuracy cannot be kept by samples with free boundaries",
+                 "their moduli depend on the boundary far more than on the number of samples",
+                 fmt::format("Set {}", joins_sides(resolved.assembly)));
+  }
+  OutputPlan(options).expect_json();
+  if (!options.dry_run) check_ensemble_outputs(options);
+  const auto lock = lock_out(options);
+  EnsembleAccuracy wanted{.accuracy = accuracy, .first_seed = resolved.assembly.seed()};
+  if (resolved.assembly.packing) wanted.smallest = smallest_packing;
+  Results results = cell_results(resolved, wanted.smallest, wanted.first_seed);
+  if (options.dry_run) {
+    std::vector<std::string> pilots;
+    for (const EnsembleSetting& pilot : accuracy_pilots(wanted))
+      pilots.push_back(fmt::format("{} cells of {} discs", pilot.samples, pilot.discs));
+    results.append(accuracy_plan(accuracy, fmt::format("first {}; the size and number of cells that reach it follow "
+                                                       "from them, with at most {:.0e} discs in all",
+                                                       joined(pilots, " and "), wanted.most_discs)));
+    deliver(options, "dry_run", results.block("nothing was solved (--dry-run)\n"), {});
+    return 0;
+  }
+  const auto& folder = options.out;
+  const auto save = [&](const std::vector<EnsembleSample>& done) {
+    if (folder) write_samples(*folder / "samples.csv", samples_table(done));
+  };
+  StageTimes times;
+  Stopwatch watch;
+  SavedOnTheWay saved(options);
+  AccurateEnsemble sampled =
+      sample_to_accuracy([&](std::int64_t discs, std::uint64_t seed) { return homogenize_cell(resolved, discs, seed); },
+                         wanted, [&](const std::vector<EnsembleSample>& done) { saved([&] { save(done); }); });
+  times.add("sampling", watch.lap());
+  std::optional<Error> failure = sampled.failure;
+  if (sampled.stopped)
+    failure = Error(
+        ErrorKind::interrupted, "stopped as asked",
+        fmt::format("{} cells are done, too few for an accuracy of {:.3g}", sampled.samples.size(), accuracy), "");
+  const ReachedAccuracy reached = reached_by(sampled, wanted, times.total());
+  EnsembleResult result{.title = resolved.title,
+                        .plan = sampled.plan,
+                        .accuracy = accuracy,
+                        .samples = std::move(sampled.samples),
+                        .statistics = std::move(sampled.statistics)};
+  if (folder) {
+    CommonOptions chosen = options;
+    chosen.set.push_back(fmt::format("ensemble={{discs = [{}], samples = {}, accuracy = {}}}", sampled.chosen.discs,
+                                     sampled.chosen.samples, accuracy));
+    write_case(options, read_case(chosen));
+  }
+  results.append(ensemble_results(result));
+  if (sampled.estimated > 0 || !failure) results.append(accuracy_results(reached));
   deliver_ensemble(
       options, result, std::move(results), std::move(times), [&] { save(result.samples); }, failure);
   return 0;

@@ -3,18 +3,16 @@
 /// equidem quasistatic: contacts that break one after another under a growing load.
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <memory>
 #include <new>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 
-#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/breakage/breakage_run.hpp"
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/breakage/unbonded/unbonded_run.hpp"
-#include "equidem/breakage/unbonded/unbonded_scene.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"
@@ -56,8 +54,9 @@ struct Sequence {
   LoadPath path;
   std::vector<std::size_t> cut{};  ///< contacts across notches
   std::unique_ptr<BreakableSystem> system{};
-  std::unique_ptr<BreakageRun> brittle{};
-  std::unique_ptr<UnbondedRun> unbonded{};  ///< where contacts rub, instead of the two above
+  std::unique_ptr<EventPath> events{};
+  BreakageRun* brittle = nullptr;   ///< the path of bonds that break
+  UnbondedRun* unbonded = nullptr;  ///< or that of contacts that rub
 
   explicit Sequence(Problem given) : problem(std::move(given)) {
     using casefile::with_place;
@@ -136,26 +135,7 @@ struct Sequence {
     const StrengthOptions& strength = *problem.resolved.strength;
     return strength.residual_friction.value_or(strength.friction);
   }
-  [[nodiscard]] EventPath& run() const {
-    return unbonded ? static_cast<EventPath&>(*unbonded) : static_cast<EventPath&>(*brittle);
-  }
-  /// The state behind the last event; none where what is left does not carry its loads.
-  [[nodiscard]] std::optional<PathState> state() const {
-    return unbonded ? state_of(scene(), effects, *unbonded) : state_of(scene(), effects, cut, *brittle, *system);
-  }
-  /// Likewise, where the computation of the next event has left the system within it: solved for anew.
-  [[nodiscard]] std::optional<PathState> state_anew() const {
-    if (unbonded) return state();
-    std::vector<std::size_t> broken = cut;
-    for (const BreakEvent& event : brittle->events()) broken.push_back(static_cast<std::size_t>(event.contact));
-    try {
-      const auto rest = make_refactorized_rest(
-          breakable_network(scene(), effects, problem.supports, problem.resolved.solver), broken);
-      return state_of(scene(), effects, cut, *brittle, *rest);
-    } catch (const std::exception&) {
-      return {};
-    }
-  }
+  [[nodiscard]] EventPath& run() const { return *events; }
   void begin() {
     const Stopwatch watch;
     if (rubs()) {
@@ -167,14 +147,17 @@ struct Sequence {
       for (std::size_t c = 0; carries_forces(problem.assembly) && c < problem.assembly.contacts.size(); ++c)
         options.rest.push_back(force_at_rest(problem.assembly, c));
       casefile::with_place(problem.resolved.where("strength"), [&] {
-        unbonded = std::make_unique<UnbondedRun>(scene(), effects, problem.supports, std::move(options));
+        events = std::make_unique<UnbondedRun>(scene(), effects, problem.supports, std::move(options));
       });
     } else {
-      system = make_breakable_system(breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
+      system = std::make_unique<BreakableSystem>(
+          breakable_network(scene(), effects, problem.supports, problem.resolved.solver));
       if (!cut.empty()) system->remove(cut);
       casefile::with_place(system->carries(0) ? problem.resolved.where("dead_load") : place_of_driving(),
-                           [&] { brittle = std::make_unique<BreakageRun>(scene(), *system); });
+                           [&] { events = std::make_unique<BreakageRun>(scene(), *system); });
     }
+    brittle = dynamic_cast<BreakageRun*>(events.get());
+    unbonded = dynamic_cast<UnbondedRun*>(events.get());
     problem.times.add("first state", watch.seconds());
   }
 };
@@ -292,7 +275,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     between = false;
     const bool goes_on = run.advance();
     if (goes_on && frames && !run.releasing() && frames->due(run)) {
-      if (const auto state = sequence.state()) frames->add(run, *state);
+      if (const auto state = run.state()) frames->add(run, *state);
     }
     between = true;
     return goes_on;
@@ -315,7 +298,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
   }
   save();
-  if (!stop.interrupted || sequence.unbonded) stop.state = stop.failure ? sequence.state_anew() : sequence.state();
+  if (!stop.interrupted || sequence.unbonded) stop.state = run.state();
   if (frames && !stop.interrupted && stop.state) frames->add_end(run, *stop.state);
   if (frames) frames->finish();
   sequence.problem.times.add("events", watch.seconds());
@@ -346,23 +329,24 @@ int quasistatic(const QuasistaticOptions& given) {
   const Stop stop = go(options, sequence, frames);
   const QuasistaticOutcome outcome{sequence.problem, sequence.effects, sequence.scene(), sequence.cut.size(),
                                    sequence.residual_friction()};
-  Results results = sequence.unbonded ? quasistatic_results(outcome, *sequence.unbonded)
-                                      : quasistatic_results(outcome, *sequence.brittle, *sequence.system);
+  Results results = quasistatic_results(outcome, sequence.run());
   results.set("complete", !stop.interrupted && !stop.failure);
   if (options.out && !stop.state) {
     results.line("state", stop.interrupted || stop.failure ? "none is written: that behind the last event is not known"
                                                            : "none is written: what is left does not carry its loads");
   }
   const OutputCase& wanted = sequence.problem.resolved.output;
-  std::vector<OutputPart> parts;
-  if (options.out) {
-    parts.push_back({"the state",
-                     [&] { write_end_state(options, wanted, sequence.scene(), sequence.run().lambda(), stop.state); }});
-    parts.push_back({"the figures", [&] {
-                       write_figures(options, wanted, sequence.scene(), sequence.run(), sequence.cut,
-                                     sequence.problem.resolved.title);
-                     }});
-  }
+  const auto write_state_at_end = [&](const CommonOptions& into) {
+    write_end_state(into, wanted, sequence.scene(), sequence.run().lambda(), stop.state);
+  };
+  const auto write_case_and_figures = [shared_sequence](const CommonOptions& into) {
+    const Case& kept = shared_sequence->problem.resolved;
+    write_case(into, kept);
+    write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
+                  kept.title);
+  };
+  const std::vector<OutputPart> parts{{"the state", write_state_at_end},
+                                      {"the figures", write_case_and_figures, OutputPart::page}};
   deliver(options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, parts);
   const std::int64_t events = std::ssize(sequence.run().events());
   if (stop.failure && events == 0) throw *stop.failure;  // nothing of the path is known
@@ -371,12 +355,6 @@ int quasistatic(const QuasistaticOptions& given) {
                   "Run the same command with --resume to go on");
   }
   hand_over(std::shared_ptr<const Assembly>(shared_sequence, &sequence.problem.assembly));
-  hand_over([shared_sequence](const CommonOptions& into) {
-    const Case& kept = shared_sequence->problem.resolved;
-    write_case(into, kept);
-    write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
-                  kept.title);
-  });
   return 0;
 }
 

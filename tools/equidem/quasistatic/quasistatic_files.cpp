@@ -17,7 +17,7 @@
 #include "equidem/output/pictures/picture.hpp"
 #include "equidem/output/plots/plot.hpp"
 
-#include "run/run_case_text.hpp"
+#include "run/case_text.hpp"
 #include "state_files.hpp"
 
 namespace equidem {
@@ -274,57 +274,6 @@ void write_figures(const CommonOptions& options, const OutputCase& wanted, const
                               events > 1 ? static_cast<double>(k) / static_cast<double>(events - 1) : 1});
   }
   write_picture(*options.out, "cracks", AssemblyState{.assembly = scene.assembly}, picture, options.overwrite);
-}
-
-namespace {
-
-PathState empty_state(const Assembly& assembly) {
-  return {std::vector<DiscMotion>(assembly.size()), std::vector<ContactForce>(assembly.contacts.size()),
-          std::vector<std::uint8_t>(assembly.contacts.size(), 1)};
-}
-
-/// \param component the motion of a component, m
-template <class Component>
-void set_motions(const Assembly& assembly, const Effects& effects, const Component& component, PathState& state) {
-  const auto per_disc = static_cast<std::size_t>(effects.unknowns_per_disc());
-  for (std::size_t d = 0; d < state.motions.size(); ++d) {
-    const std::size_t k = d * per_disc;
-    state.motions[d] = {{component(k), component(k + 1)},
-                        per_disc == 3 ? component(k + 2) / assembly.mean_radius() : 0};
-  }
-}
-
-}  // namespace
-
-std::optional<PathState> state_of(const BreakageScene& scene, const Effects& effects, std::span<const std::size_t> cut,
-                                  const BreakageRun& run, const BreakableSystem& system) {
-  const bool dead = scene.path.dead.has_value();
-  if (!system.carries(0) || (dead && !system.carries(1))) return {};
-  PathState state = empty_state(scene.assembly);
-  for (const std::size_t contact : cut) state.joined[contact] = 0;
-  for (const BreakEvent& event : run.events()) state.joined[static_cast<std::size_t>(event.contact)] = 0;
-  const double lambda = run.lambda();
-  for (std::size_t c = 0; c < state.forces.size(); ++c) {
-    const ContactForce a = dead ? system.forces(1)[c] : ContactForce{}, b = system.forces(0)[c];
-    if (state.joined[c] != 0) state.forces[c] = {a.normal + lambda * b.normal, a.tangential + lambda * b.tangential};
-  }
-  const auto component = [&](std::size_t k) {
-    return lambda * system.motion(0)[k] + (dead ? system.motion(1)[k] : 0.0);
-  };
-  set_motions(scene.assembly, effects, component, state);
-  return state;
-}
-
-PathState state_of(const BreakageScene& scene, const Effects& effects, const UnbondedRun& run) {
-  PathState state = empty_state(scene.assembly);
-  for (std::size_t c = 0; c < state.forces.size(); ++c) {
-    state.joined[c] = run.state().status()[c] == ContactStatus::open ? 0 : 1;
-    state.forces[c] = run.state().forces()[c];
-  }
-  const std::vector<double>& motion = run.state().motion().high;
-  set_motions(
-      scene.assembly, effects, [&](std::size_t k) { return motion[k]; }, state);
-  return state;
 }
 
 void write_end_state(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene, double lambda,

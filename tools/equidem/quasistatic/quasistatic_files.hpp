@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The events of `equidem quasistatic` as events.csv, from which --resume goes on.
-/// The part of a case that decides a path, by which a resumed one is told to be the same.
+/// The part of a case that decides a path, by which a resumed one is recognized as the same.
 /// Files of `equidem quasistatic`: the curve, the crack picture, the state at the end, frames.
 #pragma once
 
@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/breakage/breakage_run.hpp"
-#include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/breakage/event_path.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/files/frames.hpp"
@@ -66,18 +65,6 @@ void expect_quasistatic(const OutputPlan& plan, const OutputCase& wanted, bool c
 /// The curve of load against motion with its envelopes, and the picture of the cracks.
 void write_figures(const CommonOptions& options, const OutputCase& wanted, const BreakageScene& scene,
                    const EventPath& run, std::span<const std::size_t> cut, const std::string& title);
-
-/// The network behind the last event of a path, at its lambda.
-struct PathState {
-  std::vector<DiscMotion> motions;   ///< per disc, beside a mean strain
-  std::vector<ContactForce> forces;  ///< N/m, per contact; 0 where it is broken or open
-  std::vector<std::uint8_t> joined;  ///< per contact, whether it is neither
-};
-/// \param cut contacts that had no bond from the start
-/// \return none where what is left of the network does not carry its loads
-std::optional<PathState> state_of(const BreakageScene& scene, const Effects& effects, std::span<const std::size_t> cut,
-                                  const BreakageRun& run, const BreakableSystem& system);
-PathState state_of(const BreakageScene& scene, const Effects& effects, const UnbondedRun& run);
 
 /// discs.csv, contacts.csv and state.vtm of the end of a path; none: those of an earlier path in the folder are
 /// removed.

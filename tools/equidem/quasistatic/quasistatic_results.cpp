@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "equidem/breakage/avalanches.hpp"
+#include "equidem/breakage/unbonded/unbonded_run.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
 
@@ -107,8 +108,8 @@ void add_loads(Results& out, const BreakageScene& scene, const EventPath& run) {
 
 void add_energies(Results& out, const EventPath& run) {
   out.line("energy")
-      .add("energies/released", "released", run.released(), "N")
-      .add("energies/elastic", "elastic at the end", run.elastic_energy(), "N")
+      .add("energies/released", "released", run.ledger().released, "N")
+      .add("energies/elastic", "elastic at the end", run.ledger().elastic, "N")
       .add("energies/error", "with the work closed to", run.energy_error(), "", {Shown::power, 1});
 }
 
@@ -129,7 +130,7 @@ void add_loosened(Results& out, const BreakageScene& scene, const EventPath& run
   out.set("idle_discs", std::ssize(run.idle())).set("loosened_discs", loosened);
 }
 
-/// Discs that rubbing contacts have let go: they may be met again.
+/// Rattlers between frictional contacts: these may close again.
 void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run) {
   const std::vector<std::int32_t>& at_first = run.idle();
   const auto without = [](const std::vector<std::int32_t>& discs, const std::vector<std::int32_t>& others) {
@@ -148,7 +149,8 @@ void add_let_go(Results& out, const BreakageScene& scene, const UnbondedRun& run
   out.set("idle_discs", std::ssize(at_first)).set("loosened_discs", std::ssize(now) + std::ssize(on_contacts));
 }
 
-void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& system) {
+/// Where all contacts are bonds: the stability of the states.
+void add_stability(Results& out, const EventPath& run) {
   std::int64_t unstable = 0, unknown = 0, most = 0;
   for (const BreakEvent& event : run.events()) {
     unstable += event.unstable_modes > 0 ? 1 : 0;
@@ -160,22 +162,16 @@ void add_trust(Results& out, const BreakageRun& run, const BreakableSystem& syst
                         : unknown > 0 ? std::string(stability_not_known)
                                       : "every state is stable while lambda is held");
   out.set("unstable_states", unstable);
-  const BreakableCounters counters = system.counters();
-  out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
-  out.line("solver")
-      .add("solver", "", system.solver_name())
-      .add("factorizations", "", counters.factorizations, "factorization", {Shown::count})
-      .add("factor_updates", "", counters.updates, "update", {Shown::count})
-      .add("factorizations_for_accuracy", "of which", counters.mended, "for round-off", {});
 }
 
-void add_trust(Results& out, const UnbondedRun& run) {
-  const UnbondedCounters counters = run.counters();
-  out.line("residual").add("relative_residual", "at most", counters.largest_residual, "relative", {Shown::power, 1});
+void add_solver(Results& out, const EventPath& run) {
+  const SolverReport solver = run.solver();
+  out.line("residual").add("relative_residual", "at most", solver.largest_residual, "relative", {Shown::power, 1});
   out.line("solver")
-      .add("solver", "", "UMFPACK LU, updated")
-      .add("factorizations", "", counters.factorizations, "factorization", {Shown::count})
-      .add("factor_updates", "", counters.updates, "update", {Shown::count});
+      .add("solver", "", solver.name)
+      .add("factorizations", "", solver.factorizations, "factorization", {Shown::count})
+      .add("factor_updates", "", solver.updates, "update", {Shown::count});
+  if (!run.has_history()) out.add("factorizations_for_accuracy", "of which", solver.mended, "for round-off", {});
 }
 
 Results of_event(const BreakEvent& event, DrivenBy driven_by) {
@@ -203,23 +199,13 @@ Results curve_results(const LoadCurve& curve) {
   return Results().set("motion", curve.motion).set("load", curve.load);
 }
 
-/// Sizes, path, events and loads.
-Results first_results(const QuasistaticOutcome& outcome, const EventPath& run) {
-  Results out = problem_results(outcome.problem, outcome.effects);
-  out.append(path_results(outcome.scene, outcome.cut, outcome.residual_friction));
-  add_events(out, outcome.scene, run, !outcome.residual_friction);
-  add_loads(out, outcome.scene, run);
-  return out;
-}
-
-Results events_and_curves(const QuasistaticOutcome& outcome, const EventPath& run) {
-  Results out;
+void add_events_and_curves(Results& out, const QuasistaticOutcome& outcome, const EventPath& run) {
   std::vector<Results> events;
   for (const BreakEvent& event : run.events()) events.push_back(of_event(event, outcome.scene.path.driven_by));
   out.set("events", std::move(events));
   out.append(curve_results(curve_of(run)).under("curve"));
   out.append(curve_results(load_envelope(run)).under("load_envelope"));
-  return out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
+  out.append(curve_results(motion_envelope(run)).under("motion_envelope"));
 }
 
 }  // namespace
@@ -248,26 +234,30 @@ Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<
   return out.set("control", to_string(path.control));
 }
 
-Results quasistatic_results(const QuasistaticOutcome& outcome, const BreakageRun& run, const BreakableSystem& system) {
-  Results out = first_results(outcome, run);
+Results quasistatic_results(const QuasistaticOutcome& outcome, const EventPath& run) {
+  const BreakageScene& scene = outcome.scene;
+  const auto* const unbonded = dynamic_cast<const UnbondedRun*>(&run);
+  Results out = problem_results(outcome.problem, outcome.effects);
+  out.append(path_results(scene, outcome.cut, outcome.residual_friction));
+  add_events(out, scene, run, unbonded == nullptr);
+  add_loads(out, scene, run);
   add_energies(out, run);
-  add_loosened(out, outcome.scene, run);
-  add_trust(out, run, system);
-  return out.append(events_and_curves(outcome, run));
-}
-
-Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun& run) {
-  Results out = first_results(outcome, run);
-  add_energies(out, run);
-  out.add("energies/friction", "lost by slip", run.state().ledger().friction, "N");
-  add_let_go(out, outcome.scene, run);
-  if (run.end() != PathEnd::none && run.releasing())
-    out.line("state", "the last one in balance: bonds that broke still carry what they had yet to give up");
-  out.set("within_a_break", run.releasing());
-  if (outcome.scene.path.dead)
-    out.set("dead_loads_applied", run.state().dead(), "", "share of the dead loads that act at the end");
-  add_trust(out, run);
-  return out.append(events_and_curves(outcome, run));
+  if (unbonded != nullptr) {
+    out.add("energies/friction", "lost by slip", run.ledger().friction, "N");
+    add_let_go(out, scene, *unbonded);
+    if (run.end() != PathEnd::none && run.releasing())
+      out.line("state", "the last one in balance: bonds that broke still carry what they had yet to give up");
+    out.set("within_a_break", run.releasing());
+    if (scene.path.dead)
+      out.set("dead_loads_applied", unbonded->contact_state().dead(), "",
+              "share of the dead loads that act at the end");
+  } else {
+    add_loosened(out, scene, run);
+    add_stability(out, run);
+  }
+  add_solver(out, run);
+  add_events_and_curves(out, outcome, run);
+  return out;
 }
 
 }  // namespace equidem

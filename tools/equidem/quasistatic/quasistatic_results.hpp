@@ -5,8 +5,7 @@
 
 #include <optional>
 
-#include "equidem/breakage/breakage_run.hpp"
-#include "equidem/breakage/unbonded/unbonded_run.hpp"
+#include "equidem/breakage/event_path.hpp"
 #include "equidem/contact/effects.hpp"
 
 #include "problem.hpp"
@@ -26,9 +25,7 @@ struct QuasistaticOutcome {
   std::optional<double> residual_friction{};  ///< of contacts without a bond, where they rub
 };
 
-/// Events, avalanches, energies, stability, residual.
-Results quasistatic_results(const QuasistaticOutcome& outcome, const BreakageRun& run, const BreakableSystem& system);
-/// Events, energies with the loss by slip, uniqueness and residual where contacts rub.
-Results quasistatic_results(const QuasistaticOutcome& outcome, const UnbondedRun& run);
+/// Events, avalanches, energies, what comes loose, stability, residual.
+Results quasistatic_results(const QuasistaticOutcome& outcome, const EventPath& run);
 
 }  // namespace equidem

@@ -13,12 +13,8 @@
 #include "equidem/output/files/checkpoint.hpp"
 
 #include "command.hpp"
-#include "run/run_accuracy.hpp"
 #include "run/run_bonded.hpp"
-#include "run/run_case_text.hpp"
-#include "run/run_film.hpp"
 #include "run/run_grains.hpp"
-#include "run/run_results.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -40,14 +36,29 @@ void check_outputs(const RunVerb& options, const RunJob& job) {
   for (const std::string& name : job.files()) plan.expect(name);
 }
 
-/// Writes the files of a run into another folder, as a FigureWriter does.
-void write_parts(const RunJob& job, const RunResult& result, const CommonOptions& into) {
-  for (const OutputPart& part : job.parts(*into.out, result, into.overwrite)) part.write();
+/// Delivers the results of a run with its files, which keep job and result.
+/// \param history of probes, whose paths are drawn, for a page in memory
+void deliver_run(const RunVerb& options, const char* status, Results results, StageTimes times,
+                 const std::shared_ptr<RunJob>& job, const std::shared_ptr<const RunResult>& result,
+                 const std::optional<Error>& failure, const std::string& history = {}) {
+  std::vector<OutputPart> parts = job->parts(*result);
+  for (OutputPart& part : parts)
+    part.write = [job, result, write = std::move(part.write)](const CommonOptions& into) { write(into); };
+  if (!history.empty()) {
+    const auto write = [history](const CommonOptions& into) {
+      const std::filesystem::path path = *into.out / "history.csv";
+      if (!std::filesystem::exists(path)) write_file(path, history, false);
+    };
+    parts.insert(parts.begin(), {"history.csv", write, OutputPart::page});
+  }
+  CommonOptions written = options.common;
+  written.overwrite |= options.resume;
+  deliver(written, status, std::move(results), std::move(times), parts, failure);
 }
 
 /// Make all steps and deliver the results; false, and nothing delivered, where the step that the search proposed is too
 /// long.
-bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, StepSearch* search = nullptr) {
+bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_job, CaseSearch* search = nullptr) {
   const CommonOptions& common = options.common;
   RunJob& job = *shared_job;
   RunPlan plan = job.plan();
@@ -67,23 +78,16 @@ bool step_through(const RunVerb& options, const std::shared_ptr<RunJob>& shared_
     }
   });
   if (failure && failure->kind() == ErrorKind::bad_input && result.steps_done == 0) throw *failure;
-  if (!failure && search != nullptr &&
-      !search->accepts(StepSearch::values_of(job.simulation().motions()), result.seconds))
+  if (!failure && search != nullptr && !search->accepts(searched_values(job.simulation().motions()), result.seconds))
     return false;
   StageTimes times = job.times();
   times.add("steps", result.seconds);
   Results results = run_results(job, plan, result, failure.has_value());
   results.set("complete", true);
-  if (!failure && search != nullptr) results.append(accuracy_results(search->reached()));
-  std::vector<OutputPart> parts;
-  if (common.out) parts = job.parts(*common.out, result, common.overwrite || options.resume);
-  deliver(common, "done", std::move(results), std::move(times), parts, failure);
-  if (!arrays_wanted()) return true;
-  hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
-  hand_over([shared_job, shared_result, history = tables.history()](const CommonOptions& into) {
-    if (!history.empty()) write_file(*into.out / "history.csv", history, into.overwrite);  // of which paths are drawn
-    write_parts(*shared_job, *shared_result, into);
-  });
+  if (!failure && search != nullptr) results.append(accuracy_results(reached_by_step(*search)));
+  deliver_run(options, "done", std::move(results), std::move(times), shared_job, shared_result, failure,
+              arrays_wanted() ? tables.history() : "");
+  if (arrays_wanted()) hand_over(tables.arrays(result.record.energies, job.simulation().family(), plan.body));
   return true;
 }
 
@@ -93,24 +97,21 @@ void relax_to_rest(const RunVerb& options, const std::shared_ptr<RunJob>& shared
     bad_input("--resume of a run to rest", "it keeps no checkpoints: it ends where it ends", "Run it anew");
   }
   StageTimes times = job.times();
-  const CommonOptions& common = options.common;
   Results results;
   const std::optional<Error> failure = failure_of([&] { results = job.relax(times); });
   if (failure && failure->kind() == ErrorKind::bad_input) throw *failure;
   if (failure) results = job.scene();
   results.set("complete", true);
-  std::vector<OutputPart> parts;
-  if (common.out) parts = job.parts(*common.out, {}, common.overwrite);
-  deliver(common, "at_rest", std::move(results), std::move(times), parts, failure);
-  hand_over([shared_job](const CommonOptions& into) { write_parts(*shared_job, {}, into); });
+  deliver_run(options, "at_rest", std::move(results), std::move(times), shared_job, std::make_shared<const RunResult>(),
+              failure);
 }
 
 int run_to_accuracy(RunVerb options, double accuracy) {
-  StepSearch search = [&] {
+  CaseSearch search(options.common, [&] {
     const BondedRun given(read_case(options.common));
     check_outputs(options, given);
-    return StepSearch(options.common, accuracy, given);
-  }();
+    return searched_step(given, accuracy);
+  }());
   const auto lock = lock_out(options.common);
   for (;;) {
     const auto job = std::make_shared<BondedRun>(search.propose());
@@ -152,7 +153,7 @@ int run(const RunVerb& options) {
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
     Results results = dry_run_results(*job);
-    if (options.accuracy) results.append(accuracy_plan(*options.accuracy, StepSearch::plan));
+    if (options.accuracy) results.append(accuracy_plan(*options.accuracy, plan_of_steps));
     deliver(options.common, "dry_run", results, job->times());
   } else if (job->goes_to_rest()) {
     relax_to_rest(options, job);

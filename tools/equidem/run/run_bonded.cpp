@@ -3,15 +3,20 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
+#include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "equidem/casefile/assembly/build.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/output/files/body_tables.hpp"
@@ -19,10 +24,8 @@
 #include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/picture.hpp"
 
-#include "run/run_case_text.hpp"
-#include "run/run_film.hpp"
-#include "run/run_results.hpp"
-#include "solve/solve_results.hpp"
+#include "run/case_text.hpp"
+#include "solve/solve.hpp"
 
 namespace equidem {
 namespace {
@@ -53,11 +56,8 @@ TimeStep step_of(Problem& problem, const Scene& scene, const std::optional<KeptS
     wanted.step_of_rule = true;
     if (kept->rule == to_string(TimeStepRule::bound)) wanted.rule = TimeStepRule::bound;
   }
-  try {
-    step = choose_time_step(scene, simulation_options(problem.resolved, 1), wanted);
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"));
-  }
+  step = casefile::with_place(problem.resolved.where(run.time_step.step ? "run.time_step" : "run"),
+                              [&] { return choose_time_step(scene, simulation_options(problem.resolved, 1), wanted); });
   problem.times.add("time step", watch.lap());
   if (!wanted.step) step.step = std::min(step.step, wanted.duration);
   if (kept && step.step == kept->step) {
@@ -142,11 +142,7 @@ void check_wavelengths(const Problem& problem, const std::vector<Probe>& probes)
 }
 
 Simulation simulation_of(const Problem& problem, const Scene& scene, const SimulationOptions& options) {
-  try {
-    return {scene, options};
-  } catch (const Error& error) {
-    throw error.at(problem.resolved.where("run"));
-  }
+  return casefile::with_place(problem.resolved.where("run"), [&] { return Simulation(scene, options); });
 }
 
 /// Forces of the contacts between discs.
@@ -183,11 +179,8 @@ BondedRun::BondedRun(Case resolved, const std::optional<KeptStep>& kept)
 
 std::int64_t BondedRun::steps() const {
   if (!run().duration) return 0;
-  try {
-    return count_steps(*run().duration, step_.step);
-  } catch (const Error& error) {
-    throw error.at(problem_.resolved.where("run.duration"));
-  }
+  return casefile::with_place(problem_.resolved.where("run.duration"),
+                              [&] { return count_steps(*run().duration, step_.step); });
 }
 
 RunPlan BondedRun::plan() {
@@ -228,46 +221,48 @@ std::string BondedRun::fingerprint() const {
                      checksum_of(problem_.assembly, problem_.springs.springs), checksum_of_schedules(scene_));
 }
 
-std::vector<OutputPart> BondedRun::parts(const std::filesystem::path& folder, const RunResult& result,
-                                         bool overwrite) const {
-  static constexpr EnergyCurve curves[] = {
-      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
-      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+std::vector<OutputPart> BondedRun::parts(const RunResult& result) const {
+  static constexpr EnergyCurve further[] = {
       {"dissipated", PlotColour::orange, [](const EnergyLedger& l) { return l.lost(); }},
       {"put in", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work(); }},
   };
   const OutputCase& output = problem_.resolved.output;
   std::vector<OutputPart> parts;
-  parts.push_back(
-      {"case.toml", [=, this] { write_file(folder / "case.toml", to_toml(problem_.resolved, folder), overwrite); }});
+  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write) {
+    parts.push_back({name, std::move(write), OutputPart::page});
+  };
+  part("case.toml", [this](const CommonOptions& into) { write_case(into, problem_.resolved); });
   if (goes_to_rest() && at_rest_.empty()) return parts;
-  const auto part = [&](const char* name, const std::function<void(const AssemblyState&)>& write) {
-    parts.push_back(
-        {name, [this, write] {
-           const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
-           std::vector<ContactForce> forces;
-           if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
-           write({.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
-         }});
+  const auto state_part = [&](const char* name,
+                              const std::function<void(const CommonOptions&, const AssemblyState&)>& write) {
+    part(name, [this, write](const CommonOptions& into) {
+      const std::vector<DiscMotion> motions = goes_to_rest() ? at_rest_ : simulation_.motions();
+      std::vector<ContactForce> forces;
+      if (run().motion == LoopKind::Motion::small) forces = forces_of(scene_, LoopKind::Motion::small, motions);
+      write(into, {.assembly = problem_.assembly, .motions = motions, .contact_forces = forces, .stresses = {}});
+    });
   };
   if (output.csv)
-    part("discs.csv", [=](const AssemblyState& state) { write_disc_csv(folder / "discs.csv", state, overwrite); });
+    state_part("discs.csv", [](const CommonOptions& into, const AssemblyState& state) {
+      write_disc_csv(*into.out / "discs.csv", state, into.overwrite);
+    });
   if (output.vtk)
-    part("the state for ParaView", [=](const AssemblyState& state) { write_vtk(folder, "state", state, overwrite); });
+    state_part("the state for ParaView", [](const CommonOptions& into, const AssemblyState& state) {
+      write_vtk(*into.out, "state", state, into.overwrite);
+    });
   if (output.picture)
-    part("the picture", [=, this](const AssemblyState& state) {
+    state_part("the picture", [this](const CommonOptions& into, const AssemblyState& state) {
       const bool far = run().motion == LoopKind::Motion::finite;  // then where it began is worth seeing
-      write_picture(folder, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, overwrite);
+      write_picture(*into.out, "picture", state, {.title = problem_.resolved.title, .undeformed = far}, into.overwrite);
     });
   if (goes_to_rest()) return parts;
-  parts.push_back({"the plot of energies", [=, this, &result] {
-                     write_energy_plot(folder, "energy", problem_.resolved.title, Body::disc, result.record.energies,
-                                       curves, overwrite);
-                   }});
+  part("the plot of energies", [this, &result](const CommonOptions& into) {
+    write_energy_plot(into, "energy", problem_.resolved.title, Body::disc, result.record.energies, further);
+  });
   if (output.picture)
-    parts.push_back(
-        {"the film", [this, &result] { add_film(problem_.resolved.title, problem_.assembly, result.record.film); }});
+    part("the film", [this, &result](const CommonOptions& /*into*/) {
+      add_film(problem_.resolved.title, problem_.assembly, result.record.film);
+    });
   return parts;
 }
 
@@ -322,6 +317,178 @@ std::optional<WaveStiffness> BondedRun::stiffness_of_waves() const {
     if (error.kind() == ErrorKind::interrupted) throw;
     return std::nullopt;
   }
+}
+
+namespace {
+
+constexpr double balance_to_mention = 1e-3;  // of the largest energy
+
+/// Keys of the case that have no effect on a run to rest.
+std::string unused_at_rest(const RunCase& run, const OutputCase& output) {
+  std::vector<std::string> names;
+  const auto name = [&](bool given, const char* key) {
+    if (given) names.emplace_back(key);
+  };
+  name(run.time_step.step.has_value(), "time_step");
+  name(run.integrator != Integrator::leapfrog, "integrator");
+  name(run.damping.mass > 0 || run.damping.acts_late(), "[run.damping]");
+  name(!run.velocities.empty(), "[[velocity]]");
+  name(output.frame_interval.has_value(), "frame_interval");
+  name(!run.probes.empty() || output.probe_interval, "[[probe]]");
+  return joined(names);
+}
+
+bool any_schedule(const Scene& scene) {
+  const auto changes = [](const std::optional<Schedule>& motion) { return motion && motion->changes(); };
+  return std::ranges::any_of(
+             scene.supports,
+             [&](const TimedSupport& s) { return changes(s.ux) || changes(s.uy) || changes(s.rotation); }) ||
+         std::ranges::any_of(scene.loads, [](const TimedLoad& load) { return load.factor.changes(); }) ||
+         std::ranges::any_of(scene.walls, [](const Wall& wall) { return wall.moves(); });
+}
+
+}  // namespace
+
+int BondedRun::order() const {
+  return order_of(options_);
+}
+
+Results BondedRun::scene() const {
+  const RunCase& run = this->run();
+  const bool small = run.motion == LoopKind::Motion::small;
+  Results out = problem_results(problem_, simulation_.effects(), AssemblyKeys::size);
+  if (const auto& springs = problem_.springs.constants) out.set("springs/ratio", springs->ratio());
+  out.line("motions")
+      .add("motion", "", small ? "small" : "finite")
+      .note(small ? ": normals and contact points fixed, the forces are those of the matrix K"
+                  : ": normals and contact points follow the bodies");
+  if (run.until_rest) {
+    const std::string unused = unused_at_rest(run, problem_.resolved.output);
+    if (!unused.empty()) out.line("not used", unused + ": a run to rest has steps of its own and no time");
+    if (any_schedule(scene_))
+      out.line("schedules", "as they are at t = 0: a run to rest has no time, and starts from there");
+    return out;
+  }
+  const IntegrationScheme& scheme = scheme_of(run.integrator);
+  return out.line("integrator")
+      .add("integrator", "", to_string(run.integrator))
+      .add("", "order", order())
+      .note(order() < scheme.order ? " (dampers act half a step late)"
+            : order() > 2 && !scene_.walls.empty()
+                ? " (2 over steps in which a disc touches or leaves a wall: its force has a kink)"
+                : "")
+      .add("", "", scheme.force_evaluations, "force evaluation", {Shown::count})
+      .note(" a step");
+}
+
+Results BondedRun::step() const {
+  Results out;
+  out.line("time step").add("time_step", "", step_.step, "s");
+  if (std::isinf(step_.critical)) {
+    out.note("; nothing vibrates, any step is stable");
+    out.set("critical_time_step", step_.critical).set("time_step_ratio", step_.ratio());
+    out.set("time_step_rule", step_.rule);
+  } else {
+    out.add("time_step_ratio", "", step_.ratio(), step_.exact ? "of the critical step" : "of the guaranteed step",
+            {.digits = 4})
+        .note(" ")
+        .add("critical_time_step", "", step_.critical, "s")
+        .note(" (")
+        .add("time_step_rule", "rule:", step_.rule)
+        .note(")");
+  }
+  out.set("critical_time_step_exact", step_.exact).set("omega_max", step_.omega_max);
+  for (const std::string& note : step_.notes) out.line("", note);
+  return out;
+}
+
+Results BondedRun::advice(const Balance& balance) const {
+  Results out;
+  if (balance.most > balance_to_mention) {
+    // The work of what drives a run is counted to the second order.
+    const bool driven = !scene_.loads.empty() || !scene_.supports.empty() || !scene_.walls.empty();
+    const int order = std::min(scheme_of(run().integrator).order, driven ? 2 : 4);
+    out.line("",
+             fmt::format("it falls as the step to the power {}: about {:g} with run.time_step={:.2g}", order,
+                         balance_to_mention, step_.step * std::pow(balance_to_mention / balance.most, 1.0 / order)));
+  }
+  if (balance.most > Balance::doubtful)
+    out.line("", "that is much: compare with a shorter step before trusting the motion");
+  return out;
+}
+
+namespace {
+
+constexpr std::int64_t finest = 4096;  // times as many steps as the case has
+
+/// Steps between which the user may interrupt.
+constexpr std::int64_t steps_at_once = 1000;
+
+double relative_distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double apart = 0, largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    apart = std::max(apart, std::abs(a[k] - b[k]));
+    largest = std::max(largest, std::abs(b[k]));
+  }
+  return apart > 0 ? apart / largest : 0;
+}
+
+std::vector<double> run_pilot(Case resolved) {
+  BondedRun pilot(std::move(resolved));
+  Simulation& simulation = pilot.simulation();
+  const std::int64_t steps = pilot.steps();
+  Progress progress(fmt::format("a run of {} to choose the step:", counted(steps, "step")));
+  for (std::int64_t done = 0; done < steps; done += steps_at_once) {
+    progress.update(static_cast<double>(done) / static_cast<double>(steps));
+    simulation.advance(std::min(steps_at_once, steps - done));
+  }
+  return searched_values(simulation.motions());
+}
+
+}  // namespace
+
+SearchedSetting searched_step(const BondedRun& given, double accuracy) {
+  if (given.goes_to_rest()) {
+    bad_input_at(given.where("run.until_rest"), "--accuracy does not act on a run to rest",
+                 "run.until_rest is its accuracy",
+                 "Leave it out, or set run.until_rest to the unbalanced force wanted");
+  }
+  const double duration = given.run().duration.value_or(0);
+  return {.refinement = {.accuracy = accuracy,
+                         .order = static_cast<double>(given.order()),
+                         .first = given.steps(),
+                         .most = finest * given.steps(),
+                         .unit = "steps",
+                         .apart = std::numbers::sqrt2,
+                         .distance = relative_distance},
+          .setting_of =
+              [duration](std::int64_t steps) {
+                return AccuracySetting{{"run.time_step", duration / static_cast<double>(steps)}};
+              },
+          .values_of = run_pilot,
+          .of =
+              "displacements at the end of the run, over the largest of them, against those of a step of 0, "
+              "extrapolated",
+          .knob = fmt::format("the time step, {:.6g} s in the case", given.time_step().step)};
+}
+
+std::vector<double> searched_values(const std::vector<DiscMotion>& motions) {
+  std::vector<double> values;
+  for (const DiscMotion& motion : motions) values.push_back(motion.u.x), values.push_back(motion.u.y);
+  return values;
+}
+
+ReachedAccuracy reached_by_step(const CaseSearch& search) {
+  ReachedAccuracy reached = search.reached();
+  std::vector<std::string> numbers;
+  double steps = 0;
+  for (const std::int64_t count : search.before()) {
+    steps += static_cast<double>(count);
+    numbers.push_back(fmt::format("{}", count));
+  }
+  reached.pilots_factor = steps / static_cast<double>(search.level());
+  reached.pilots = fmt::format("runs of {} steps", listed(std::move(numbers)));
+  return reached;
 }
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// `equidem run` of bonded discs.
+/// `equidem run` of bonded discs, and the time step that an accuracy needs (--accuracy).
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
 
+#include "accuracy.hpp"
 #include "problem.hpp"
 #include "run/run_job.hpp"
 #include "run/run_waves.hpp"
@@ -56,8 +57,7 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
-  [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
-                                              bool overwrite) const override;
+  [[nodiscard]] std::vector<OutputPart> parts(const RunResult& result) const override;
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
   Results relax(StageTimes& times) override;
 
@@ -80,5 +80,18 @@ class BondedRun final : public RunJob {
   RunawayWatch watch_;
   std::vector<DiscMotion> at_rest_;  ///< after relax()
 };
+
+/// The longest step for which the displacements at the end are within the accuracy, relative to the largest one. Pilots
+/// are runs with the step of the case, that over root 2, and its half (and finer ones, until the motions at the end
+/// converge by the order of the integrator); they write nothing.
+/// \param given the run with the step of the case
+/// \throws Error (bad_input) where the run goes to rest
+SearchedSetting searched_step(const BondedRun& given, double accuracy);
+inline constexpr const char* plan_of_steps =
+    "first runs with the step of the case, that over root 2 and its half; the longest step that reaches it follows "
+    "from them; above is the run with the step of the case";
+std::vector<double> searched_values(const std::vector<DiscMotion>& motions);
+/// \param search that has ended
+ReachedAccuracy reached_by_step(const CaseSearch& search);
 
 }  // namespace equidem

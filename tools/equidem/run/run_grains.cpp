@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
@@ -16,11 +16,7 @@
 #include "equidem/output/files/histories.hpp"
 #include "equidem/output/pictures/grain_picture.hpp"
 
-#include "run/break_files.hpp"
-#include "run/run_case_text.hpp"
-#include "run/run_film.hpp"
-#include "run/run_grains_text.hpp"
-#include "run/run_results.hpp"
+#include "run/case_text.hpp"
 
 namespace equidem {
 namespace {
@@ -30,7 +26,7 @@ constexpr std::int64_t energy_samples = 200,
 
 void check_events(const GrainCase& resolved, double step) {
   const auto length_of = [&](const StageCase& stage) {
-    return stage.duration ? *stage.duration : static_cast<double>(*stage.steps) * step;
+    return stage.duration ? *stage.duration : static_cast<double>(*stage.given_steps) * step;
   };
   const auto check_all = [&](const GrainScene& scene, double length, const auto& place_of_wall,
                              const std::string& place_of_cell) {
@@ -60,11 +56,8 @@ StagedSimulation simulation_of(const GrainCase& resolved, double step) {
   const GrainScene scene = build_grain_scene(resolved, step);
   const GrainOptions options = grain_options(resolved, step);
   if (scene.cell) casefile::with_place(resolved.where("cell"), [&] { check_cell(scene, options); });
-  try {
-    check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); });
-  } catch (const Error& error) {
-    throw error.at(resolved.where("collisions"));
-  }
+  casefile::with_place(resolved.where("collisions"),
+                       [&] { check(scene, options, [&](std::size_t grain) { return resolved.where_grain(grain); }); });
   for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
     const StageCase& stage = resolved.stages[k];
     const std::string place = fmt::format("stage.{}", k);
@@ -291,7 +284,8 @@ GrainRun::Snapshot GrainRun::snapshot() const {
   return now;
 }
 
-void GrainRun::write_tables(const std::filesystem::path& folder, bool overwrite) const {
+void GrainRun::write_tables(const CommonOptions& into) const {
+  const std::filesystem::path& folder = *into.out;
   const Snapshot now = snapshot();
   const std::vector<std::size_t>& numbers = simulation_.numbers();
   std::vector<double> densities;
@@ -302,17 +296,17 @@ void GrainRun::write_tables(const std::filesystem::path& folder, bool overwrite)
                    .groups = now.groups,
                    .densities = densities,
                    .numbers = bodies_come_and_go(case_) ? numbers : std::span<const std::size_t>()},
-                  overwrite);
+                  into.overwrite);
 }
 
-void GrainRun::draw(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const {
+void GrainRun::draw(const CommonOptions& into, const RunResult& result) const {
   const Snapshot now = snapshot();
   std::vector<std::vector<Vec2>> paths;  // of the bodies that are there
   for (const std::vector<Vec2>& places : result.record.paths) {
     std::vector<Vec2>& shown = paths.emplace_back();
     for (const std::size_t number : simulation_.numbers()) shown.push_back(places[number]);
   }
-  write_grain_picture(folder, "picture",
+  write_grain_picture(*into.out, "picture",
                       {.title = case_.title,
                        .time = simulation_.time(),
                        .grains = now.grains,
@@ -322,15 +316,11 @@ void GrainRun::draw(const std::filesystem::path& folder, const RunResult& result
                        .walls = now.walls,
                        .started = case_.scene.grains,
                        .paths = paths},
-                      overwrite);
+                      into.overwrite);
 }
 
-std::vector<OutputPart> GrainRun::parts(const std::filesystem::path& folder, const RunResult& result,
-                                        bool overwrite) const {
-  static constexpr EnergyCurve curves[] = {
-      {"kinetic", PlotColour::blue, [](const EnergyLedger& l) { return l.kinetic; }},
-      {"elastic", PlotColour::vermilion, [](const EnergyLedger& l) { return l.elastic(); }},
-      {"potential", PlotColour::green, [](const EnergyLedger& l) { return l.potential; }},
+std::vector<OutputPart> GrainRun::parts(const RunResult& result) const {
+  static constexpr EnergyCurve further[] = {
       {"lost at impacts", PlotColour::orange,
        [](const EnergyLedger& l) { return l.lost_restitution + l.lost_dashpot + l.lost_release; }},
       {"lost by friction", PlotColour::purple,
@@ -339,34 +329,34 @@ std::vector<OutputPart> GrainRun::parts(const std::filesystem::path& folder, con
       {"work done by walls", PlotColour::sky_blue, [](const EnergyLedger& l) { return l.work_of_walls; }},
   };
   std::vector<OutputPart> parts;
-  const auto part = [&](const char* name, std::function<void()> write) { parts.push_back({name, std::move(write)}); };
-  part("case.toml", [=, this] { write_file(folder / "case.toml", to_toml(case_.document, folder), overwrite); });
-  part("energy.csv", [=, this, &result] {
-    write_energy_csv(folder / "energy.csv", result.record.energies, BodyFamily::colliding, case_.body, overwrite);
+  const auto part = [&](const char* name, std::function<void(const CommonOptions&)> write) {
+    parts.push_back({name, std::move(write), OutputPart::page});
+  };
+  part("case.toml", [this](const CommonOptions& into) { write_case(into, case_.document); });
+  part("energy.csv", [this, &result](const CommonOptions& into) {
+    write_energy_csv(*into.out / "energy.csv", result.record.energies, BodyFamily::colliding, case_.body,
+                     into.overwrite);
   });
   if (case_.output.csv) {
-    part("grains.csv", [=, this] { write_tables(folder, overwrite); });
-    part("contacts.csv", [=, this] {
-      write_grain_contact_csv(folder / "contacts.csv", simulation_.present().contacts(), snapshot().walls, case_.body,
-                              overwrite);
+    part("grains.csv", [this](const CommonOptions& into) { write_tables(into); });
+    part("contacts.csv", [this](const CommonOptions& into) {
+      write_grain_contact_csv(*into.out / "contacts.csv", simulation_.present().contacts(), snapshot().walls,
+                              case_.body, into.overwrite);
     });
     if (!simulation_.bonds().empty())
-      part("bonds.csv", [=, this] {
+      part("bonds.csv", [this](const CommonOptions& into) {
         const StagedSimulation::HoldingBonds holding = simulation_.holding_bonds();
-        write_bond_csv(folder / "bonds.csv", holding.bonds, holding.strengths, overwrite);
+        write_bond_csv(*into.out / "bonds.csv", holding.bonds, holding.strengths, into.overwrite);
       });
   }
-  part("the table of breaks", [=, this] {
-    const std::vector<BondBreak> breaks = simulation_.breaks();
-    write_breaks(folder, case_, {simulation_.bonds(), breaks}, step_.step, overwrite);
-  });
+  part("the table of breaks", [this](const CommonOptions& into) { write_breaks(into); });
   if (case_.output.picture) {
-    part("the picture", [=, this, &result] { draw(folder, result, overwrite); });
-    part("the plot of energies", [=, this, &result] {
-      write_energy_plot(folder, "energy_plot", case_.title, case_.body, result.record.energies, curves, overwrite);
+    part("the picture", [this, &result](const CommonOptions& into) { draw(into, result); });
+    part("the plot of energies", [this, &result](const CommonOptions& into) {
+      write_energy_plot(into, "energy_plot", case_.title, case_.body, result.record.energies, further);
     });
-    part("the paths of probes", [=, this] { write_probe_paths(folder, case_, overwrite); });
-    part("the film", [=, this, &result] {
+    part("the paths of probes", [this](const CommonOptions& into) { write_probe_paths(into, case_); });
+    part("the film", [this, &result](const CommonOptions& /*into*/) {
       std::vector<int> first_colours;
       for (const std::string& group : case_.groups) first_colours.push_back(colour_of(group));
       // where paths are drawn, pictures show where each body went
@@ -376,7 +366,7 @@ std::vector<OutputPart> GrainRun::parts(const std::filesystem::path& folder, con
     });
   }
   if (measures_ && measures_->last_step() >= 0)
-    part("the measures", [=, this] { measures_->write_files(folder, overwrite); });
+    part("the measures", [this](const CommonOptions& into) { measures_->write_files(into); });
   return parts;
 }
 

@@ -8,8 +8,8 @@
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 
+#include "run/case_text.hpp"
 #include "run/run_grains_measures.hpp"
-#include "run/run_grains_text.hpp"
 #include "run/run_job.hpp"
 
 namespace equidem {
@@ -45,8 +45,7 @@ class GrainRun final : public RunJob {
   [[nodiscard]] Results step() const override;
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
-  [[nodiscard]] std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
-                                              bool overwrite) const override;
+  [[nodiscard]] std::vector<OutputPart> parts(const RunResult& result) const override;
 
  private:
   struct Snapshot {
@@ -57,8 +56,11 @@ class GrainRun final : public RunJob {
   };
   /// The bodies that are there now.
   [[nodiscard]] Snapshot snapshot() const;
-  void write_tables(const std::filesystem::path& folder, bool overwrite) const;
-  void draw(const std::filesystem::path& folder, const RunResult& result, bool overwrite) const;
+  void write_tables(const CommonOptions& into) const;
+  void write_breaks(const CommonOptions& into) const;
+  void draw(const CommonOptions& into, const RunResult& result) const;
+  /// Bonds that broke.
+  [[nodiscard]] Results breaks() const;
   /// Contacts as the present stage has them.
   [[nodiscard]] const ContactTable& present_contacts() const;
   [[nodiscard]] int colour_of(const std::string& group) const;

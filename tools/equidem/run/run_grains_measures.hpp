@@ -17,6 +17,8 @@
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
+#include "command.hpp"
+
 namespace equidem {
 
 class GrainMeasures final : public RunRecorder {
@@ -37,7 +39,7 @@ class GrainMeasures final : public RunRecorder {
   /// measures: before and after, after the last step.
   [[nodiscard]] Results results() const;
   /// surface_plot: the surface before and at the end; void_ratio_plot; fields where asked for.
-  void write_files(const std::filesystem::path& folder, bool overwrite) const;
+  void write_files(const CommonOptions& into) const;
 
  private:
   void go_on(const Checkpoint& from);
@@ -51,6 +53,6 @@ class GrainMeasures final : public RunRecorder {
 };
 
 /// paths_plot: where the probes of positions went, from history.csv of the folder; nothing where there are none.
-void write_probe_paths(const std::filesystem::path& folder, const GrainCase& resolved, bool overwrite);
+void write_probe_paths(const CommonOptions& into, const GrainCase& resolved);
 
 }  // namespace equidem

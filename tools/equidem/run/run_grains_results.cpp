@@ -6,16 +6,16 @@
 #include <utility>
 #include <vector>
 
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
-#include "equidem/output/run/cell_history.hpp"
+#include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/histories.hpp"
+#include "equidem/output/plots/plot.hpp"
 
-#include "run/break_files.hpp"
 #include "run/run_grains.hpp"
-#include "run/run_grains_stages_results.hpp"
-#include "run/run_results.hpp"
 
 namespace equidem {
 namespace {
@@ -195,10 +195,6 @@ std::string advice_on_balance(const GrainCase& resolved, const EnergyLedger& led
   return "compare with a shorter step before trusting the motion";
 }
 
-}  // namespace
-
-namespace {
-
 /// Of the walls at the start, and of those of later stages that no stage before has moved.
 std::vector<std::string> gaps_in_walls(const GrainCase& resolved) {
   const double smallest = smallest_inscribed_radius(resolved.scene);
@@ -214,7 +210,267 @@ std::vector<std::string> gaps_in_walls(const GrainCase& resolved) {
   return sentences;
 }
 
+struct CountedChange {
+  const char* key;
+  std::size_t count;
+  const char *what, *done;
+};
+std::array<CountedChange, 4> counts_of(const StageReport& stage) {
+  return {{{"removed", stage.removed, "grain", " removed"},
+           {"renamed", stage.renamed, "grain", " renamed"},
+           {"added", stage.added, "grain", " added"},
+           {"bonds_made", stage.bonds_made, "bond", " made"}}};
+}
+
+/// "2 grains removed, 13 bonds made".
+std::string changes_of(const StageReport& stage) {
+  std::vector<std::string> changes;
+  for (const auto& [key, count, what, done] : counts_of(stage))
+    if (count > 0) changes.push_back(counted(static_cast<long long>(count), what) + done);
+  for (const WallRenaming& wall : stage.renamed_walls)
+    changes.push_back(fmt::format("wall '{}' renamed '{}'", wall.from, wall.to));
+  return joined(changes);
+}
+
+/// Removals and renamings of a stage that held no grain, and bonds that tied none: the line of each in the case and
+/// what to do.
+std::vector<std::string> idle_choices(const TomlValue& table, const StageReport& stage) {
+  std::vector<std::string> told;
+  const auto tell = [&](const char* list, const std::vector<std::size_t>& idle) {
+    std::vector<const TomlValue*> choices;
+    for (const TomlValue& choice : casefile::repeated(table, list))
+      if (choice.find("wall") == nullptr) choices.push_back(&choice);
+    for (const std::size_t k : idle)
+      told.push_back(
+          fmt::format("{0}: stage.{1}: the {2} of the stage '{3}' held no grain where the stage began, and nothing was "
+                      "{1}d; correct the {2}, or leave the table out",
+                      choices[k]->where(), list, choices[k]->find("box") != nullptr ? "box" : "group", stage.name));
+  };
+  tell("remove", stage.idle_removals);
+  tell("rename", stage.idle_renamings);
+  if (const TomlValue* bonds = table.find("bonds"); bonds != nullptr && stage.bonds_made == 0)
+    told.push_back(
+        fmt::format("{}: stage.bonds: no two discs were near enough in the stage '{}', and no bond was made; "
+                    "give a larger gap_tolerance, or leave the table out",
+                    bonds->where(), stage.name));
+  return told;
+}
+
+/// "'lid' in the stage 'press'"
+std::string in_stage(const GrainCase& resolved, const std::string& what, const std::string& stage) {
+  return resolved.stages.empty() ? what : fmt::format("{} in the stage '{}'", what, stage);
+}
+
+/// "2 m/s² at most along (1, 0), 10 Hz, 2 cycles from 0 s to 0.2 s".
+std::string describe(const Shaking& shaking) {
+  return fmt::format("{:.4g} m/s² at most along ({:.4g}, {:.4g}), {} Hz, {} from {:.4g} s to {:.4g} s",
+                     shaking.peak_acceleration, shaking.direction.x, shaking.direction.y, shaking.frequency,
+                     counted(static_cast<long long>(shaking.cycles), "cycle"), shaking.displacement.start,
+                     shaking.displacement.end);
+}
+
+Results shaking_results(const Shaking& shaking) {
+  Results out;
+  out.line("shaking", describe(shaking));
+  out.line("")
+      .add("peak_velocity", "at most", shaking.peak_velocity, "m/s", {.digits = 4})
+      .add("peak_displacement", "", shaking.peak_displacement, "m", {.digits = 4});
+  return out.set("peak_acceleration", shaking.peak_acceleration).set("direction", shaking.direction);
+}
+
+/// stages: a list with name, start, end, steps, ended_by, effects; removed, renamed, added, bonds_made, renamed_walls
+/// (from, to) where there are some; what it was to end by, and its shaking.
+Results stage_results(const GrainCase& resolved, const std::vector<StageReport>& stages, double step) {
+  const bool any_changes = std::ranges::any_of(stages, [](const StageReport& s) { return !changes_of(s).empty(); });
+  std::vector<Results> rows;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    const StageReport& stage = stages[k];
+    const char* reason = stage.ended ? "met its end" : stage.over ? "duration" : "not over";
+    Results& row = rows.emplace_back();
+    row.add("name", "stage", stage.name)
+        .add("start", "from, s", static_cast<double>(stage.first) * step)
+        .add("end", "to, s", static_cast<double>(stage.last) * step)
+        .add("steps", "steps", stage.last - stage.first)
+        .add("ended_by", "ended by", reason)
+        .set("effects", stage.effects);
+    if (any_changes) row.add("", "began with", changes_of(stage));
+    if (stage.kinetic > 0 || stage.unbalanced > 0)
+      row.set("kinetic_over_elastic", stage.kinetic).set("unbalanced_force_ratio", stage.unbalanced);
+    for (const CountedChange& change : counts_of(stage))
+      if (change.count > 0) row.set(change.key, change.count);
+    if (!stage.renamed_walls.empty()) {
+      std::vector<Results> names;
+      for (const WallRenaming& wall : stage.renamed_walls)
+        names.emplace_back().set("from", wall.from).set("to", wall.to);
+      row.set("renamed_walls", std::move(names));
+    }
+    if (stage.strain > 0) row.set("strain", stage.strain, "", "strain of a stage when it was last looked at");
+    if (stage.displacement > 0)
+      row.set("displacement", stage.displacement, "m", "way of a wall in a stage when it was last looked at");
+    if (const auto& shaking = resolved.stages[k].shaking)
+      row.append(shaking_results(*shaking).hidden().under("shaking"));
+  }
+  Results out;
+  out.line("stages", "what changes the energies of the scene between them is in the ledger:");
+  out.table("stages", std::move(rows));
+  for (std::size_t k = 0; k < stages.size(); ++k)
+    for (const std::string& text : idle_choices(casefile::repeated(resolved.document, "stage")[k], stages[k]))
+      out.line("WARNING", text);
+  return out;
+}
+
+/// A value of a servo since it came near the wanted one; null before.
+template <class Report>
+ResultValue since_reached(const Report& servo, double value) {
+  return servo.reached && std::isfinite(value) ? ResultValue(value) : ResultValue(nullptr);
+}
+
+/// A row for each servo of each stage. \param present of the last stage
+template <class Report, class Add>
+std::vector<Results> servo_rows(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                                std::vector<Report> StageReport::*of, const std::vector<Report>& present,
+                                const Add& add) {
+  std::vector<Results> rows;
+  for (const StageReport& stage : stages) {
+    for (const Report& servo : &stage == &stages.back() ? present : stage.*of) {
+      Results& row = rows.emplace_back();
+      if (!resolved.stages.empty()) row.add("stage", "stage", stage.name);
+      add(row, stage.name, servo);
+    }
+  }
+  return rows;
+}
+
+/// servos: a list with wall, mirror, wanted, force, overshoot, mean_error, and stage where there are some.
+Results servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                      const std::vector<ServoReport>& present) {
+  const char* force = resolved.body == Body::disc ? "N/m" : "N";
+  std::vector<std::string> missed, alone;
+  const auto add = [&](Results& row, const std::string& stage, const ServoReport& servo) {
+    if (!servo.reached && (servo.wanted > 0 || servo.force > 0))
+      (servo.touched ? missed : alone).push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
+    row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
+        .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
+        .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
+        .set("touched", servo.touched)
+        .set("reached", servo.reached);
+    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
+    row.add("max_speed", "limit, m/s", servo.max_speed, "", {.digits = 3})
+        .add("overshoot", "overshoot", since_reached(servo, servo.overshoot), "", {.digits = 3})
+        .set("peak", since_reached(servo, servo.peak), "",
+             "the same of the force in single steps, in which bodies knock")
+        .add("", "in a step", since_reached(servo, servo.peak), "", {.digits = 3})
+        .add("mean_error", "mean error", since_reached(servo, servo.mean_error), "", {.digits = 3});
+  };
+  std::vector<Results> rows = servo_rows(resolved, stages, &StageReport::servos, present, add);
+  Results out;
+  if (rows.empty()) return out;
+  out.line("servo walls",
+           "limit of their speed; overshoot, in the mean over a contact and in a step, and mean error since the force "
+           "came within 1 % of the wanted one in its stage:");
+  out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING",
+             fmt::format("the force of servo walls never came within 1 % of the wanted one: {}; let them move "
+                         "faster (max_speed), or for longer",
+                         joined(missed)));
+  if (!alone.empty())
+    out.line("WARNING", fmt::format("servo walls met no body, and nothing was pressed: {}; let them move faster "
+                                    "(max_speed), or for longer",
+                                    joined(alone)));
+  return out;
+}
+
+/// cell/servos: a list with component, reached, wanted, stress, overshoot, mean_error, and stage where there are some.
+Results cell_servo_results(const GrainCase& resolved, const std::vector<StageReport>& stages,
+                           const std::vector<CellServoReport>& present) {
+  std::vector<std::string> missed;
+  bool pulls = false;
+  const auto add = [&](Results& row, const std::string& stage, const CellServoReport& servo) {
+    if (!servo.reached && servo.wanted != 0) {
+      missed.push_back(in_stage(resolved, servo.component, stage));
+      pulls = pulls || servo.wanted > 0;
+    }
+    row.add("component", "stress", servo.component)
+        .set("reached", servo.reached)
+        .add("wanted", "wanted, Pa", servo.wanted)
+        .add("stress", "in the last step", servo.stress)
+        .add("overshoot", "overshoot", since_reached(servo, servo.overshoot), "", {.digits = 3})
+        .add("mean_error", "mean error", since_reached(servo, servo.mean_error), "", {.digits = 3});
+  };
+  std::vector<Results> rows = servo_rows(resolved, stages, &StageReport::cell_servos, present, add);
+  Results out;
+  if (rows.empty()) return out;
+  out.line("", "overshoot and mean error since the stress came within 1 % of the wanted one:");
+  out.table("servos", std::move(rows));
+  if (!missed.empty())
+    out.line("WARNING", fmt::format("the stress of the cell never came within 1 % of the wanted one: {}; let it deform "
+                                    "faster (max_rate), or for longer{}",
+                                    joined(missed), pulls ? "; contacts carry no tension, bonds do" : ""));
+  return out.under("cell");
+}
+
+constexpr std::pair<BreakMode, PlotColour> modes_of_bonds[] = {{BreakMode::tension, PlotColour::vermilion},
+                                                               {BreakMode::shear, PlotColour::blue},
+                                                               {BreakMode::bending, PlotColour::green}};
 }  // namespace
+
+/// Their number by mode, the first one, and the energy of their springs.
+Results GrainRun::breaks() const {
+  Results out;
+  if (!case_.scene.strengths) return out;
+  const std::vector<BondBreak> breaks = simulation_.breaks();
+  double energy = 0;
+  for (const BondBreak& event : breaks) energy += event.energy;
+  out.line("broken bonds")
+      .add("breaks/number", "", breaks.size(), "", {Shown::count})
+      .note(fmt::format(" of {}", simulation_.bonds().size()));
+  for (const auto& [mode, colour] : modes_of_bonds) {
+    out.add(fmt::format("breaks/{}", to_string(mode)), to_string(mode),
+            std::ranges::count(breaks, mode, &BondBreak::mode), "", {Shown::count});
+  }
+  out.set("breaks/energy", energy);
+  if (breaks.empty()) return out;
+  const BondBreak& first = breaks.front();
+  const GrainBond& bond = simulation_.bonds()[first.bond];
+  out.line("", fmt::format("the first, of grains {} and {}, in {}: ", bond.i, bond.j, to_string(first.mode)))
+      .add("breaks/first/time", "", static_cast<double>(first.step) * step_.step, "s")
+      .set("breaks/first/bond", first.bond)
+      .set("breaks/first/mode", to_string(first.mode));
+  return out;
+}
+
+/// breaks.csv, in the order of time; with pictures breaks_plot, their places by mode.
+void GrainRun::write_breaks(const CommonOptions& into) const {
+  if (!case_.scene.strengths) return;
+  const std::filesystem::path& folder = *into.out;
+  const std::vector<BondBreak> breaks = simulation_.breaks();
+  if (case_.output.csv) {
+    Table table;
+    const auto bond = [&](const BondBreak& event) -> const GrainBond& { return simulation_.bonds()[event.bond]; };
+    table.add("step", breaks, &BondBreak::step);
+    table.add("time_s", breaks, [&](const BondBreak& event) { return static_cast<double>(event.step) * step_.step; });
+    table.add("bond", breaks, &BondBreak::bond);
+    table.add("i", breaks, [&](const BondBreak& event) { return bond(event).i; });
+    table.add("j", breaks, [&](const BondBreak& event) { return bond(event).j; });
+    table.add("x_m", breaks, [](const BondBreak& event) { return event.place.x; });
+    table.add("y_m", breaks, [](const BondBreak& event) { return event.place.y; });
+    table.add("mode", breaks, [](const BondBreak& event) { return std::string(to_string(event.mode)); });
+    table.add(std::string("energy_J") + per_depth(case_.body), breaks, &BondBreak::energy);
+    write_csv(folder / "breaks.csv", table, into.overwrite);
+  }
+  if (!case_.output.picture || breaks.empty()) return;
+  Plot plot{.title = case_.title, .x = {.label = "x, m"}, .y = {.label = "y, m"}};
+  for (const auto& [mode, colour] : modes_of_bonds) {
+    Series series{.label = to_string(mode), .style = SeriesStyle::points, .colour = colour};
+    for (const BondBreak& event : breaks) {
+      if (event.mode != mode) continue;
+      series.add(event.place.x, event.place.y);
+    }
+    if (!series.x.empty()) plot.series.push_back(std::move(series));
+  }
+  write_plot(folder, "breaks_plot", plot, into.overwrite);
+}
 
 Results GrainRun::scene() const {
   Results out;
@@ -295,9 +551,7 @@ Results GrainRun::events() const {
     out.set("largest_overlap", nullptr);
   }
   out.set("sweeps", counters.sweeps).set("rebuilds", counters.rebuilds);
-  const std::vector<BondBreak> breaks = simulation_.breaks();
-  add_breaks(out, case_, {simulation_.bonds(), breaks}, step_.step);
-  return out;
+  return out.append(breaks());
 }
 
 Results GrainRun::advice(const Balance& balance) const {

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A run that is ready to start: what bonded discs and colliding bodies each add to the common run.
+/// A run that is ready to start: what bonded discs and colliding bodies each add to the common run; results, the plot,
+/// the histories and the moving picture that are common to all.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/stopwatch.hpp"
+#include "equidem/output/plots/plot.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 
@@ -46,12 +50,10 @@ class RunJob {
   /// Advice on the energy balance.
   [[nodiscard]] virtual Results advice(const Balance& balance) const = 0;
   /// The state at the end, plots, the case. The job and the result must stay where they are.
-  [[nodiscard]] virtual std::vector<OutputPart> parts(const std::filesystem::path& folder, const RunResult& result,
-                                                      bool overwrite) const = 0;
+  [[nodiscard]] virtual std::vector<OutputPart> parts(const RunResult& result) const = 0;
 
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
-  /// The steps and the time that relax() is expected to take.
   /// Relax the scene to rest, the state that parts() then write.
   virtual Results relax(StageTimes& /*times*/) { return {}; }
 };
@@ -62,5 +64,58 @@ class RunJob {
 /// \throws Error (bad_input) as the readers of the cases, the constructors of the runs, and GrainRun::begin_from
 std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from = {});
+
+/// Steps and their estimated wall-clock seconds, bytes per body; the time step. The first steps are performed.
+Results dry_run_results(RunJob& job);
+
+/// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},
+/// particle_steps_per_second, bytes_per_disc or bytes_per_grain, and the results of the job.
+/// \param failed the run did not come to its end: what then cannot be computed is left out
+Results run_results(RunJob& job, const RunPlan& plan, const RunResult& result, bool failed = false);
+
+/// "J per m of depth", "J".
+const char* energy_unit(Body body);
+
+struct EnergyCurve {
+  const char* label;
+  PlotColour colour;
+  double (*value)(const EnergyLedger&);
+};
+/// NAME.{csv,gp,svg,png}: kinetic, elastic, potential and further energies that are not 0 throughout, and the error of
+/// the balance, against time.
+void write_energy_plot(const CommonOptions& into, const std::string& name, const std::string& title, Body body,
+                       std::span<const EnergySample> energies, std::span<const EnergyCurve> further);
+
+/// The folder that the loop of a run writes its tables into: that of --out, or a temporary one.
+class HistoryFolder {
+ public:
+  /// \param temporary whether tables are wanted where there is no --out
+  HistoryFolder(const std::optional<std::filesystem::path>& out, bool temporary);
+  ~HistoryFolder();
+  HistoryFolder(const HistoryFolder&) = delete;
+  HistoryFolder& operator=(const HistoryFolder&) = delete;
+
+  [[nodiscard]] const std::optional<std::filesystem::path>& path() const { return path_; }
+  [[nodiscard]] bool is_temporary() const { return temporary_; }
+  /// The text of history.csv; empty: none was written.
+  [[nodiscard]] std::string history() const;
+  /// history/COLUMN and measures_history/COLUMN of the tables that were written, energies/COLUMN of the samples.
+  [[nodiscard]] std::vector<ResultArray> arrays(const std::vector<EnergySample>& energies, BodyFamily family,
+                                                Body body) const;
+
+ private:
+  std::optional<std::filesystem::path> path_;
+  bool temporary_ = false;
+};
+
+/// The number of frames that a page has room for; 0 where the bodies are too many for any motion to be seen.
+std::int64_t frames_of_film(std::size_t bodies);
+
+/// Add the film to the figures of this thread (DrawnFigures), where it has two frames at least. Displacements of bonded
+/// discs are enlarged where they are too small to be seen, as in write_picture.
+void add_film(const std::string& title, const Assembly& assembly, std::span<const FilmFrame> frames);
+/// \param colours of each grain \param started as GrainAnimation
+void add_film(const GrainCase& resolved, std::span<const Wall> walls, std::span<const int> colours,
+              std::span<const Grain> started, std::span<const FilmFrame> frames);
 
 }  // namespace equidem

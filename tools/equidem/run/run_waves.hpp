@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "equidem/core/matrix.hpp"
-#include "equidem/motion/oscillation.hpp"
 #include "equidem/motion/probe.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"

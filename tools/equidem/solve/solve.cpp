@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// equidem solve: equilibrium under supports and loads, or Abe's tension test.
+#include "solve/solve.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -11,13 +14,176 @@
 #include "equidem/homogenize/stress.hpp"
 
 #include "accuracy.hpp"
-#include "command.hpp"
-#include "problem.hpp"
-#include "solve/solve_results.hpp"
 #include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
+namespace {
+
+/// The stability of the equilibrium, by the inertia of K.
+std::string stability(const Problem& problem, const Equilibrium& result) {
+  if (result.unstable_modes < 0) return stability_not_known;
+  if (result.unstable_modes > 0)
+    return fmt::format(
+        "UNSTABLE: {} beyond one for each rotation; the assembly would give way by so many modes, this "
+        "equilibrium is no state of rest",
+        counted(result.unstable_modes, "negative pivot"));
+  if (result.negative_pivots < 0) return "stable: no spring is negative";
+  if (result.negative_pivots == 0) return "stable: no negative pivot";
+  return fmt::format("stable: {}, one for each rotation{}", counted(result.negative_pivots, "negative pivot"),
+                     problem.springs.springs.any_negative() ? " (kT < 0; static-only)" : "");
+}
+
+void add_stress(Results& out, const SolvedCase& result) {
+  out.line("stress");
+  if (!result.stress) {
+    out.note("not known: the assembly has no cell areas");
+    return;
+  }
+  if (result.empty_cells) {
+    out.note("discs: not known, because the power cell of at least one disc has no area");
+    out.line("");
+  }
+  const Tensor2& s = *result.stress;
+  const double largest = std::max({std::abs(s.xx), std::abs(s.yy), std::abs(s.xy), std::abs(s.yx)});
+  const bool symmetric = std::abs(asymmetry(s)) <= 1e-9 * largest;
+  out.set("stress", voigt_stress(s)).set("stress_tensor", s);
+  out.add("", "", symmetric ? ResultValue(voigt_stress(s)) : ResultValue(s), "Pa", {Shown::components});
+  out.note(", mean over the assembly");
+  if (symmetric) {
+    out.set("stress_asymmetry", asymmetry(s)).set("moment_per_area", result.moment_per_area);
+    return;
+  }
+  out.line("", "not symmetric: ")
+      .add("stress_asymmetry", "xy - yx =", asymmetry(s), "Pa (Abe 1996, eq. 55)")
+      .note(". The moments that restrained rotation, supports and loads put on the discs are ")
+      .add("moment_per_area", "", result.moment_per_area, "N m per m²");
+}
+
+/// The factorization, which all load cases share.
+Results solver_results(const Problem& problem, const Equilibrium& e) {
+  Results out;
+  out.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
+  out.line("solver").add("solver", "", e.solver);
+  if (e.iterations > 0) {
+    out.add("iterations", "", e.iterations, "iteration", {Shown::count}).set("factor_nonzeros", e.factor_nonzeros);
+  } else {
+    out.add("factor_nonzeros", "", e.factor_nonzeros, "entries in the factor", {.digits = 3});
+  }
+  out.add("factor_bytes", "", e.factor_bytes, "", {Shown::bytes});
+  if (e.mechanisms > 0) {
+    out.line("mechanisms")
+        .add("mechanisms", "", e.mechanisms, "motion", {Shown::count})
+        .note(fmt::format(" without energy, on which no load does work: {}{}", e.first_mechanism,
+                          e.mechanisms > 1 ? "; ..." : ""));
+  } else {
+    out.set("mechanisms", e.mechanisms);
+  }
+  out.line("stability", stability(problem, e));
+  out.set("negative_pivots", known(e.negative_pivots)).set("unstable_modes", known(e.unstable_modes));
+  return out.set("pivot_growth", e.pivot_growth);
+}
+
+Results load_case_results(const Problem& problem, const SolvedCase& result, bool show_solver) {
+  const Equilibrium& e = result.equilibrium;
+  const Results solver = solver_results(problem, e);
+  Results out = show_solver ? solver : solver.hidden();
+  if (!result.name.empty()) out.set("case", result.name).block(fmt::format("\nload case {}\n", result.name));
+  out.line("residual")
+      .add("relative_residual", "", e.relative_residual, "relative", {Shown::power, 1})
+      .add("refinements", "after", e.refinements, "step", {Shown::count})
+      .note(" of refinement; ")
+      .add("rounded_residual", "", e.rounded_residual, "for the motions rounded to double", {Shown::power, 1});
+  if (e.condition > 0) {
+    out.line("error bound")
+        .add("error_bound", "", e.error_bound, "of the motions", {Shown::power, 1})
+        .add("condition", "from the residual and a condition of about", e.condition, "", {Shown::power, 1});
+  } else if (e.error_bound > 0) {
+    out.line("error")
+        .add("error_bound", "", e.error_bound, "of the motions in the norm of energy", {Shown::power, 1})
+        .note(", estimated from the iterations");
+  }
+  constexpr double doubtful = 1e-10;
+  if (e.condition > 0 && e.relative_residual > doubtful)
+    out.line("", "WARNING: K is nearly singular; do not trust more digits than the residual leaves");
+  add_deformation(out, result.deformation, true);
+  out.line("energy").add("energy", "", e.energy, "N (J per m of depth, per m)");
+  add_stress(out, result);
+  if (result.tension) out.append(tension_results(problem, *result.tension));
+  return out;
+}
+
+}  // namespace
+
+void add_deformation(Results& out, const LargestDeformation& deformation, bool small_motions) {
+  constexpr double large = 0.05, doubtful = 1e-9;
+  const auto& [most, largest_radius] = deformation;
+  out.line("deformation")
+      .add("largest_deformation", "contacts change by at most", most, "of the sum of their radii", {.digits = 3});
+  if (most > large && small_motions) {
+    out.note(": much, for the motions are taken as small");
+  } else if (most > 0 && most < doubtful) {
+    out.note(fmt::format(
+        ": very little. Radii (up to {:.3g} m), springs (Pa) and loads (N/m, Pa) may be in other units than meant",
+        largest_radius));
+  }
+}
+
+Results tension_results(const Problem& problem, const TensionResult& t) {
+  Results out;
+  const TensionSetup& setup = *problem.tension;
+  const auto theory = tension_theory(problem);
+  const TomlValue& test = *problem.resolved.document.find("test");
+  const auto discs = [](const StrainGauge& gauge) { return std::vector<std::int64_t>{gauge.first, gauge.second}; };
+  out.line("tension test")
+      .add("", "s11 =", t.stress.xx, "Pa")
+      .add("height", "height", setup.height, "m")
+      .note(fmt::format(", gauge \"{}\": discs {}-{} along x, {}-{} along y", test.find("gauge")->text,
+                        setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second));
+  out.set("gauge/placement", to_string(problem.resolved.test->gauge));
+  out.set("gauge/horizontal", discs(setup.horizontal)).set("gauge/vertical", discs(setup.vertical));
+  out.set("strain", t.strain).set("stress", t.stress).set("displacement_gradient", t.fitted_gradient);
+  out.line("  strain")
+      .add("", "e11 =", t.strain.xx, "", {.digits = 9})
+      .add("", "e22 =", t.strain.yy, "", {.digits = 9});
+  const auto compare = [&](const std::string& key, const std::string& name, double value, double expected) {
+    out.line("  " + name).add(key, "", value, "", {.digits = 9});
+    if (!theory) return;
+    out.add("theory/" + key, "theory", expected, "", {.digits = 9})
+        .add("", "difference", value - expected, "", {Shown::power, 2});
+  };
+  compare("poisson_ratio", "nu, (35)", t.poisson_ratio, theory ? theory->poisson_ratio : 0);
+  compare("stiffness_ratio", "2G/((1-nu)kN)", t.stiffness_ratio, theory ? theory->stiffness_ratio : 0);
+  // e11 = s11/E in plane stress, (1 - nu²) s11/E in plane strain
+  const double nu = t.poisson_ratio, fitted = t.fitted_poisson_ratio, young = t.stress.xx / t.strain.xx;
+  out.line("  plane strain")
+      .add("plane_strain/poisson_ratio", "nu =", nu, "", {.digits = 9})
+      .add("plane_strain/young_modulus", "E =", (1 - nu * nu) * young, "Pa", {.digits = 9});
+  out.line("  plane stress")
+      .add("plane_stress/poisson_ratio", "nu =", nu / (1 - nu), "", {.digits = 9})
+      .add("plane_stress/young_modulus", "E =", young, "Pa", {.digits = 9});
+  out.line("  whole field")
+      .add("fitted_poisson_ratio", "nu =", t.fitted_poisson_ratio, "", {.digits = 9})
+      .add("fitted_young_modulus", "E =", (1 - fitted * fitted) * t.stress.xx / t.fitted_gradient.xx, "Pa",
+           {.digits = 9})
+      .note(" in plane strain, fitted to the inner half of the block");
+  return out;
+}
+
+Results solve_results(const Problem& problem, Results out, std::span<const SolvedCase> results) {
+  const Case& resolved = problem.resolved;
+  if (resolved.run || !resolved.schedules.empty()) {
+    out.line("not used",
+             "what belongs to a run: schedules (loads and supports act in full), gravity, walls, velocities, damping");
+  }
+  if (results.size() == 1 && results.front().name.empty())
+    return out.append(load_case_results(problem, results.front(), true));
+  std::vector<Results> cases;
+  for (const SolvedCase& result : results)
+    cases.push_back(load_case_results(problem, result, &result == &results.front()));
+  return out.list("load_cases", std::move(cases));
+}
+
 namespace {
 
 /// End of the names of the files of a load case.
@@ -33,8 +199,9 @@ void check_solution_files(const CommonOptions& options, const Case& resolved) {
   for (const NamedLoads& loads : resolved.load_cases) expect_state(plan, resolved.output, suffix_of(loads.name));
 }
 
-void write_state_of(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
-                    const LoadCase& loads, const SolvedCase& result) {
+void write_state_of(const CommonOptions& options, const Problem& problem, const LoadCase& loads,
+                    const SolvedCase& result) {
+  const OutputCase& wanted = problem.resolved.output;
   const std::vector<ContactForce> forces = forces_in_total(problem, result.equilibrium.contact_forces);
   std::vector<Tensor2> stresses;
   if (cells_hold_area(problem.assembly)) stresses = disc_stresses(problem.assembly, forces);
@@ -55,25 +222,9 @@ void write_state_of(const CommonOptions& options, const OutputCase& wanted, cons
   write_state_picture(options, wanted, suffix_of(result.name), state, picture);
 }
 
-void write_outputs(const CommonOptions& options, const OutputCase& wanted, const Problem& problem,
-                   const std::vector<SolvedCase>& results) {
-  write_assembly(options, wanted, problem.assembly);
-  for (std::size_t k = 0; k < results.size(); ++k)
-    write_state_of(options, wanted, problem, problem.load_cases[k].loads, results[k]);
-  write_case(options, problem.resolved);
-}
-
-/// The worst of all load cases.
-ReachedAccuracy bound_of(const std::vector<SolvedCase>& results, double accuracy, double seconds) {
-  const auto worst = std::max_element(results.begin(), results.end(), [](const SolvedCase& a, const SolvedCase& b) {
-    return a.equilibrium.error_bound < b.equilibrium.error_bound;
-  });
-  return solver_accuracy(accuracy, worst->equilibrium.error_bound, worst->equilibrium.condition, seconds);
-}
-
 /// Solves and delivers; false, and nothing delivered, where the block that the search proposed is too small.
 bool solve_once(const CommonOptions& options, const std::shared_ptr<const Problem>& shared_problem,
-                const std::optional<double>& accuracy, BlockSearch* search) {
+                const std::optional<double>& accuracy, CaseSearch* search) {
   const Problem& problem = *shared_problem;
   EquilibriumOptions solver_options = problem.options();
   solver_options.error_bound = true;
@@ -97,32 +248,32 @@ bool solve_once(const CommonOptions& options, const std::shared_ptr<const Proble
   }
   std::optional<ReachedAccuracy> reached;
   if (search != nullptr) {
-    if (!search->accepts(BlockSearch::values_of(*results.front().tension), times.total())) return false;
-    reached = search->reached();
+    if (!search->accepts(searched_values(*results.front().tension), times.total())) return false;
+    reached = reached_by_block(*search);
   } else if (accuracy) {
-    reached = bound_of(results, *accuracy, times.total());
+    const auto bound = [](const SolvedCase& result) { return result.equilibrium.error_bound; };
+    const Equilibrium& worst = std::ranges::max_element(results, {}, bound)->equilibrium;
+    reached = solver_accuracy(*accuracy, worst.error_bound, worst.condition, times.total());
   }
   Results all = solve_results(problem, problem_results(problem, effects), results);
   if (reached) all.append(accuracy_results(*reached));
-  std::vector<OutputPart> parts;
-  if (options.out) {
-    const OutputCase& wanted = problem.resolved.output;
-    parts.push_back({"case.toml", [&] { write_case(options, problem.resolved); }});
-    parts.push_back({"the assembly", [&] { write_assembly(options, wanted, problem.assembly); }});
-    for (std::size_t k = 0; k < results.size(); ++k)
-      parts.push_back(
-          {"the state", [&, k] { write_state_of(options, wanted, problem, problem.load_cases[k].loads, results[k]); }});
+  std::vector<OutputPart> parts{
+      {"case.toml", [=](const CommonOptions& into) { write_case(into, shared_problem->resolved); }, OutputPart::page},
+      {"the assembly",
+       [&](const CommonOptions& into) { write_assembly(into, problem.resolved.output, problem.assembly); }}};
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const auto write = [=](const CommonOptions& into) {
+      write_state_of(into, *shared_problem, shared_problem->load_cases[k].loads, (*shared_results)[k]);
+    };
+    parts.push_back({"the state", write, OutputPart::page});
   }
-  deliver(options, results.front().status(), std::move(all), std::move(times), parts);
+  deliver(options, status_of(results.front().equilibrium.unstable_modes), std::move(all), std::move(times), parts);
   if (!arrays_wanted()) return true;
   for (const SolvedCase& result : results) {
     hand_over(state_arrays(result.name.empty() ? "" : result.name + "/",
                            std::shared_ptr<const Equilibrium>(shared_results, &result.equilibrium)));
   }
   hand_over(std::shared_ptr<const Assembly>(shared_problem, &problem.assembly));
-  hand_over([shared_problem, shared_results](const CommonOptions& into) {
-    write_outputs(into, pictures_of(shared_problem->resolved.output), *shared_problem, *shared_results);
-  });
   return true;
 }
 
@@ -130,9 +281,9 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   Case resolved = read_case(options);
   check_solution_files(options, resolved);
   const auto lock = lock_out(options);
-  const bool searched = accuracy && BlockSearch::serves(resolved);
+  const bool searched = accuracy && block_can_be_chosen(resolved);
   if (searched && !options.dry_run) {
-    BlockSearch search(options, resolved, *accuracy);
+    CaseSearch search(options, searched_block(resolved, *accuracy));
     while (!solve_once(options, std::make_shared<const Problem>(prestressed(build_problem(search.propose()))), accuracy,
                        &search)) {
     }
@@ -141,7 +292,7 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   const auto problem = std::make_shared<const Problem>(prestressed(build_problem(std::move(resolved))));
   if (options.dry_run) {
     Results further;
-    if (accuracy) further = accuracy_plan(*accuracy, searched ? BlockSearch::plan : bound_is_compared);
+    if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
     deliver(options, "dry_run", dry_run_results(*problem, further), problem->times);
     return 0;
   }

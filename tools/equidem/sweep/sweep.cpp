@@ -2,11 +2,19 @@
 /// \file
 /// equidem sweep: a verb over values of keys and seeds.
 #include <algorithm>
+#include <atomic>
+#include <concepts>
 #include <cstddef>
+#include <exception>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <new>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,19 +25,226 @@
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
+#include "equidem/output/files/csv.hpp"
 #include "equidem/output/page/page.hpp"
+#include "equidem/study/evaluate.hpp"
 
-#include "command.hpp"
-#include "option_checks.hpp"
-#include "sweep/sweep_run.hpp"
+#include "problem.hpp"
+#include "sweep/sweep_plan.hpp"
 #include "sweep/sweep_table.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
 namespace {
+
+struct SweepOptions {
+  CommonOptions common;
+  std::string verb = "solve";
+  std::vector<KeyOptions> keys;
+  std::vector<std::string> seeds;  ///< "1,2,3", "1-5"
+  bool side_by_side = false;
+  std::optional<std::string> title;  ///< of the curves
+  bool resume = false;
+};
+
+/// A sweep whose options are checked.
+struct Sweep {
+  static constexpr const char *table_name = "sweep.csv", *case_name = "case.toml";
+
+  const SweepOptions& options;
+  SweepPlan plan;
+  CaseDocument base;
+
+  /// The verb with the values of a point and further options.
+  [[nodiscard]] VerbRun run_of(const std::vector<std::string>& values, const std::vector<std::string>& further) const;
+};
+
+/// Computes points, several at the same time. Each is computed as the verb alone would do it, so that their numbers do
+/// not depend on how many.
+class SweepRun {
+ public:
+  /// \param kept points of an earlier run; those that failed are computed again
+  SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept);
+
+  /// Computes what is missing: the first point on all threads, the others on one each, as many at a time as there are
+  /// threads and as fit into memory. Saves the table after the first one and then about every second.
+  /// Errors of points become part of them.
+  void operator()();
+
+  [[nodiscard]] bool stopped() const { return stopped_; }  ///< by the user
+  [[nodiscard]] std::size_t done() const { return points_.size(); }
+  [[nodiscard]] double seconds() const { return watch_.seconds(); }
+  /// The points of this run that are done, then those of an earlier one beyond them.
+  [[nodiscard]] std::vector<SweepPoint> points() const;
+  /// Write the table into --out, if there is one.
+  void save() const;
+
+ private:
+  bool compute_next();  ///< false where nothing is left to do
+  [[nodiscard]] std::size_t points_at_once() const;
+  void announce(std::size_t at_once) const;
+
+  const Sweep& sweep_;
+  std::vector<SweepPoint> kept_;
+  std::map<std::size_t, SweepPoint> points_;  ///< done
+  std::vector<std::size_t> missing_;          ///< to be computed at the start of the run
+  std::atomic<std::size_t> next_{0};          ///< position in missing_
+  std::mutex mutex_;                          ///< of what follows, and of points_
+  Progress progress_;
+  SavedOnTheWay saved_;
+  Stopwatch watch_, since_saved_;
+  double save_after_ = 0;  ///< s
+  std::size_t computed_ = 0;
+  bool stopped_ = false;
+};
+
+SweepPoint point_of(const Sweep& sweep, std::size_t number) {
+  SweepPoint point;
+  point.values = sweep.plan.values_of(number);
+  try {
+    const Delivery delivery = sweep.run_of(point.values, {})();
+    point.status = delivery.status;
+    point.numbers = scalar_numbers(delivery.results);
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::interrupted) throw;
+    point.status = "failed";
+    point.message = error.what();
+  } catch (const std::bad_alloc&) {
+    point.status = "failed";
+    point.message = "there is too little memory";
+  } catch (const std::exception& error) {
+    point.status = "failed";
+    point.message = fmt::format("this is a defect of equidem: {}", error.what());
+  }
+  return point;
+}
+
+VerbRun Sweep::run_of(const std::vector<std::string>& values, const std::vector<std::string>& further) const {
+  std::vector<std::string> all = options_of(plan, values, base.document);
+  all.insert(all.end(), further.begin(), further.end());
+  if (options.common.seed) all.insert(all.end(), {"--seed", fmt::format("{}", *options.common.seed)});
+  if (options.common.quiet) all.emplace_back("--quiet");
+  return {plan.verb, options.common.case_file, options.common.set, all};
+}
+
+SweepRun::SweepRun(const Sweep& sweep, std::vector<SweepPoint> kept)
+    : sweep_(sweep), kept_(std::move(kept)), progress_("sweeping " + sweep.plan.names()), saved_(sweep.options.common) {
+  std::map<std::vector<std::string>, const SweepPoint*> known;
+  for (const SweepPoint& point : kept_)
+    if (!point.failed()) known.emplace(point.values, &point);
+  for (std::size_t k = 0; k < sweep.plan.size(); ++k) {
+    const auto found = known.empty() ? known.end() : known.find(sweep.plan.values_of(k));
+    found != known.end() ? void(points_[k] = *found->second) : missing_.push_back(k);
+  }
+}
+
+void SweepRun::operator()() {
+  const SharedAssemblies shared;
+  const auto compute_all = [&](std::size_t, int) {
+    while (compute_next()) {
+    }
+  };
+  try {
+    progress_.update(0);
+    if (!missing_.empty()) compute_next();
+    const std::size_t at_once = points_at_once();
+    announce(at_once);
+    at_once == 1 ? compute_all(0, 0) : parallel_tasks(at_once, compute_all);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) throw;
+    stopped_ = true;
+  }
+}
+
+std::vector<SweepPoint> SweepRun::points() const {
+  std::vector<SweepPoint> all;
+  std::set<std::vector<std::string>> own;
+  for (const auto& [k, point] : points_) {
+    all.push_back(point);
+    all.back().number = static_cast<std::int64_t>(k) + 1;
+    if (!kept_.empty()) own.insert(point.values);
+  }
+  auto number = static_cast<std::int64_t>(sweep_.plan.size());
+  for (const SweepPoint& point : kept_) {
+    if (own.contains(point.values)) continue;
+    all.push_back(point);
+    all.back().number = ++number;
+  }
+  return all;
+}
+
+void SweepRun::save() const {
+  const auto& folder = sweep_.options.common.out;
+  if (folder) write_samples(*folder / Sweep::table_name, sweep_table(sweep_.plan, points()));
+}
+
+bool SweepRun::compute_next() {
+  const std::size_t k = next_++;
+  if (k >= missing_.size()) return false;
+  SweepPoint point = point_of(sweep_, missing_[k]);
+  const std::lock_guard lock(mutex_);
+  points_[missing_[k]] = std::move(point);
+  ++computed_;
+  if (since_saved_.seconds() >= save_after_) {
+    const Stopwatch saving;
+    saved_([&] { save(); });
+    save_after_ = std::max(1.0, 20 * saving.seconds());
+    since_saved_.lap();
+  }
+  progress_.update(static_cast<double>(computed_) / static_cast<double>(missing_.size()));
+  return true;
+}
+
+std::size_t SweepRun::points_at_once() const {
+  const double most = std::min({static_cast<double>(thread_count()), 1 + available_memory() / peak_resident_memory(),
+                                static_cast<double>(missing_.size()) - static_cast<double>(computed_)});
+  return static_cast<std::size_t>(std::max(1.0, most));
+}
+
+void SweepRun::announce(std::size_t at_once) const {
+  constexpr double least_told = 3;  // s
+  const double left =
+      watch_.seconds() * static_cast<double>(missing_.size() - computed_) / static_cast<double>(at_once);
+  if (computed_ == 0 || left < least_told) return;
+  say(sweep_.options.common,
+      fmt::format("sweeping {}: {}, {} at a time on {}, about {}", sweep_.plan.names(),
+                  counted(std::ssize(missing_), "point"), at_once,
+                  at_once == 1 ? counted(thread_count(), "thread") : "one thread each", readable_seconds(left)));
+}
+
+/// The dry run of the first of some points that can be computed, with its number; none where no one of them can.
+std::optional<std::pair<std::size_t, Delivery>> first_dry_run(const Sweep& sweep) {
+  constexpr std::size_t most = 20;
+  for (std::size_t point = 0; point < std::min(sweep.plan.size(), most); ++point) {
+    try {
+      return std::pair(point, sweep.run_of(sweep.plan.values_of(point), {"--dry-run"})());
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::interrupted) throw;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Delivers the number of points and the dry run of the first that can be computed.
+/// \param results of the keys, which the others follow
+int dry_run_sweep(const Sweep& sweep, Results results) {
+  const SweepPlan& plan = sweep.plan;
+  const SharedAssemblies shared;
+  results.set("number_of_points", plan.size(), "", "number of points");
+  const auto first = first_dry_run(sweep);
+  results.block(fmt::format("{} of {}{}\n\n", counted(static_cast<long long>(plan.size()), "point"), plan.names(),
+                            first ? fmt::format("; point {}:", first->first + 1) : ""));
+  if (first) results.append(first->second.results);
+  deliver(sweep.options.common, "dry_run", results, first ? first->second.times : StageTimes{});
+  return 0;
+}
 
 /// First line of the case that is written, which tells sweeps by different verbs apart.
 std::string heading_of(const Sweep& sweep) {
@@ -132,12 +347,10 @@ std::vector<SweepPoint> points_to_keep(const Sweep& sweep) {
 }
 
 void check_outputs(const Sweep& sweep) {
-  CommonOptions common = sweep.options.common;
-  common.overwrite = common.overwrite || sweep.options.resume;
-  const OutputPlan plan(common);
+  const OutputPlan plan(sweep.options.common, sweep.options.resume);
   for (const char* name : {Sweep::table_name, Sweep::case_name, "result.json", page_name}) plan.expect(name);
   for (const std::string& name : curve_names(sweep.plan)) plan.expect_plot(name);
-  OutputPlan(sweep.options.common).expect_json();
+  plan.expect_json();
 }
 
 /// None where one of them is no such number.
@@ -232,11 +445,11 @@ int sweep(const SweepOptions& options) {
     results.block(fmt::format("INCOMPLETE: stopped after {} of {} points\n", run.done(), sweep.plan.size()));
   StageTimes times;
   times.add("points", run.seconds());
-  std::vector<OutputPart> parts;
-  if (folder) parts.push_back({Sweep::table_name, [&] { run.save(); }});
-  if (folder && !run.stopped())
-    parts.push_back(
-        {"the curves", [&] { write_curves(*folder, sweep.plan, points, options.title.value_or(sweep.base.title)); }});
+  std::vector<OutputPart> parts{{Sweep::table_name, [&](const CommonOptions& /*into*/) { run.save(); }}};
+  if (!run.stopped())
+    parts.push_back({"the curves", [&](const CommonOptions& into) {
+                       write_curves(*into.out, sweep.plan, points, options.title.value_or(sweep.base.title));
+                     }});
   deliver(options.common,
           run.stopped() ? "interrupted"
           : all_failed  ? "failed"
@@ -272,25 +485,20 @@ void add_key_options(CLI::App& command, const std::shared_ptr<SweepOptions>& opt
           "combinations")
       ->trigger_on_parse()
       ->type_name("KEY");
-  command
-      .add_option_function<double>(
-          "--from", [options](double from) { current_key(*options).from = from; }, "first value")
-      ->trigger_on_parse()
-      ->check(finite_number())
-      ->type_name("A");
-  command
-      .add_option_function<double>(
-          "--to", [options](double to) { current_key(*options).to = to; }, "last value")
-      ->trigger_on_parse()
-      ->check(finite_number())
-      ->type_name("B");
-  command
-      .add_option_function<int>(
-          "--steps", [options](int steps) { current_key(*options).steps = steps; },
-          "number of values from A to B; 11 where left out")
-      ->trigger_on_parse()
-      ->check(whole_number(1, 1000000))
-      ->type_name("N");
+  const auto add_number = [&](const char* name, const char* type, auto member, const OptionCheck& check,
+                              const char* help) {
+    using OptionValue = std::conditional_t<std::same_as<decltype(member), int KeyOptions::*>, int, double>;
+    command
+        .add_option_function<OptionValue>(
+            name, [options, member](OptionValue value) { current_key(*options).*member = value; }, help)
+        ->trigger_on_parse()
+        ->check(check)
+        ->type_name(type);
+  };
+  add_number("--from", "A", &KeyOptions::from, finite_number(), "first value");
+  add_number("--to", "B", &KeyOptions::to, finite_number(), "last value");
+  add_number("--steps", "N", &KeyOptions::steps, whole_number(1, 1000000),
+             "number of values from A to B; 11 where left out");
   command
       .add_option_function<std::vector<std::string>>(
           "--values",

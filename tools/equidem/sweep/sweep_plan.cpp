@@ -126,14 +126,6 @@ void check_lists(const SweepPlan& plan) {
   }
 }
 
-void check_size(const SweepPlan& plan) {
-  double points = 1;
-  for (const SweptKey& key : plan.keys)
-    if (!plan.side_by_side || &key == plan.keys.data() || key.name == SweepPlan::seed)
-      points *= static_cast<double>(key.values.size());
-  check_points(points);
-}
-
 /// [springs] with kT at the given ratio to kN, whatever file they were read from.
 std::string springs_of_ratio(const TomlValue& base, const std::string& ratio) {
   const TomlValue& springs = *base.find("springs");
@@ -161,10 +153,10 @@ ResultValue SweptKey::shown(const std::string& value) {
   return value;
 }
 
-std::size_t SweepPlan::size() const {
-  std::size_t points = 1;
+double SweepPlan::points() const {
+  double points = 1;
   for (const SweptKey& key : keys)
-    if (!side_by_side || &key == keys.data() || key.name == seed) points *= key.values.size();
+    if (!side_by_side || &key == keys.data() || key.name == seed) points *= static_cast<double>(key.values.size());
   return points;
 }
 
@@ -196,7 +188,7 @@ SweepPlan sweep_plan(const std::string& verb, const std::vector<KeyOptions>& key
       bad_input(fmt::format("the key {} is given twice", key.name), "one point has one value of it",
                 "Put all its values into one --values");
   check_lists(plan);
-  check_size(plan);
+  check_points(plan.points());
   return plan;
 }
 

@@ -44,7 +44,8 @@ struct SweepPlan {
   bool side_by_side = false;
   std::vector<std::string> waves = {};  ///< probes of a run whose standing waves are measured
 
-  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] double points() const;  ///< their number, of a plan that may have too many
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(points()); }
   /// One value for each key.
   [[nodiscard]] std::vector<std::string> values_of(std::size_t point) const;
   [[nodiscard]] bool has_seeds() const { return keys.back().name == seed; }

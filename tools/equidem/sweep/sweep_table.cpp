@@ -21,88 +21,44 @@ constexpr const char* number_name = "point";
 constexpr const char* label_of_number = "number of the point";
 
 const MainQuantity all_main_quantities[] = {
-    {.verb = "solve",
-     .path = "poisson_ratio",
-     .heading = "nu",
-     .axis = "Poisson's ratio ν (plane strain)",
-     .theory = "theory/poisson_ratio"},
-    {.verb = "solve",
-     .path = "stiffness_ratio",
-     .heading = "2G/((1-nu)kN)",
-     .axis = "2G/((1 - ν) k_N)",
-     .theory = "theory/stiffness_ratio"},
-    {.verb = "solve", .path = "theory/poisson_ratio", .heading = "nu theory"},
-    {.verb = "solve", .path = "theory/stiffness_ratio", .heading = "2G/((1-nu)kN) theory"},
-    {.verb = "solve",
-     .path = "plane_strain/young_modulus",
-     .heading = "E strain",
-     .axis = "Young's modulus E (plane strain), Pa"},
-    {.verb = "solve", .path = "energy", .heading = "energy"},
-    {.verb = "solve", .path = "relative_residual", .heading = "residual", .shown = Shown::power, .digits = 1},
-    {.verb = "solve", .path = "unstable_modes", .heading = "unstable"},
-    {.verb = "homogenize",
-     .path = "young_modulus/plane_strain",
-     .heading = "E strain",
-     .axis = "Young's modulus E (plane strain), Pa"},
-    {.verb = "homogenize",
-     .path = "poisson_ratio/plane_strain",
-     .heading = "nu strain",
-     .axis = "Poisson's ratio ν (plane strain)"},
-    {.verb = "homogenize", .path = "bulk_modulus_2d", .heading = "K"},
-    {.verb = "homogenize", .path = "shear_modulus", .heading = "G", .axis = "shear modulus G, Pa"},
-    {.verb = "homogenize", .path = "anisotropy", .heading = "anisotropy", .digits = 3},
-    {.verb = "homogenize",
-     .path = "ensemble/0/bulk_modulus_2d/mean",
-     .heading = "mean K",
-     .axis = "bulk modulus K, mean of the ensemble, Pa"},
-    {.verb = "homogenize",
-     .path = "ensemble/0/shear_modulus/mean",
-     .heading = "mean G",
-     .axis = "shear modulus G, mean of the ensemble, Pa"},
-    {.verb = "calibrate", .path = "kN", .heading = "kN", .axis = "k_N, Pa"},
-    {.verb = "calibrate", .path = "kT", .heading = "kT"},
-    {.verb = "calibrate", .path = "ratio", .heading = "kT/kN", .axis = "k_T/k_N"},
-    {.verb = "calibrate",
-     .path = "achieved/relative_error",
-     .heading = "relative error",
-     .shown = Shown::power,
-     .digits = 1},
-    {.verb = "stability", .path = "critical_ratio", .heading = "critical kT/kN", .axis = "critical k_T/k_N"},
-    {.verb = "stability", .path = "omega_max", .heading = "omega_max"},
-    {.verb = "stability", .path = "critical_time_step", .heading = "critical step", .axis = "critical time step, s"},
-    {.verb = "pack", .path = "solid_fraction", .heading = "solid fraction", .axis = "solid fraction"},
-    {.verb = "pack", .path = "void_ratio", .heading = "void ratio", .axis = "void ratio"},
-    {.verb = "pack", .path = "coordination_number", .heading = "z", .axis = "mean number of contacts"},
-    {.verb = "pack", .path = "rattlers", .heading = "rattlers"},
-    {.verb = "pack", .path = "bonds", .heading = "bonds"},
-    {.verb = "run",
-     .path = "waves/*/speed",
-     .heading = "speed of *",
-     .axis = "speed of wave *, m/s",
-     .theory = "waves/*/theory/speed"},
-    {.verb = "run",
-     .path = "waves/*/speed_over_theory",
-     .heading = "over theory",
-     .axis = "speed of wave * over that of theory"},
-    {.verb = "run",
-     .path = "plane_strain/young_modulus",
-     .heading = "E strain",
-     .axis = "Young's modulus E (plane strain), Pa"},
-    {.verb = "run",
-     .path = "plane_strain/poisson_ratio",
-     .heading = "nu strain",
-     .axis = "Poisson's ratio ν (plane strain)"},
-    {.verb = "run", .path = "steps", .heading = "steps"},
-    {.verb = "run", .path = "time_step", .heading = "time step"},
-    {.verb = "run", .path = "energy/kinetic", .heading = "kinetic energy", .axis = "kinetic energy"},
-    {.verb = "run", .path = "energy/dissipated", .heading = "lost energy", .axis = "energy lost"},
-    {.verb = "run", .path = "energy/relative_error", .heading = "energy error", .shown = Shown::power, .digits = 1},
-    {.verb = "run", .path = "measures/void_ratio/after", .heading = "void ratio", .axis = "void ratio at the end"},
-    {.verb = "run",
-     .path = "relative_unbalanced_force",
-     .heading = "unbalanced force",
-     .shown = Shown::power,
-     .digits = 1},
+    {"solve", "poisson_ratio", "nu", "Poisson's ratio ν (plane strain)", "theory/poisson_ratio"},
+    {"solve", "stiffness_ratio", "2G/((1-nu)kN)", "2G/((1 - ν) k_N)", "theory/stiffness_ratio"},
+    {"solve", "theory/poisson_ratio", "nu theory"},
+    {"solve", "theory/stiffness_ratio", "2G/((1-nu)kN) theory"},
+    {"solve", "plane_strain/young_modulus", "E strain", "Young's modulus E (plane strain), Pa"},
+    {"solve", "energy", "energy"},
+    {"solve", "relative_residual", "residual", "", "", {Shown::power, 1}},
+    {"solve", "unstable_modes", "unstable"},
+    {"homogenize", "young_modulus/plane_strain", "E strain", "Young's modulus E (plane strain), Pa"},
+    {"homogenize", "poisson_ratio/plane_strain", "nu strain", "Poisson's ratio ν (plane strain)"},
+    {"homogenize", "bulk_modulus_2d", "K"},
+    {"homogenize", "shear_modulus", "G", "shear modulus G, Pa"},
+    {"homogenize", "anisotropy", "anisotropy", "", "", {Shown::number, 3}},
+    {"homogenize", "ensemble/0/bulk_modulus_2d/mean", "mean K", "bulk modulus K, mean of the ensemble, Pa"},
+    {"homogenize", "ensemble/0/shear_modulus/mean", "mean G", "shear modulus G, mean of the ensemble, Pa"},
+    {"calibrate", "kN", "kN", "k_N, Pa"},
+    {"calibrate", "kT", "kT"},
+    {"calibrate", "ratio", "kT/kN", "k_T/k_N"},
+    {"calibrate", "achieved/relative_error", "relative error", "", "", {Shown::power, 1}},
+    {"stability", "critical_ratio", "critical kT/kN", "critical k_T/k_N"},
+    {"stability", "omega_max", "omega_max"},
+    {"stability", "critical_time_step", "critical step", "critical time step, s"},
+    {"pack", "solid_fraction", "solid fraction", "solid fraction"},
+    {"pack", "void_ratio", "void ratio", "void ratio"},
+    {"pack", "coordination_number", "z", "mean number of contacts"},
+    {"pack", "rattlers", "rattlers"},
+    {"pack", "bonds", "bonds"},
+    {"run", "waves/*/speed", "speed of *", "speed of wave *, m/s", "waves/*/theory/speed"},
+    {"run", "waves/*/speed_over_theory", "over theory", "speed of wave * over that of theory"},
+    {"run", "plane_strain/young_modulus", "E strain", "Young's modulus E (plane strain), Pa"},
+    {"run", "plane_strain/poisson_ratio", "nu strain", "Poisson's ratio ν (plane strain)"},
+    {"run", "steps", "steps"},
+    {"run", "time_step", "time step"},
+    {"run", "energy/kinetic", "kinetic energy", "kinetic energy"},
+    {"run", "energy/dissipated", "lost energy", "energy lost"},
+    {"run", "energy/relative_error", "energy error", "", "", {Shown::power, 1}},
+    {"run", "measures/void_ratio/after", "void ratio", "void ratio at the end"},
+    {"run", "relative_unbalanced_force", "unbalanced force", "", "", {Shown::power, 1}},
 };
 
 std::string key_column(const SweptKey& key) {
@@ -215,8 +171,7 @@ std::vector<Results> sweep_rows(const SweepPlan& plan, std::span<const SweepPoin
     }
     row.add("status", "status", point.status);
     for (const auto& [quantity, unit] : shown)
-      if (!point.failed())
-        row.add("", quantity.heading, point.at(quantity.path), unit, {quantity.shown, quantity.digits});
+      if (!point.failed()) row.add("", quantity.heading, point.at(quantity.path), unit, quantity.shown);
     for (const ScalarNumber& number : point.numbers) {
       const auto meaning = meaning_of(number.path);
       row.set(number.path, SweptKey::shown(number.text), number.unit, meaning ? meaning->label : "");
@@ -269,10 +224,7 @@ std::vector<std::pair<std::string, Curve>> curves_of(const SweepPlan& plan, std:
 Series series_at(const std::map<double, std::vector<double>>& values, Series series, bool mean = false) {
   for (const auto& [x, all] : values) {
     const double sum = std::accumulate(all.begin(), all.end(), 0.0);
-    for (const double y : mean ? std::vector{sum / static_cast<double>(all.size())} : all) {
-      series.x.push_back(x);
-      series.y.push_back(y);
-    }
+    for (const double y : mean ? std::vector{sum / static_cast<double>(all.size())} : all) series.add(x, y);
   }
   return series;
 }

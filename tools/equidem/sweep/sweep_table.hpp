@@ -44,8 +44,7 @@ struct MainQuantity {
   std::string heading;      ///< in the report
   std::string axis = "";    ///< label of the curve; empty: not drawn
   std::string theory = "";  ///< path of the number that theory gives
-  Shown::As shown = Shown::As::number;
-  int digits = 8;
+  Shown shown = {.digits = 8};
 };
 std::vector<MainQuantity> main_quantities(const SweepPlan& plan);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
-#include <functional>
 
 #include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/assembly/import/text_lines.hpp"

@@ -11,9 +11,8 @@
 
 #include "equidem/assembly/least_rectangle.hpp"
 #include "equidem/assembly/power_cells.hpp"
-#include "equidem/breakage/notch.hpp"
+#include "equidem/breakage/strengths.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -91,19 +90,18 @@ SampleStrength StrengthSample::strength(StrengthTestKind kind, const ContactStre
   const Effects effects = derive_effects(assembly_, springs_, options_.rotation);
   const LoadPath path = make_load_path(assembly_, springs_, effects, wanted);
   const BreakageScene scene{assembly_, springs_, strengths, path};
-  const auto system = make_breakable_system(breakable_network(scene, effects, wanted.supports, options_.solver));
+  BreakableSystem system(breakable_network(scene, effects, wanted.supports, options_.solver));
   if (notch) {
     if (!(*notch < width_))
       bad_input(fmt::format("a notch of {:g} m in a sample of {:g} m", *notch, width_), "it would cut it in two",
                 "Give a shorter one");
     const Notch line = middle_notch(assembly_, axis, *notch);
-    system->remove(contacts_across(assembly_, {&line, 1}));
+    system.remove(contacts_across(assembly_, {&line, 1}));
   }
-  BreakageRun run(scene, *system);
+  BreakageRun run(scene, system);
   double peak = 0;
   bool fallen = false;
   while (!fallen && run.advance()) {
-    stop_if_interrupted();
     peak = std::max(peak, run.events().back().load);
     fallen = NetworkResponse::at(run.response().load, run.lambda()) <= options_.fallen_to * peak;
   }

@@ -77,24 +77,13 @@ NextContactEvent next_contact_event(const UnbondedState& state, std::span<const 
     }
   }
   NextContactEvent next;
-  for (std::size_t c = 0; c < times.size(); ++c) {
-    if (times[c] < next.t) next.t = times[c];
-  }
+  for (const double t : times) next.t = std::min(next.t, t);
   if (next.t == never) return next;
-  bool first = true;
-  double second = never;
-  for (std::size_t c = 0; c < times.size(); ++c) {
-    if (times[c] > next.t * (1 + same_time)) {
-      second = std::min(second, times[c]);
-    } else if (first) {
-      next.contact = c;
-      next.breaks = modes[c];
-      first = false;
-    } else {
-      ++next.ties;
-    }
-  }
-  next.gap = next.t > 0 ? second / next.t - 1 : second;
+  const TiedKeys ties = tied_keys(times, next.t * (1 + same_time));
+  next.contact = ties.first;
+  next.breaks = modes[ties.first];
+  next.ties = ties.others;
+  next.gap = next.t > 0 ? ties.beyond / next.t - 1 : ties.beyond;
   return next;
 }
 

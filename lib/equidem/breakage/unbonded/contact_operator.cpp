@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/SparseCore>
 
 namespace equidem {
 namespace {
@@ -30,47 +29,7 @@ ContactOperator::ContactOperator(const Assembly& assembly, const DegreesOfFreedo
     rows_.push_back({static_cast<std::size_t>(contact.i) * b, static_cast<std::size_t>(contact.j) * b,
                      deformation_gradient(frame_of(assembly_, c), unknowns_.rotation_scale)});
   }
-  lay_out();
-}
-
-void ContactOperator::lay_out() {
-  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  std::vector<std::int64_t> column_of(components(), -1);
-  for (std::size_t k = 0; k < components(); ++k) {
-    if (unknowns_.held[k] != 0) continue;
-    column_of[k] = pattern_.size++;
-    pattern_.component.push_back(static_cast<std::int64_t>(k));
-  }
-  const auto at = [&](const Rows& rows, std::size_t k) { return column_of[k < b ? rows.i + k : rows.j + k - b]; };
-  std::vector<std::vector<std::int64_t>> rows_of(static_cast<std::size_t>(pattern_.size));
-  for (std::size_t c = 0; c < rows_of.size(); ++c) rows_of[c].push_back(static_cast<std::int64_t>(c));
-  for (const Rows& rows : rows_) {
-    for (std::size_t p = 0; p < 2 * b; ++p) {
-      for (std::size_t q = 0; q < 2 * b; ++q) {
-        if (at(rows, p) >= 0 && at(rows, q) >= 0) rows_of[static_cast<std::size_t>(at(rows, q))].push_back(at(rows, p));
-      }
-    }
-  }
-  pattern_.first.push_back(0);
-  for (auto& rows : rows_of) {
-    std::ranges::sort(rows);
-    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-    pattern_.rows.insert(pattern_.rows.end(), rows.begin(), rows.end());
-    pattern_.first.push_back(static_cast<std::int64_t>(pattern_.rows.size()));
-  }
-  const auto place = [&](std::int64_t row, std::int64_t column) {
-    if (row < 0 || column < 0) return std::int64_t{-1};
-    const auto begin = pattern_.rows.begin() + pattern_.first[static_cast<std::size_t>(column)];
-    const auto end = pattern_.rows.begin() + pattern_.first[static_cast<std::size_t>(column) + 1];
-    return std::lower_bound(begin, end, row) - pattern_.rows.begin();
-  };
-  for (std::int64_t c = 0; c < pattern_.size; ++c) diagonal_.push_back(place(c, c));
-  places_.reserve(rows_.size() * 4 * b * b);
-  for (const Rows& rows : rows_) {
-    for (std::size_t q = 0; q < 2 * b; ++q) {
-      for (std::size_t p = 0; p < 2 * b; ++p) places_.push_back(place(at(rows, p), at(rows, q)));
-    }
-  }
+  for (const std::uint8_t held : unknowns_.held) column_.push_back(held != 0 ? -1 : columns_++);
 }
 
 ContactDeformation ContactOperator::deformation(std::size_t contact, std::span<const double> motion) const {
@@ -105,20 +64,29 @@ void ContactOperator::add_internal(std::size_t contact, const ContactForce& forc
 
 CompressedColumns ContactOperator::matrix(std::span<const ContactTangent> tangents, double ground) const {
   const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-  CompressedColumns k = pattern_;
-  k.values.assign(k.rows.size(), 0.0);
-  for (const std::int64_t place : diagonal_) k.values[static_cast<std::size_t>(place)] += ground;
+  std::vector<Eigen::Triplet<double, std::int64_t>> entries;
+  entries.reserve(static_cast<std::size_t>(columns_) + rows_.size() * 4 * b * b);
+  for (std::int64_t c = 0; c < columns_; ++c) entries.emplace_back(c, c, ground);
   for (std::size_t c = 0; c < rows_.size(); ++c) {
-    const ContactTangent& a = tangents[c];
-    if (a == ContactTangent{}) continue;
     const FlatRows rows(rows_[c].by, b);
-    const std::int64_t* place = &places_[c * 4 * b * b];
+    const auto column = [&](std::size_t k) { return column_[k < b ? rows_[c].i + k : rows_[c].j + k - b]; };
     for (std::size_t q = 0; q < 2 * b; ++q) {
-      const auto [n, t] = a.rate({rows.normal[q], rows.tangential[q]});
-      for (std::size_t p = 0; p < 2 * b; ++p, ++place) {
-        if (*place >= 0) k.values[static_cast<std::size_t>(*place)] += rows.normal[p] * n + rows.tangential[p] * t;
+      const auto [n, t] = tangents[c].rate({rows.normal[q], rows.tangential[q]});
+      for (std::size_t p = 0; p < 2 * b; ++p) {
+        if (column(p) >= 0 && column(q) >= 0)
+          entries.emplace_back(column(p), column(q), rows.normal[p] * n + rows.tangential[p] * t);
       }
     }
+  }
+  Eigen::SparseMatrix<double, Eigen::ColMajor, std::int64_t> sum(columns_, columns_);
+  sum.setFromTriplets(entries.begin(), entries.end());
+  CompressedColumns k{.size = columns_,
+                      .first = {sum.outerIndexPtr(), sum.outerIndexPtr() + columns_ + 1},
+                      .rows = {sum.innerIndexPtr(), sum.innerIndexPtr() + sum.nonZeros()},
+                      .values = {sum.valuePtr(), sum.valuePtr() + sum.nonZeros()},
+                      .component = {}};
+  for (std::size_t c = 0; c < column_.size(); ++c) {
+    if (column_[c] >= 0) k.component.push_back(static_cast<std::int64_t>(c));
   }
   return k;
 }

@@ -42,14 +42,12 @@ class ContactOperator {
     std::size_t i, j;  // first components
     DeformationGradient by;
   };
-  void lay_out();
 
   const Assembly& assembly_;
   const DegreesOfFreedom& unknowns_;
   std::vector<Rows> rows_;
-  CompressedColumns pattern_;           // without values
-  std::vector<std::int64_t> diagonal_;  // places of the diagonal in the values
-  std::vector<std::int64_t> places_;    // per contact, (2b)² places of its entries, by columns; -1: held
+  std::vector<std::int64_t> column_;  // of the matrix, per component; -1: held
+  std::int64_t columns_ = 0;
 };
 
 }  // namespace equidem

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -13,85 +14,24 @@
 namespace equidem {
 namespace {
 
-/// The residual of the rates: what drives less what contacts take.
-class RateResidual {
- public:
-  RateResidual(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const Driving& driving)
-      : contacts_(contacts), tangents_(tangents), driving_(driving) {}
-
-  /// \return its largest component over the largest rate of a force
-  double evaluate(Rates& rates, std::vector<double>& residual) const {
-    const auto& held = contacts_.unknowns().held;
-    const std::vector<double>& load = driving_.pattern->force;
-    std::vector<double> internal(contacts_.components(), 0.0);
-    rates.force_scale = 0;
-    double stiffest = 0, fastest = 0;
-    for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
-    rates.deformation.resize(contacts_.contacts());
-    for (std::size_t c = 0; c < contacts_.contacts(); ++c) {
-      ContactDeformation d = contacts_.deformation(c, rates.motion);
-      if (!driving_.affine.empty()) {
-        d.normal += rates.lambda * driving_.affine[c].normal;
-        d.tangential += rates.lambda * driving_.affine[c].tangential;
-        fastest = std::max({fastest, std::abs(d.normal), std::abs(d.tangential)});
-      }
-      rates.deformation[c] = d;
-      stiffest = std::max(stiffest, tangents_[c].nn);
-      const ContactForce f = tangents_[c].rate(d);
-      if (f.normal == 0 && f.tangential == 0) continue;
-      rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
-      contacts_.add_internal(c, f, internal);
-    }
-    double sum = 0;
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      residual[k] = 0;
-      if (held[k] != 0) continue;
-      const double from_load = load.empty() ? 0 : rates.lambda * load[k];
-      const double beside = driving_.beside.empty() ? 0 : driving_.beside[k];
-      rates.force_scale = std::max({rates.force_scale, std::abs(from_load), std::abs(beside)});
-      residual[k] = from_load + beside - internal[k];
-      sum = std::max(sum, std::abs(residual[k]));
-    }
-    // Forces that no more than the rounding of motions leaves are none.
-    const double none = rounded_motion * stiffest * fastest;
-    rates.force_scale = std::max(rates.force_scale, none);
-    rates.round_off = none;
-    if (sum <= none) return 0;
-    return rates.force_scale > 0 ? sum / rates.force_scale : 0;
-  }
-
- private:
-  const ContactOperator& contacts_;
-  std::span<const ContactTangent> tangents_;
-  const Driving& driving_;
-};
-
 constexpr double balanced = 1e-11, refined = 1e-14;
 constexpr int most_refinements = 40;
 
 /// \return the residual that is left
-double refine(const ContactOperator& contacts, const RateResidual& residual_of, const TangentSolver& solver,
+double refine(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const TangentSolver& solver,
               const Driving& driving, Rates& rates) {
   const std::vector<double>& load = driving.pattern->force;
-  std::vector<double> residual(rates.motion.size()), along;
-  double along_load = 0;
-  if (driving.by_motion) {
-    along = load;
-    for (std::size_t k = 0; k < along.size(); ++k) along[k] = contacts.unknowns().held[k] != 0 ? 0 : along[k];
-    solver.solve(along);
-    along_load = dot(load, along);
-  }
-  double left = residual_of.evaluate(rates, residual);
+  std::vector<double> residual(rates.motion.size());
+  std::optional<MotionControl> control;
+  if (driving.by_motion) control.emplace(contacts, solver, load);
+  double left = residual_of(contacts, tangents, driving, rates, residual);
   Rates best = rates;
   for (int k = 0; k < most_refinements; ++k) {
-    const double missing = driving.by_motion ? driving.rate - dot(load, rates.motion) : 0;
     if (k > 0 && left <= refined) break;
     solver.solve(residual);
-    const double lambda = driving.by_motion ? (missing - dot(load, residual)) / along_load : 0;
-    rates.lambda += lambda;
-    for (std::size_t m = 0; m < residual.size(); ++m)
-      rates.motion[m] += residual[m] + (driving.by_motion ? lambda * along[m] : 0);
-    const double now = residual_of.evaluate(rates, residual);
+    if (control) rates.lambda += control->hold(residual, driving.rate - dot(load, rates.motion));
+    for (std::size_t m = 0; m < residual.size(); ++m) rates.motion[m] += residual[m];
+    const double now = residual_of(contacts, tangents, driving, rates, residual);
     if (k > 1 && !(now < 0.8 * left)) {
       if (now < left) best = rates, left = now;
       break;
@@ -100,16 +40,17 @@ double refine(const ContactOperator& contacts, const RateResidual& residual_of, 
     best = rates;
   }
   rates = std::move(best);
-  if (!driving.by_motion || driving.rate == 0) return left;
+  if (!control || driving.rate == 0) return left;
   // Where nothing resists the motion no load drives it: lambda is what refinement has left of the load that the springs
   // of the ground would take, with a residual that does its work.
-  residual_of.evaluate(rates, residual);
+  residual_of(contacts, tangents, driving, rates, residual);
   double lost = 0;
   for (std::size_t k = 0; k < residual.size(); ++k) lost += std::abs(residual[k] * rates.motion[k]);
-  const double power = std::abs(rates.lambda * driving.rate), by_ground = squared(driving.rate) / std::abs(along_load);
+  const double power = std::abs(rates.lambda * driving.rate),
+               by_ground = squared(driving.rate) / std::abs(control->work());
   if (power <= 10 * lost || power <= 1e-6 * by_ground) {
     rates.lambda = 0;
-    left = residual_of.evaluate(rates, residual);
+    left = residual_of(contacts, tangents, driving, rates, residual);
   }
   return left;
 }
@@ -161,21 +102,82 @@ bool agree_with_rates(const RateProblem& problem, RateAnswer& answer) {
 
 }  // namespace
 
-Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
-               const Driving& driving) {
-  const RateResidual residual_of(contacts, tangents, driving);
+MotionControl::MotionControl(const ContactOperator& contacts, const TangentSolver& solver, std::span<const double> load)
+    : load_(load), along_(load.begin(), load.end()) {
+  const auto& held = contacts.unknowns().held;
+  for (std::size_t k = 0; k < along_.size(); ++k) along_[k] = held[k] != 0 ? 0 : along_[k];
+  solver.solve(along_);
+  work_ = dot(load_, along_);
+}
+
+double MotionControl::hold(std::span<double> motion, double wanted) const {
+  const double lambda = (wanted - dot(load_, motion)) / work_;
+  for (std::size_t k = 0; k < motion.size(); ++k) motion[k] += lambda * along_[k];
+  return lambda;
+}
+
+ContactDeformation deformation_of(const ContactOperator& contacts, const Driving& driving, const Rates& rates,
+                                  std::size_t contact) {
+  ContactDeformation d = contacts.deformation(contact, rates.motion);
+  if (driving.affine.empty()) return d;
+  d.normal += rates.lambda * driving.affine[contact].normal;
+  d.tangential += rates.lambda * driving.affine[contact].tangential;
+  return d;
+}
+
+double residual_of(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const Driving& driving,
+                   Rates& rates, std::vector<double>& residual) {
+  const auto& held = contacts.unknowns().held;
+  const std::vector<double>& load = driving.pattern->force;
+  std::vector<double> internal(contacts.components(), 0.0);
+  rates.force_scale = 0;
+  double stiffest = 0, fastest = 0;
+  for (const double u : rates.motion) fastest = std::max(fastest, std::abs(u));
+  rates.deformation.resize(contacts.contacts());
+  for (std::size_t c = 0; c < contacts.contacts(); ++c) {
+    const ContactDeformation d = deformation_of(contacts, driving, rates, c);
+    if (!driving.affine.empty()) fastest = std::max({fastest, std::abs(d.normal), std::abs(d.tangential)});
+    rates.deformation[c] = d;
+    stiffest = std::max(stiffest, tangents[c].nn);
+    const ContactForce f = tangents[c].rate(d);
+    if (f.normal == 0 && f.tangential == 0) continue;
+    rates.force_scale = std::max({rates.force_scale, std::abs(f.normal), std::abs(f.tangential)});
+    contacts.add_internal(c, f, internal);
+  }
+  double sum = 0;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    residual[k] = 0;
+    if (held[k] != 0) continue;
+    const double from_load = load.empty() ? 0 : rates.lambda * load[k];
+    const double beside = driving.beside.empty() ? 0 : driving.beside[k];
+    rates.force_scale = std::max({rates.force_scale, std::abs(from_load), std::abs(beside)});
+    residual[k] = from_load + beside - internal[k];
+    sum = std::max(sum, std::abs(residual[k]));
+  }
+  // Forces that no more than the rounding of motions leaves are none.
+  const double none = rounded_motion * stiffest * fastest;
+  rates.force_scale = std::max(rates.force_scale, none);
+  rates.round_off = none;
+  if (sum <= none) return 0;
+  return rates.force_scale > 0 ? sum / rates.force_scale : 0;
+}
+
+Rates driven_rates(const ContactOperator& contacts, const Driving& driving, double lambda) {
+  Rates rates{.motion = std::vector<double>(contacts.components(), 0.0), .lambda = lambda};
   const auto& held = contacts.unknowns().held;
   const std::vector<double>& prescribed = driving.pattern->prescribed;
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    if (held[k] != 0 && !prescribed.empty()) rates.motion[k] = lambda * prescribed[k];
+  }
+  return rates;
+}
+
+Rates rates_of(const ContactOperator& contacts, TangentSolver& solver, std::span<const ContactTangent> tangents,
+               const Driving& driving) {
   solver.set(tangents);
-  Rates rates;
   for (int attempt = 0;; ++attempt) {
-    rates = {};
-    rates.lambda = driving.by_motion ? 0 : driving.rate;
-    rates.motion.assign(contacts.components(), 0.0);
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      if (held[k] != 0 && !prescribed.empty()) rates.motion[k] = rates.lambda * prescribed[k];
-    }
-    const double left = refine(contacts, residual_of, solver, driving, rates);
+    Rates rates = driven_rates(contacts, driving, driving.by_motion ? 0 : driving.rate);
+    const double left = refine(contacts, tangents, solver, driving, rates);
     rates.balanced = left <= balanced;
     if (rates.balanced || attempt > 0) return rates;
     solver.refresh();

@@ -26,8 +26,8 @@ struct Driving {
 };
 
 struct Rates {
-  std::vector<double> motion;                   ///< per component
-  std::vector<ContactDeformation> deformation;  ///< per contact, that of a mean gradient included
+  std::vector<double> motion;                     ///< per component
+  std::vector<ContactDeformation> deformation{};  ///< per contact, that of a mean gradient included
   double lambda = 0;
   double force_scale = 0;  ///< the largest rate of a contact force or load
   double round_off = 0;    ///< of rates of forces, by the rounding of motions
@@ -36,6 +36,31 @@ struct Rates {
 
   void pass(PathNumbers& n) { n.pass(motion, deformation, lambda, force_scale, round_off, negligible, balanced); }
 };
+
+/// Where the work of loads on a motion is prescribed, and not the loads.
+class MotionControl {
+ public:
+  /// \param load N/m, per component; must outlive the object
+  MotionControl(const ContactOperator& contacts, const TangentSolver& solver, std::span<const double> load);
+  /// Adds the motion by lambda times the loads, so that these do the work `wanted`. \return lambda
+  double hold(std::span<double> motion, double wanted) const;
+  /// Of the loads on the motion that they cause.
+  [[nodiscard]] double work() const { return work_; }
+
+ private:
+  std::span<const double> load_;
+  std::vector<double> along_;
+  double work_ = 0;
+};
+
+/// The motion of held components at this rate of lambda, all others at rest.
+Rates driven_rates(const ContactOperator& contacts, const Driving& driving, double lambda);
+ContactDeformation deformation_of(const ContactOperator& contacts, const Driving& driving, const Rates& rates,
+                                  std::size_t contact);
+/// What drives less what contacts take, and the deformations and scales of the rates.
+/// \return its largest component over the largest rate of a force
+double residual_of(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const Driving& driving,
+                   Rates& rates, std::vector<double>& residual);
 
 /// One linear problem with given tangents, refined until forces balance without the springs that hold what nothing
 /// resists: those motions are then the least ones.

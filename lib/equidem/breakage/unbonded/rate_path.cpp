@@ -94,35 +94,25 @@ class RatePath {
   /// The response to lambda times the pattern, to the forces beside it where `others`, and to tau.
   [[nodiscard]] Response response_to(double lambda, bool others, double tau) const {
     const ContactOperator& contacts = problem_.contacts;
-    const Driving& driving = problem_.driving;
+    Driving driving = problem_.driving;
+    if (!others) driving.beside = {};
     const auto& held = contacts.unknowns().held;
-    std::vector<double> motion(contacts.components(), 0.0), internal(motion.size(), 0.0), residual(motion.size(), 0.0);
-    const std::vector<double>&load = driving.pattern->force, &prescribed = driving.pattern->prescribed;
-    for (std::size_t k = 0; k < held.size(); ++k)
-      if (held[k] != 0 && !prescribed.empty()) motion[k] = lambda * prescribed[k];
-    const auto deformation = [&](std::size_t c) {
-      ContactDeformation d = contacts.deformation(c, motion);
-      if (driving.affine.empty()) return d;
-      d.normal += lambda * driving.affine[c].normal;
-      d.tangential += lambda * driving.affine[c].tangential;
-      return d;
-    };
-    for (std::size_t c = 0; c < contacts.contacts(); ++c)
-      contacts.add_internal(c, tangents_[c].rate(deformation(c)), internal);
+    Rates rates = driven_rates(contacts, driving, lambda);
+    std::vector<double> residual(contacts.components()), pressed(contacts.components(), 0.0);
+    residual_of(contacts, tangents_, driving, rates, residual);
     for (std::size_t p = 0; p < problem_.limits.size() && tau != 0; ++p) {
       const ContactForce f = beside(p, status(p));
-      contacts.add_internal(problem_.limits[p].contact, {tau * f.normal, tau * f.tangential}, internal);
+      contacts.add_internal(problem_.limits[p].contact, {tau * f.normal, tau * f.tangential}, pressed);
     }
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      if (held[k] != 0) continue;
-      residual[k] = (load.empty() ? 0 : lambda * load[k]) - internal[k];
-      if (others && !driving.beside.empty()) residual[k] += driving.beside[k];
-    }
+    for (std::size_t k = 0; k < held.size(); ++k)
+      if (held[k] == 0) residual[k] -= pressed[k];
     solver_.solve(residual);
     for (std::size_t k = 0; k < held.size(); ++k)
-      if (held[k] == 0) motion[k] = residual[k];
-    Response response{{}, load.empty() ? 0 : dot(load, motion)};
-    for (const LimitContact& at : problem_.limits) response.deformation.push_back(deformation(at.contact));
+      if (held[k] == 0) rates.motion[k] = residual[k];
+    const std::vector<double>& load = driving.pattern->force;
+    Response response{{}, load.empty() ? 0 : dot(load, rates.motion)};
+    for (const LimitContact& at : problem_.limits)
+      response.deformation.push_back(deformation_of(contacts, driving, rates, at.contact));
     return response;
   }
   void respond() {

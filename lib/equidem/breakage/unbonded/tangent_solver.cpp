@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/breakage/unbonded/tangent_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <Eigen/LU>
 #include <utility>
 
 #include "equidem/core/error.hpp"
@@ -19,46 +18,16 @@ ContactForce beyond(const ContactTangent& a, const ContactTangent& base, const C
   return ContactTangent{a.nn - base.nn, a.tn - base.tn, a.tt - base.tt}.rate(d);
 }
 
-/// L U of a square matrix, row-major, in its place.
-/// \return the least pivot over the largest entry of the matrix; 0: it is singular
-double factorize_dense(std::span<double> a, std::vector<std::size_t>& pivots) {
-  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(a.size()))));
-  pivots.resize(n);
-  double largest = 0, least = 1;
-  for (const double x : a) largest = std::max(largest, std::abs(x));
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t p = k;
-    for (std::size_t r = k + 1; r < n; ++r) {
-      if (std::abs(a[r * n + k]) > std::abs(a[p * n + k])) p = r;
-    }
-    pivots[k] = p;
-    const double pivot = a[p * n + k];
-    if (!(std::abs(pivot) > 0)) return 0;
-    least = std::min(least, std::abs(pivot) / largest);
-    for (std::size_t c = 0; c < n && p != k; ++c) std::swap(a[k * n + c], a[p * n + c]);
-    for (std::size_t r = k + 1; r < n; ++r) {
-      const double factor = a[r * n + k] /= pivot;
-      for (std::size_t c = k + 1; c < n && factor != 0; ++c) a[r * n + c] -= factor * a[k * n + c];
-    }
-  }
-  return least;
-}
-
-void solve_dense(std::span<const double> lu, std::span<const std::size_t> pivots, std::span<double> x) {
-  const std::size_t n = pivots.size();
-  for (std::size_t k = 0; k < n; ++k) std::swap(x[k], x[pivots[k]]);
-  for (std::size_t r = 0; r < n; ++r) {
-    for (std::size_t c = 0; c < r; ++c) x[r] -= lu[r * n + c] * x[c];
-  }
-  for (std::size_t r = n; r-- > 0;) {
-    for (std::size_t c = r + 1; c < n; ++c) x[r] -= lu[r * n + c] * x[c];
-    x[r] /= lu[r * n + r];
-  }
-}
-
 }  // namespace
 
+/// I + C dA, 2 rows a contact.
+struct TangentSolver::Capacity {
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+};
+
 TangentSolver::TangentSolver(const ContactOperator& contacts, double ground) : contacts_(contacts), ground_(ground) {}
+
+TangentSolver::~TangentSolver() = default;
 
 void TangentSolver::factorize() {
   base_ = now_;
@@ -120,40 +89,41 @@ void TangentSolver::pass(PathNumbers& n) {
 }
 
 bool TangentSolver::update() {
-  const std::size_t n = 2 * changed_.size();
-  capacity_.assign(n * n, 0.0);
-  for (std::size_t q = 0; q < changed_.size(); ++q) {
-    const std::size_t contact = changed_[q];
+  const auto n = static_cast<Eigen::Index>(2 * changed_.size());
+  if (n == 0) return true;
+  Eigen::MatrixXd capacity = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index q = 0; q < n; q += 2) {
+    const std::size_t contact = changed_[static_cast<std::size_t>(q / 2)];
     const Columns& z = columns_of(contact);
     const ContactForce by_n = beyond(now_[contact], base_[contact], {1, 0});
     const ContactForce by_t = beyond(now_[contact], base_[contact], {0, 1});
-    for (std::size_t p = 0; p < changed_.size(); ++p) {
-      const ContactDeformation n_of = contacts_.deformation(changed_[p], z.normal);
-      const ContactDeformation t_of = contacts_.deformation(changed_[p], z.tangential);
-      double* row = &capacity_[2 * p * n + 2 * q];
-      row[0] = n_of.normal * by_n.normal + t_of.normal * by_n.tangential;
-      row[1] = n_of.normal * by_t.normal + t_of.normal * by_t.tangential;
-      row[n] = n_of.tangential * by_n.normal + t_of.tangential * by_n.tangential;
-      row[n + 1] = n_of.tangential * by_t.normal + t_of.tangential * by_t.tangential;
+    for (Eigen::Index p = 0; p < n; p += 2) {
+      const std::size_t other = changed_[static_cast<std::size_t>(p / 2)];
+      const ContactDeformation n_of = contacts_.deformation(other, z.normal);
+      const ContactDeformation t_of = contacts_.deformation(other, z.tangential);
+      capacity(p, q) += n_of.normal * by_n.normal + t_of.normal * by_n.tangential;
+      capacity(p, q + 1) += n_of.normal * by_t.normal + t_of.normal * by_t.tangential;
+      capacity(p + 1, q) += n_of.tangential * by_n.normal + t_of.tangential * by_n.tangential;
+      capacity(p + 1, q + 1) += n_of.tangential * by_t.normal + t_of.tangential * by_t.tangential;
     }
   }
-  for (std::size_t k = 0; k < n; ++k) capacity_[k * n + k] += 1;
-  return factorize_dense(capacity_, pivots_) > least_pivot || n == 0;
+  capacity_ = std::make_unique<Capacity>(Capacity{capacity.partialPivLu()});
+  return capacity_->lu.matrixLU().diagonal().cwiseAbs().minCoeff() > least_pivot * capacity.cwiseAbs().maxCoeff();
 }
 
 void TangentSolver::solve(std::span<double> x) const {
   factor_->solve(x, 1);
   if (changed_.empty()) return;
-  std::vector<double> w(2 * changed_.size());
-  for (std::size_t p = 0; p < changed_.size(); ++p) {
-    const ContactDeformation d = contacts_.deformation(changed_[p], x);
-    w[2 * p] = d.normal;
-    w[2 * p + 1] = d.tangential;
+  Eigen::VectorXd w(static_cast<Eigen::Index>(2 * changed_.size()));
+  for (Eigen::Index p = 0; p < w.size(); p += 2) {
+    const ContactDeformation d = contacts_.deformation(changed_[static_cast<std::size_t>(p / 2)], x);
+    w[p] = d.normal;
+    w[p + 1] = d.tangential;
   }
-  solve_dense(capacity_, pivots_, w);
-  for (std::size_t p = 0; p < changed_.size(); ++p) {
-    const std::size_t contact = changed_[p];
-    const ContactForce f = beyond(now_[contact], base_[contact], {w[2 * p], w[2 * p + 1]});
+  w = capacity_->lu.solve(w).eval();
+  for (Eigen::Index p = 0; p < w.size(); p += 2) {
+    const std::size_t contact = changed_[static_cast<std::size_t>(p / 2)];
+    const ContactForce f = beyond(now_[contact], base_[contact], {w[p], w[p + 1]});
     const Columns& z = columns_.at(contact);
     for (std::size_t k = 0; k < x.size(); ++k) x[k] -= z.normal[k] * f.normal + z.tangential[k] * f.tangential;
   }

@@ -26,6 +26,7 @@ class TangentSolver {
  public:
   /// \param ground Pa, far below the springs of contacts
   TangentSolver(const ContactOperator& contacts, double ground);
+  ~TangentSolver();
 
   /// Makes these the tangents, one for each contact, by updates of the factor or by a new one.
   /// \throws Error (computation_failed) where the matrix has a zero pivot
@@ -43,6 +44,7 @@ class TangentSolver {
   [[nodiscard]] std::int64_t updates() const { return updates_; }
 
  private:
+  struct Capacity;
   struct Columns {
     std::vector<double> normal, tangential;  // K_0^-1 of the rows of stretch and slip
   };
@@ -56,8 +58,7 @@ class TangentSolver {
   std::unique_ptr<Factorization> factor_;
   std::vector<std::size_t> changed_;        // contacts with other tangents than those of the factor
   std::map<std::size_t, Columns> columns_;  // of contacts that have changed since
-  std::vector<double> capacity_;            // LU of I + C dA, 2 rows a contact
-  std::vector<std::size_t> pivots_;
+  std::unique_ptr<Capacity> capacity_;      // LU of I + C dA; none, or of no use: nothing has changed
   std::int64_t factorizations_ = 0, updates_ = 0;
 };
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "equidem/breakage/unbonded/unbonded_scene.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/breakage/breakable_system.hpp"
+#include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/motion_description.hpp"
 #include "equidem/statics/number_unknowns.hpp"
@@ -20,40 +20,108 @@ constexpr double ground = 1e-9;  // of the stiffest spring: holds what nothing r
 // The largest residual that a state may keep, over the largest force.
 constexpr double balances_to = 1e-12;
 
+bool is_bond(const ContactStrengths& strengths, std::size_t contact) {
+  return strengths.tension[contact] > 0 || strengths.shear[contact] > 0;
+}
+
+/// Forces at rest that the law of contacts without a bond cannot carry.
+void check_rest(const BreakageScene& scene, double friction, std::span<const ContactForce> rest) {
+  constexpr double settled = 1e-6;  // of the largest: what bodies that came to rest leave beyond the law
+  double largest = 0;
+  for (const ContactForce& f : rest) largest = std::max({largest, std::abs(f.normal), std::abs(f.tangential)});
+  for (std::size_t c = 0; c < rest.size(); ++c) {
+    if (is_bond(scene.strengths, c)) continue;
+    const ContactForce& f = rest[c];
+    const double limit = friction * std::max(-f.normal, 0.0);
+    if (std::abs(f.tangential) <= limit + settled * largest) continue;
+    bad_input(
+        fmt::format("contact {} has the forces at rest N = {:g}, T = {:g} N/m and no bond", c, f.normal, f.tangential),
+        fmt::format("with the friction {:g} it carries |T| up to {:g} N/m", friction, limit),
+        "Give the friction with which the bodies came to rest (strength.residual_friction), or a bond");
+  }
+}
+
+/// \throws Error of scenes that cannot have a path with frictional contacts
+std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptions& options) {
+  const double friction = options.friction;
+  if (!(friction >= 0) || !std::isfinite(friction))
+    bad_input(fmt::format("the friction of contacts without a bond is {}", friction),
+              "it must be finite and not negative", "Correct it");
+  check_control_of_rubbing(scene.path);
+  check_rest(scene, friction, options.rest);
+  std::vector<UnbondedLaw> laws;
+  for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c)
+    laws.push_back({scene.springs[c], friction, options.rest.empty() ? ContactForce{} : options.rest[c]});
+  return laws;
+}
+
+/// A contact whose strengths are both 0 is no bond; it is open where its force at rest pulls.
+std::vector<ContactStatus> first_status(const BreakageScene& scene, std::span<const UnbondedLaw> laws) {
+  std::vector<ContactStatus> status;
+  for (std::size_t c = 0; c < laws.size(); ++c) {
+    status.push_back(is_bond(scene.strengths, c) ? ContactStatus::bonded
+                     : laws[c].rest.normal > 0   ? ContactStatus::open
+                                                 : ContactStatus::stuck);
+  }
+  return status;
+}
+
 }  // namespace
 
-UnbondedRun::UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports,
+void check_control_of_rubbing(const LoadPath& path) {
+  if (path.control == LoadControl::path) {
+    bad_input("lambda may fall from event to event, and contacts close and slip",
+              "their state depends on the path by which lambda falls, which this control leaves open",
+              "Take control = \"load\" or \"motion\"");
+  }
+  if (path.control == LoadControl::load && path.driven_by != DrivenBy::loads) {
+    bad_input("the load is held, and a motion is imposed", "the motion would have to follow the load, not lambda",
+              "Take control = \"motion\", or drive by loads");
+  }
+}
+
+UnbondedRun::UnbondedRun(const BreakageScene& scene, const Effects& effects, std::span<const Support> supports,
                          UnbondedOptions options)
-    : scene_(scene),
+    : EventPath(scene),
       effects_(effects),
       supports_(supports.begin(), supports.end()),
-      options_(std::move(options)),
       unknowns_(number_unknowns(scene.assembly, scene.springs, effects, supports)),
       contacts_(scene.assembly, unknowns_),
       solver_(contacts_, ground * scene.springs.largest()),
-      laws_(laws_of(scene, options_.friction, options_.rest)),
-      affine_(contacts_.affine(scene.path.pattern.gradient)) {
-  check_rubbing(scene_, options_.friction, options_.rest);
-  state_ = std::make_unique<UnbondedState>(scene_.assembly, scene_.springs, scene_.path, unknowns_, contacts_, laws_,
-                                           first_status(scene_, laws_));
+      laws_(laws_of(scene, options)),
+      state_(scene.assembly, scene.springs, scene.path, unknowns_, contacts_, laws_, first_status(scene, laws_)),
+      dead_done_(!scene.path.dead) {
   idle_ = untouched();
-  dead_done_ = !scene_.path.dead;
   if (dead_done_) add_leg_point();
 }
 
 std::vector<std::int32_t> UnbondedRun::untouched() const {
-  return untouched_discs(scene_.assembly, unknowns_, state_->status());
+  const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+  std::vector<std::uint8_t> alone(scene_.assembly.size(), 1);
+  for (std::size_t k = 0; k < unknowns_.held.size(); ++k) {
+    if (unknowns_.held[k] == DegreesOfFreedom::supported) alone[k / b] = 0;
+  }
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (state_.status()[c] == ContactStatus::open) continue;
+    const Contact& contact = scene_.assembly.contacts[c];
+    alone[static_cast<std::size_t>(contact.i)] = alone[static_cast<std::size_t>(contact.j)] = 0;
+  }
+  return discs_set(alone);
 }
 
 std::vector<std::int32_t> UnbondedRun::loose() const {
-  return loose_discs(breakable_network(scene_, effects_, supports_), laws_, state_->status(), state_->carried());
-}
-
-double UnbondedRun::direction(std::int64_t leg) const {
-  const std::vector<double>& legs = scene_.path.legs;
-  const auto k = static_cast<std::size_t>(leg);
-  if (k >= legs.size()) return 1;
-  return legs[k] - (k == 0 ? 0 : legs[k - 1]) < 0 ? -1 : 1;
+  const std::vector<ContactStatus>& status = state_.status();
+  std::vector<std::uint8_t> without(status.size(), 0);
+  std::vector<SpringConstants> springs;
+  for (std::size_t c = 0; c < status.size(); ++c) {
+    const bool bonded = status[c] == ContactStatus::bonded;
+    without[c] = bonded || (status[c] != ContactStatus::open && state_.carried()[c] != 0) ? 0 : 1;
+    springs.push_back({laws_[c].k.kN, bonded || laws_[c].rough() ? laws_[c].k.kT : 0});
+  }
+  const ContactSprings as_they_are(std::move(springs));
+  const BreakableNetwork network =
+      breakable_network({scene_.assembly, as_they_are, scene_.strengths, scene_.path}, effects_, supports_);
+  return discs_set(idle_discs(network, without));
 }
 
 bool UnbondedRun::by_motion() const {
@@ -62,21 +130,31 @@ bool UnbondedRun::by_motion() const {
 
 double UnbondedRun::load_left(double motion) const {
   const double slope = motion_rate_ != 0 ? load_rate_ / motion_rate_ : 0;
-  return state_->load() + slope * (motion - state_->mean_motion());
+  return state_.load() + slope * (motion - state_.mean_motion());
 }
 
-UnbondedCounters UnbondedRun::counters() const {
-  UnbondedCounters all = counters_;
-  all.factorizations = solver_.factorizations();
-  all.updates = solver_.updates();
-  return all;
+std::optional<PathState> UnbondedRun::state() const {
+  PathState state{disc_motions(unknowns_, state_.motion().high),
+                  {state_.forces().begin(), state_.forces().end()},
+                  std::vector<std::uint8_t>(laws_.size(), 1)};
+  for (std::size_t c = 0; c < laws_.size(); ++c) {
+    if (state_.status()[c] == ContactStatus::open) state.joined[c] = 0;
+  }
+  return state;
+}
+
+SolverReport UnbondedRun::solver() const {
+  return {.name = "UMFPACK LU, updated",
+          .factorizations = solver_.factorizations(),
+          .updates = solver_.updates(),
+          .largest_residual = largest_residual_};
 }
 
 Driving UnbondedRun::driving() const {
   Driving d;
   const LoadPath& path = scene_.path;
   d.pattern = dead_done_ ? &path.pattern : &*path.dead;
-  if (dead_done_) d.affine = affine_;
+  if (dead_done_) d.affine = state_.affine();
   d.by_motion = by_motion();
   if (releasing()) {
     d.beside = beside_;
@@ -89,38 +167,32 @@ Driving UnbondedRun::driving() const {
 }
 
 bool UnbondedRun::find_rates() {
-  if (releasing()) beside_ = state_->unreleased();
-  const std::vector<LimitContact> limits = contacts_on_limits(*state_, laws_);
+  if (releasing()) beside_ = state_.unreleased();
+  const std::vector<LimitContact> limits = contacts_on_limits(state_, laws_);
   const RateProblem problem{contacts_, laws_, limits, driving()};
-  RateSearch search = search_rates(problem, solver_, state_->status());
+  RateSearch search = search_rates(problem, solver_, state_.status());
   RateAnswer& answer = search.answer;
   if (search.found || answer.agrees) record_changes(answer.status);
   if (!search.found) {
     end_without_rates(search, limits.size());
     return false;
   }
-  for (const LimitContact& at : limits) state_->set_status(at.contact, answer.status[at.contact]);
+  for (const LimitContact& at : limits) state_.set_status(at.contact, answer.status[at.contact]);
   rates_ = std::move(answer.rates);
-  state_->settle(*rates_, !dead_done_, by_motion(), solver_);
+  state_.settle(*rates_, !dead_done_, by_motion(), solver_);
   return true;
 }
 
 std::string UnbondedRun::at_dead_loads() const {
   if (dead_done_) return "";
-  return state_->dead() > 0 ? fmt::format("at {:.4g} % of the dead loads ", 100 * state_->dead())
-                            : "before any of the dead loads acts ";
+  return state_.dead() > 0 ? fmt::format("at {:.4g} % of the dead loads ", 100 * state_.dead())
+                           : "before any of the dead loads acts ";
 }
 
 void UnbondedRun::end_without_rates(const RateSearch& search, std::size_t on_limits) {
   const std::string at = at_dead_loads() + (releasing() ? "while a broken bond gives up its force " : "");
   if (search.answer.agrees) {
-    const std::vector<double>& rate = search.answer.rates.motion;
-    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
-    std::vector<DiscMotion> motions(scene_.assembly.size());
-    for (std::size_t d = 0; d < motions.size(); ++d) {
-      motions[d].u = {rate[d * b], rate[d * b + 1]};
-      if (b > 2) motions[d].theta = rate[d * b + 2] / unknowns_.rotation_scale;
-    }
+    const std::vector<DiscMotion> motions = disc_motions(unknowns_, search.answer.rates.motion);
     end(PathEnd::load_moves_part, fmt::format("{}nothing resists a motion any more that the path drives: {}", at,
                                               describe_motion(scene_.assembly, motions)));
     return;
@@ -131,70 +203,53 @@ void UnbondedRun::end_without_rates(const RateSearch& search, std::size_t on_lim
 
 double UnbondedRun::stage_end() const {
   if (releasing()) return 1;
-  if (!dead_done_) return 1 - state_->dead();
-  const auto k = static_cast<std::size_t>(leg_);
-  if (k >= scene_.path.legs.size()) return infinite;
-  const double left = scene_.path.legs[k] - state_->lambda();
+  if (!dead_done_) return 1 - state_.dead();
+  const std::optional<double> to = end_of_leg();
+  if (!to) return infinite;
+  const double left = *to - state_.lambda();
   return left * rates_->lambda > 0 ? left / rates_->lambda : left * direction(leg_) <= 0 ? 0 : infinite;
 }
 
-BreakEvent UnbondedRun::event_of(std::size_t contact, BreakMode mode) const {
-  const ContactLedger& ledger = state_->ledger();
-  return {.leg = leg_,
-          .lambda = state_->lambda(),
-          .contact = static_cast<std::int64_t>(contact),
-          .mode = mode,
-          .gap = infinite,
-          .load = state_->load(),
-          .motion = state_->mean_motion(),
-          .stress = state_->stress(),
-          .energy_before = ledger.elastic,
-          .energy_after = ledger.elastic,
-          .work = ledger.work,
-          .load_rate = load_rate_,
-          .motion_rate = motion_rate_,
-          .unstable_modes = -1,
-          .relative_residual = state_->relative_residual(),
-          .friction = ledger.friction};
+LegPoint UnbondedRun::point() const {
+  return {std::ssize(events_), state_.lambda(), state_.load(),  state_.mean_motion(),
+          load_rate_,          motion_rate_,    state_.stress()};
 }
 
 void UnbondedRun::record_changes(std::span<const ContactStatus> after) {
   const std::size_t first = events_.size();
   for (std::size_t c = 0; c < after.size(); ++c) {
-    const ContactStatus before = state_->status()[c];
+    const ContactStatus before = state_.status()[c];
     if (before == after[c]) continue;
     const BreakMode mode = after[c] == ContactStatus::open    ? BreakMode::open
                            : before == ContactStatus::open    ? BreakMode::close
                            : after[c] == ContactStatus::stuck ? BreakMode::stick
                                                               : BreakMode::slip;
     events_.push_back(event_of(c, mode));
+    events_.back().relative_residual = state_.relative_residual();
   }
+  if (events_.size() > first && !releasing()) steps_ = 0;
   for (std::size_t k = first; k < events_.size(); ++k)
     events_[k].ties = static_cast<std::int64_t>(events_.size() - first - 1);
 }
 
 void UnbondedRun::break_bond(const NextContactEvent& next, double lambda_rate) {
   BreakEvent event = event_of(next.contact, *next.breaks);
+  event.relative_residual = state_.relative_residual();
   event.ties = next.ties;
   // The gap of t, as one of lambda.
-  if (!releasing()) event.gap = next.gap * next.t * std::abs(lambda_rate / state_->lambda());
+  if (!releasing()) event.gap = next.gap * next.t * std::abs(lambda_rate / state_.lambda());
   const std::size_t c = next.contact;
-  const double n = state_->normal_coordinate(c), t = state_->forces()[c].tangential;
+  const double n = state_.normal_coordinate(c), t = state_.forces()[c].tangential;
   ContactStatus status = ContactStatus::stuck;
   if (n >= 0) {
     status = ContactStatus::open;
   } else if (laws_[c].rough() && std::abs(t) > -laws_[c].friction * n) {
     status = slipping(t);
   }
-  state_->break_bond(c, status);
+  state_.break_bond(c, status);
   breaking_.push_back(events_.size());
   events_.push_back(event);
   share_ = 1;
-}
-
-void UnbondedRun::add_leg_point() {
-  points_.push_back({std::ssize(events_), state_->lambda(), state_->load(), state_->mean_motion(), load_rate_,
-                     motion_rate_, state_->stress()});
 }
 
 void UnbondedRun::finish_stage() {
@@ -202,9 +257,10 @@ void UnbondedRun::finish_stage() {
   standstill_.begin();
   steps_ = 0;
   if (releasing()) {
-    state_->end_release();
+    state_.end_release();
     note_released();
     breaking_.clear();
+    pauses_ = true;
     return;
   }
   if (!dead_done_) {
@@ -215,99 +271,70 @@ void UnbondedRun::finish_stage() {
   }
   add_leg_point();
   if (++leg_ == std::ssize(scene_.path.legs))
-    end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_->lambda()));
+    end(PathEnd::legs_done, fmt::format("lambda has reached {:g}", state_.lambda()));
 }
 
 /// Notes, with the events of the breaking bonds, the energy that these have released so far.
 void UnbondedRun::note_released() {
   for (const std::size_t k : breaking_) {
-    events_[k].energy_after = state_->ledger().elastic;
-    events_[k].energy_released = state_->released_by(static_cast<std::size_t>(events_[k].contact));
-    events_[k].work = state_->ledger().work;
+    events_[k].energy_after = state_.ledger().elastic;
+    events_[k].energy_released = state_.released_by(static_cast<std::size_t>(events_[k].contact));
+    events_[k].work = state_.ledger().work;
   }
-}
-
-void UnbondedRun::end(PathEnd why, std::string sentence) {
-  note_released();
-  end_ = why;
-  why_ = std::move(sentence);
 }
 
 bool UnbondedRun::move(double t) {
   if (!releasing()) travelled_ += t;
-  if (!standstill_.moved(t, releasing() ? 1 : travelled_) && standstill_.again(state_->status())) {
+  if (!standstill_.moved(t, releasing() ? 1 : travelled_) && standstill_.again(state_.status())) {
     end(PathEnd::no_answer, fmt::format("{}contact states cycle at lambda = {:g}: no consistent contact state found",
-                                        at_dead_loads(), state_->lambda()));
+                                        at_dead_loads(), state_.lambda()));
     return false;
   }
   if (t == 0) return true;
-  const double load = state_->load(), motion = state_->mean_motion(), lambda = state_->lambda();
-  if (releasing()) state_->release_to(share_ * (1 - t));
-  state_->move(t, *rates_, !dead_done_, by_motion(), solver_);
+  const double load = state_.load(), motion = state_.mean_motion(), lambda = state_.lambda();
+  if (releasing()) state_.release_to(share_ * (1 - t));
+  state_.move(t, *rates_, !dead_done_, by_motion(), solver_);
   if (releasing()) share_ *= 1 - t;
-  const double by = state_->lambda() - lambda;
-  load_rate_ = by != 0 ? (state_->load() - load) / by : 0;
-  motion_rate_ = by != 0 ? (state_->mean_motion() - motion) / by : 0;
-  if (state_->relative_residual() > balances_to) {
+  const double by = state_.lambda() - lambda;
+  load_rate_ = by != 0 ? (state_.load() - load) / by : 0;
+  motion_rate_ = by != 0 ? (state_.mean_motion() - motion) / by : 0;
+  if (state_.relative_residual() > balances_to) {
     end(PathEnd::not_balanced,
         fmt::format(
             "at lambda = {:g} the forces balance to {:.1e} of the largest, not to {:g}: the tangent stiffness of some "
             "discs is near singular",
-            state_->lambda(), state_->relative_residual(), balances_to));
+            state_.lambda(), state_.relative_residual(), balances_to));
     return false;
   }
-  counters_.largest_residual = std::max(counters_.largest_residual, state_->relative_residual());
+  largest_residual_ = std::max(largest_residual_, state_.relative_residual());
   return true;
 }
 
-bool UnbondedRun::advance() {
+void UnbondedRun::step() {
   const std::size_t before = events_.size();
-  const std::int64_t most = scene_.path.max_events;
-  if (!releasing()) steps_ = 0;
-  bool released = false;
-  while (end_ == PathEnd::none && events_.size() == before && !released) {
-    stop_if_interrupted();
-    if (most > 0 && std::ssize(events_) >= most) {
-      end(PathEnd::most_events,
-          fmt::format("{} are done, as many as asked for{}", counted(std::ssize(events_), "event"),
-                      releasing() ? ", while a broken bond gives up its force" : ""));
-      break;
-    }
-    if (!rates_) {
-      if (!find_rates() || events_.size() > before) break;
-    }
-    const bool was_releasing = releasing();
-    step();
-    released = was_releasing && !releasing();
-  }
+  if (rates_ || (find_rates() && events_.size() == before)) go_on();
   note_released();
-  return events_.size() > before || end_ == PathEnd::none;
 }
 
 /// To the next event, or to the end of the stage.
-void UnbondedRun::step() {
+void UnbondedRun::go_on() {
   const double stage = stage_end();
-  const NextContactEvent next = next_contact_event(*state_, laws_, scene_.strengths, *rates_, stage);
+  const NextContactEvent next = next_contact_event(state_, laws_, scene_.strengths, *rates_, stage);
   const double t = std::min(stage, next.t);
-  if (t == infinite) {
-    if (by_motion() && rates_->lambda == 0) {
-      end(PathEnd::carries_nothing, "the motion grows without a load, and no contact changes any more");
-    } else {
-      end(PathEnd::never_breaks, "no contact changes any more at any lambda");
-    }
-    return;
-  }
+  if (t == infinite && by_motion() && rates_->lambda == 0)
+    return end(PathEnd::carries_nothing, "the motion grows without a load, and no contact changes any more");
+  if (t == infinite) return end(PathEnd::never_breaks, "no contact changes any more at any lambda");
   const std::int64_t most_steps = 1000 + 20 * std::ssize(laws_);  // a release may go on by ever smaller parts
   if (++steps_ > most_steps) {
     end(PathEnd::no_answer,
         fmt::format("{}contacts change {} times before lambda = {:g} is left: no consistent contact state found",
-                    at_dead_loads(), steps_ - 1, state_->lambda()));
+                    at_dead_loads(), steps_ - 1, state_.lambda()));
     return;
   }
   if (!move(t)) return;
   const double lambda_rate = rates_->lambda;
   rates_.reset();
-  if (next.t <= stage && next.breaks && !state_->carries()) {
+  if (next.t <= stage && next.breaks && !state_.carries()) {
     end(PathEnd::carries_nothing, "no contact carries more than round-off: the network carries no load");
     return;
   }

@@ -11,18 +11,16 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "equidem/breakage/breakage_run.hpp"
+#include "equidem/breakage/event_path.hpp"
 #include "equidem/breakage/unbonded/contact_events.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
 #include "equidem/breakage/unbonded/rate_path.hpp"
-#include "equidem/breakage/unbonded/standstill.hpp"
 #include "equidem/breakage/unbonded/unbonded_state.hpp"
 
 namespace equidem {
@@ -32,53 +30,44 @@ struct UnbondedOptions {
   std::vector<ContactForce> rest{};  ///< N/m, per contact: forces at rest, balanced by loads that stay; empty: none
 };
 
-struct UnbondedCounters {
-  std::int64_t factorizations = 0, updates = 0;
-  double largest_residual = 0;  ///< of the states of the path, relative
-};
+/// \throws Error (bad_input) where the control is none of those that a path with a history has
+void check_control_of_rubbing(const LoadPath& path);
 
-class UnbondedRun : public EventPath {
+class UnbondedRun final : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
   /// A contact without a bond whose force at rest pulls, N_r > 0, begins open with the gap N_r/kN.
-  /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or the
-  ///         control is none of those that a path with a history has
-  UnbondedRun(BreakageScene scene, const Effects& effects, std::span<const Support> supports, UnbondedOptions options);
+  /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or
+  ///         check_control_of_rubbing() says so
+  UnbondedRun(const BreakageScene& scene, const Effects& effects, std::span<const Support> supports,
+              UnbondedOptions options);
 
-  /// A bond that breaks is an event, and so is what happens while it gives up its force; then to the end of that.
-  bool advance() override;
-  void fail(std::string why) override { end(PathEnd::failed, std::move(why)); }
-  [[nodiscard]] const std::vector<BreakEvent>& events() const override { return events_; }
-  [[nodiscard]] PathEnd end() const override { return end_; }
-  [[nodiscard]] const std::string& why() const override { return why_; }
-  [[nodiscard]] std::vector<LegPoint> leg_points() const override { return points_; }
-  [[nodiscard]] double direction(std::int64_t leg) const override;
-  /// Discs that touch nothing at first; contacts with a gap may close later.
-  [[nodiscard]] const std::vector<std::int32_t>& idle() const override { return idle_; }
-  /// Discs without a support of which every contact is open as it is now, ascending.
+  /// Discs without a support of which every contact is open as it is now, ascending. Those at first are idle();
+  /// contacts with a gap may close later.
   [[nodiscard]] std::vector<std::int32_t> untouched() const;
-  /// Rattlers, as in a network whose contacts are not frictional (unbonded_scene.hpp), those untouched among
-  /// them: contacts that have carried nothing since lambda last moved hold no disc.
+  /// Rattlers: discs that can carry no force (load_bearing.hpp) in the network of bonds and of contacts that carry one,
+  /// ascending, those untouched among them. Contacts that have carried nothing since lambda last moved hold no disc.
   [[nodiscard]] std::vector<std::int32_t> loose() const;
-  [[nodiscard]] double lambda() const override { return state_->lambda(); }
+  [[nodiscard]] double lambda() const override { return state_.lambda(); }
   [[nodiscard]] bool has_history() const override { return true; }
   /// At motions since the last event.
   [[nodiscard]] double load_left(double motion) const override;
-  [[nodiscard]] double elastic_energy() const override { return state_->ledger().elastic; }
-  [[nodiscard]] double released() const override { return state_->ledger().released; }
-  [[nodiscard]] double energy_error() const override { return state_->ledger().error(); }
-  [[nodiscard]] const UnbondedState& state() const { return *state_; }
-  [[nodiscard]] bool releasing() const override { return !state_->releasing().empty(); }
-  [[nodiscard]] UnbondedCounters counters() const;
+  [[nodiscard]] PathLedger ledger() const override { return state_.ledger(); }
+  [[nodiscard]] const UnbondedState& contact_state() const { return state_; }
+  [[nodiscard]] bool releasing() const override { return !state_.releasing().empty(); }
+  [[nodiscard]] std::optional<PathState> state() const override;
+  [[nodiscard]] SolverReport solver() const override;
   /// Everything between two calls of advance() that the scene does not say: a path that is restored goes on with the
   /// same bits.
   void pass(PathNumbers& n) {
     n.pass(events_, points_, breaking_, rates_, dead_done_, standstill_, steps_, leg_, load_rate_);
-    n.pass(motion_rate_, share_, travelled_, end_, why_, counters_.largest_residual, *state_, solver_);
+    n.pass(motion_rate_, share_, travelled_, end_, why_, largest_residual_, state_, solver_);
     if (n.restores() && end_ == PathEnd::most_events) end(PathEnd::none, {});  // this path may have more
   }
 
  private:
+  void step() override;
+  [[nodiscard]] LegPoint point() const override;
   [[nodiscard]] bool by_motion() const;
   [[nodiscard]] Driving driving() const;
   bool find_rates();
@@ -86,41 +75,29 @@ class UnbondedRun : public EventPath {
   /// "at 37 % of the dead loads ", before a clause; nothing on the legs of lambda, whose place the report gives.
   [[nodiscard]] std::string at_dead_loads() const;
   [[nodiscard]] double stage_end() const;
-  void step();
+  void go_on();
   /// \return false where the path ends
   bool move(double t);
   void finish_stage();
   void note_released();
-  void add_leg_point();
   void break_bond(const NextContactEvent& next, double lambda_rate);
-  BreakEvent event_of(std::size_t contact, BreakMode mode) const;
   void record_changes(std::span<const ContactStatus> after);
-  void end(PathEnd why, std::string sentence);
 
-  BreakageScene scene_;
   Effects effects_;
   std::vector<Support> supports_;
-  UnbondedOptions options_;
   DegreesOfFreedom unknowns_;
   ContactOperator contacts_;
   TangentSolver solver_;
   std::vector<UnbondedLaw> laws_;
-  std::vector<ContactDeformation> affine_;
-  std::unique_ptr<UnbondedState> state_;
-  std::vector<BreakEvent> events_;
-  std::vector<LegPoint> points_;
-  std::vector<std::int32_t> idle_;
+  UnbondedState state_;
   std::vector<std::size_t> breaking_;  // events whose energy behind them is not known yet
   std::vector<double> beside_;         // per component, of a release
   std::optional<Rates> rates_;
   bool dead_done_ = false;
   Standstill standstill_;
   std::int64_t steps_ = 0;  // of the release, or since the last event
-  std::int64_t leg_ = 0;
   double load_rate_ = 0, motion_rate_ = 0, share_ = 0, travelled_ = 0;
-  PathEnd end_ = PathEnd::none;
-  std::string why_;
-  UnbondedCounters counters_;
+  double largest_residual_ = 0;
 };
 
 }  // namespace equidem

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
-#include "equidem/breakage/event_path.hpp"
 #include "equidem/breakage/network_response.hpp"
 #include "equidem/core/threads.hpp"
 
@@ -36,15 +36,6 @@ double work_of(const ContactForce& from, const ContactForce& to, const PreciseDe
 }
 
 }  // namespace
-
-void ContactLedger::take(double elastic_now) {
-  elastic = elastic_now;
-  largest = std::max({largest, std::abs(work), std::abs(elastic), std::abs(friction), std::abs(released)});
-}
-
-double ContactLedger::error() const {
-  return largest > negligible ? std::abs(missing()) / largest : 0;
-}
 
 UnbondedState::UnbondedState(const Assembly& assembly, const ContactSprings& springs, const LoadPath& path,
                              const DegreesOfFreedom& unknowns, const ContactOperator& contacts,
@@ -116,13 +107,8 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
   constexpr double good = 4e-15;
   constexpr int most = 40;
   constexpr double slowest = 0.8;  // the ground leaves as much of a residual where motions are four times as soft
-  const std::vector<double>& load = path_.pattern.force;
-  std::vector<double> residual(contacts_.components()), along;
-  const auto dot = [&](std::span<const double> x) {
-    double sum = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) sum += load[k] * x[k];
-    return sum;
-  };
+  std::vector<double> residual(contacts_.components());
+  std::optional<MotionControl> control;
   evaluate();
   measure_residual(residual);
   // Contacts that slip without a force may have changed sides behind the rates.
@@ -131,16 +117,8 @@ void UnbondedState::correct(bool by_motion, TangentSolver& solver) {
     const double before = residual_;
     const auto kept = std::pair(motion_, lambda_);
     solver.solve(residual);
-    if (by_motion) {
-      if (along.empty()) {
-        along = load;
-        for (std::size_t m = 0; m < along.size(); ++m) along[m] = unknowns_.held[m] != 0 ? 0 : along[m];
-        solver.solve(along);
-      }
-      const double by = -dot(residual) / dot(along);
-      for (std::size_t m = 0; m < along.size(); ++m) residual[m] += by * along[m];
-      lambda_ += by;
-    }
+    if (by_motion && !control) control.emplace(contacts_, solver, path_.pattern.force);
+    if (control) lambda_ += control->hold(residual, 0);
     motion_.add(residual);
     evaluate();
     measure_residual(residual);
@@ -224,7 +202,7 @@ void UnbondedState::set_status(std::size_t c, ContactStatus status) {
   const ContactStatus was = std::exchange(status_[c], status);
   const UnbondedLaw& law = laws_[c];
   const PreciseDeformation& d = deformation_[c];
-  // A contact that closes has no tangential force; where it lets go of a limit it keeps that of the limit.
+  // A contact that closes has no tangential force; where it leaves a limit it keeps that of the limit.
   if (was == ContactStatus::open) slip_[c] = law.slip_at(d, 0);
   const ContactForce after = law_force(c);
   const double jump = std::max(std::abs(after.normal - before.normal), std::abs(after.tangential - before.tangential));
@@ -240,7 +218,7 @@ void UnbondedState::settle(const Rates& rates, bool dead, bool by_motion, Tangen
 
 void UnbondedState::break_bond(std::size_t c, ContactStatus status) {
   const UnbondedLaw& law = laws_[c];
-  // Bonds that are already letting go begin anew with what they have kept.
+  // Bonds that are already being released begin anew with what they have kept.
   for (const std::size_t other : releasing_) kept_[other] = scaled(kept_[other], share_);
   const double bond = linear_spring_energy_of(law.k, forces_[c]);
   const ContactForce force = forces_[c];

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/breakage/load_path.hpp"
+#include "equidem/breakage/event_path.hpp"
 #include "equidem/breakage/unbonded/contact_law.hpp"
 #include "equidem/breakage/unbonded/contact_operator.hpp"
 #include "equidem/breakage/unbonded/contact_rates.hpp"
@@ -18,26 +18,6 @@
 #include "equidem/statics/internal_force.hpp"
 
 namespace equidem {
-
-/// Work of everything from outside, and where it went, N, from the start.
-struct ContactLedger {
-  double work = 0;
-  double elastic = 0;     ///< the energy of the springs, less that at rest
-  double friction = 0;    ///< lost by slip
-  double released = 0;    ///< by bonds that broke
-  double negligible = 0;  ///< energy of forces that are round-off
-  /// The largest term so far. Forces balance to a share of the largest so far, and so are limits met: where
-  /// all forces have vanished again, that share of an energy which is gone is missing.
-  double largest = 0;
-
-  /// All works of a step are in. \param elastic_now behind it
-  void take(double elastic_now);
-  void pass(PathNumbers& n) { n.pass(work, elastic, friction, released, negligible, largest); }
-  /// The sum that should vanish, N.
-  [[nodiscard]] double missing() const { return work - elastic - friction - released; }
-  /// missing() over the largest of its terms so far.
-  [[nodiscard]] double error() const;
-};
 
 class UnbondedState {
  public:
@@ -82,13 +62,15 @@ class UnbondedState {
   [[nodiscard]] const std::vector<std::size_t>& releasing() const { return releasing_; }
   [[nodiscard]] double released_by(std::size_t contact) const { return released_by_[contact]; }
 
+  /// Of all contacts by the mean gradient of the pattern; empty: there is none.
+  [[nodiscard]] const std::vector<ContactDeformation>& affine() const { return affine_; }
   [[nodiscard]] const PreciseMotion& motion() const { return motion_; }
   [[nodiscard]] double lambda() const { return lambda_; }
   [[nodiscard]] double dead() const { return dead_; }
   [[nodiscard]] double load() const;         ///< LoadPath
   [[nodiscard]] double mean_motion() const;  ///< LoadPath::motion
   [[nodiscard]] Tensor2 stress() const;      ///< Pa; 0 where the area is not known
-  [[nodiscard]] const ContactLedger& ledger() const { return ledger_; }
+  [[nodiscard]] const PathLedger& ledger() const { return ledger_; }
   /// The largest unbalanced force over the largest contact force or load so far; 0 as long as none of these is above
   /// 1e-9 of the largest motion times the stiffest spring: what acts is round-off.
   [[nodiscard]] double relative_residual() const { return residual_; }
@@ -132,7 +114,7 @@ class UnbondedState {
   std::vector<ContactForce> forces_;
   std::vector<std::uint8_t> carried_;
   std::vector<double> internal_;
-  ContactLedger ledger_;
+  PathLedger ledger_;
   double rest_energy_ = 0, residual_ = 0, force_scale_ = 0, round_off_force_ = 0;
   bool unsettled_ = false;
 };

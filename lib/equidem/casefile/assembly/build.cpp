@@ -8,14 +8,14 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/motion_case.hpp"
-#include "equidem/contact/bending.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/homogenize/tension_test.hpp"
-#include "equidem/packing/network.hpp"
+#include "equidem/packing/measures.hpp"
 
 namespace equidem {
 namespace {

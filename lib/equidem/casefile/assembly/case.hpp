@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The case file as typed values.
+/// The case file of an assembly as typed values, and the tables that it is bound to.
 #pragma once
 
+#include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -16,16 +17,15 @@
 #include "equidem/assembly/files.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/load_path.hpp"
-#include "equidem/breakage/notch.hpp"
 #include "equidem/breakage/strengths.hpp"
-#include "equidem/casefile/assembly/strength_tables.hpp"
-#include "equidem/casefile/assembly/viscoelastic_case.hpp"
+#include "equidem/casefile/contact_tables.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/casefile/motion_case.hpp"
-#include "equidem/contact/bending.hpp"
+#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
-#include "equidem/contact/prestress/prestress_choice.hpp"
+#include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/homogenize/bounds.hpp"
@@ -34,11 +34,43 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/viscoelasticity.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/size_distribution.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
+
+struct Case;
+
+/// [viscoelastic]. The springs of the case, of whatever source, are the elastic ones that its models refer to.
+struct ViscoelasticCase {
+  Viscoelasticity springs;  ///< tables are completed by build_viscoelasticity
+  std::optional<std::filesystem::path> path;
+  /// Measured springs of the table of `path`, Pa, at a contact with the springs kN and kT of the case.
+  struct Row {
+    double frequency = 0;  ///< Hz
+    SpringConstantsOf<std::complex<double>> springs;
+  };
+  std::vector<Row> rows;
+  std::vector<double> frequencies;        ///< Hz; empty: by the other members
+  std::optional<double> lowest, highest;  ///< Hz
+  int per_decade = 5;
+};
+
+/// The springs over the elastic ones, checked.
+/// \param constants of the case before weighting; none where each contact has springs of its own
+/// \throws Error (bad_input), with the line of the case file: as check(ViscoelasticSpring), a table in Pa beside
+///         springs of their own, or of a kT where the case has none
+Viscoelasticity build_viscoelasticity(const Case& resolved, const std::optional<SpringConstants>& constants);
+
+/// Frequencies of [viscoelastic], Hz.
+/// \throws Error (bad_input), with the line of the case file
+std::vector<double> frequencies_of(const Case& resolved, const Viscoelasticity& springs);
+
+/// \throws Error (bad_input), with the line of the case file, where a verb has no answer for [viscoelastic]
+void check_viscoelastic(const Case& resolved, std::string_view verb);
 
 enum class AssemblyKind { lattice, delaunay, packing, file };
 
@@ -49,7 +81,7 @@ struct AssemblyCase {
   LatticeOptions lattice;
   DelaunayOptions delaunay;
   std::optional<ScalablePacking> packing;  ///< for the kind packing; else none
-  std::optional<Region> region;            ///< in which the packing is measured
+  std::optional<Rectangle> region;         ///< in which the packing is measured
   double gap_tolerance = 0;                ///< of the contacts of a packing
   std::filesystem::path path;              ///< path resolved against the folder of the file
   AssemblyFileOptions file;
@@ -210,3 +242,26 @@ std::optional<std::string> unit_of_case_key(std::string_view path);
 std::string to_toml(const Case& resolved, const std::filesystem::path& folder);
 
 }  // namespace equidem
+
+namespace equidem::casefile {
+
+/// [[load]].
+struct LoadTable {
+  Load load;
+  std::string load_case;  ///< empty: acts in every case
+};
+
+/// A Case and the tables from which it is completed.
+struct CaseTables : Case, MotionTables {
+  std::vector<LoadTable> load_tables;
+  PackingTables packing_tables;
+  std::optional<SpringsTable> springs_table;
+};
+
+/// The case file, schema "equidem/1".
+const File<CaseTables>& case_file();
+
+/// [output] of all case files.
+std::vector<Key<OutputCase>> output_keys();
+
+}  // namespace equidem::casefile

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/removed_keys.hpp"
-#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
@@ -353,12 +353,6 @@ class Checker {
     return present.empty() ? all : present;
   }
 
-  [[nodiscard]] std::vector<std::string> names_of_all_keys() const {
-    std::vector<std::string> names;
-    for (const KeySpec& key : spec_.keys) names.push_back(key.name);
-    return names;
-  }
-
   static std::string listed_paths(const std::vector<const KeySpec*>& keys) {
     std::vector<std::string> paths;
     for (const KeySpec* key : keys) paths.push_back(key->path());
@@ -388,7 +382,7 @@ class Checker {
       remedy = fmt::format("Did you mean '{}'?", *meant);
     } else if (!elsewhere.empty()) {
       remedy = place_of(elsewhere, value.line == 0);
-    } else if (const auto similar = nearest(name, names_of_all_keys())) {
+    } else if (const auto similar = nearest(name, names_in(spec_.keys))) {
       const auto paths = keys_elsewhere([&](const KeySpec& key) { return key.name == *similar; });
       remedy = fmt::format("Did you mean {}?", listed_paths(paths));
     }

@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
+#include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
+#include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::casefile {
@@ -109,34 +114,224 @@ void append_key(std::string& out, const KeySpec& key) {
   if (!meaning.empty()) append_wrapped(out, meaning, indent);
 }
 
+/// Whether the table that this one is like describes the key.
+bool is_described_elsewhere(const FileSpec& spec, const KeySpec& key) {
+  const TableSpec* table = spec.table(key.table);
+  const KeySpec* there = table == nullptr || table->like.empty() ? nullptr : spec.key(table->like, key.name);
+  return there != nullptr && there->help == key.help;
+}
+
+/// "as in [bonds]: normal_dashpot, ...". \param quote of names
+std::string described_elsewhere(const FileSpec& spec, const TableSpec& table, const char* quote) {
+  std::vector<std::string> names;
+  for (const KeySpec& key : spec.keys)
+    if (key.table == table.name && is_described_elsewhere(spec, key))
+      names.push_back(fmt::format("{0}{1}{0}", quote, key.name));
+  return fmt::format("as in {0}{1}{0}: {2}", quote, spec.table(table.like)->heading(), joined(names));
+}
+
 }  // namespace
 
 std::string describe_keys(const FileSpec& spec, std::string_view table) {
   std::string out;
   for (const KeySpec& key : spec.keys)
-    if (key.table == table) append_key(out, key);
+    if (key.table == table && !is_described_elsewhere(spec, key)) append_key(out, key);
   return out;
 }
 
 std::string describe_table(const FileSpec& spec, const TableSpec& table) {
-  return fmt::format("\n{}  {}{}\n", table.heading(), table.help, table.required ? "; required" : "") +
-         describe_keys(spec, table.name);
+  std::string out = fmt::format("\n{}  {}{}\n", table.heading(), table.help, table.required ? "; required" : "");
+  if (!table.like.empty()) append_wrapped(out, described_elsewhere(spec, table, ""), 2);
+  return out + describe_keys(spec, table.name);
 }
 
 std::string markdown_keys(const FileSpec& spec, std::string_view table) {
-  if (std::ranges::none_of(spec.keys, [&](const KeySpec& key) { return key.table == table; })) return {};
-  std::string out = "\n| key | value | default | meaning |\n|---|---|---|---|\n";
+  std::string out;
   for (const KeySpec& key : spec.keys)
-    if (key.table == table)
+    if (key.table == table && !is_described_elsewhere(spec, key))
       out +=
           fmt::format("| `{}` | {} | {} | {} |\n", key.name, escaped(expected(key)),
                       key.has_default() ? fmt::format("`{}`", key.fallback) : need_of(key), escaped(meaning_of(key)));
-  return out;
+  return out.empty() ? out : "\n| key | value | default | meaning |\n|---|---|---|---|\n" + out;
 }
 
 std::string markdown_table(const FileSpec& spec, const TableSpec& table) {
-  return fmt::format("\n### `{}`\n\n{}{}\n", table.heading(), escaped(table.help), table.required ? "; required" : "") +
-         markdown_keys(spec, table.name);
+  std::string out =
+      fmt::format("\n### `{}`\n\n{}{}\n", table.heading(), escaped(table.help), table.required ? "; required" : "");
+  if (!table.like.empty()) out += fmt::format("\n{}\n", described_elsewhere(spec, table, "`"));
+  return out + markdown_keys(spec, table.name);
+}
+
+namespace {
+
+std::vector<std::string> segments_of(std::string_view path) {
+  std::vector<std::string> segments(1);
+  for (const char c : path) {
+    if (c == '.')
+      segments.emplace_back();
+    else
+      segments.back() += c;
+  }
+  return segments;
+}
+
+bool is_bare_word(const std::string& text) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.' || c == '/' || c == ' ';
+  };
+  return !text.empty() && !(text[0] >= '0' && text[0] <= '9') && text[0] != '-' && text[0] != ' ' &&
+         std::all_of(text.begin(), text.end(), allowed);
+}
+
+void put_source(TomlValue& value, const std::shared_ptr<const std::string>& source) {
+  value.source = source;
+  value.line = 0;
+  for (TomlValue& item : value.items) put_source(item, source);
+  for (auto& [name, entry] : value.entries) put_source(entry, source);
+}
+
+TomlValue value_from(const std::string& text, const std::string& source) {
+  TomlValue parsed;
+  try {
+    parsed = parse_toml("value = " + text, source);
+  } catch (const Error& error) {
+    if (const auto advice = number_advice(text))
+      bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), advice->why, advice->remedy);
+    if (is_bare_word(text)) {
+      TomlValue word;
+      word.type = TomlValue::Type::text;
+      word.text = text;
+      return word;
+    }
+    bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), error.why(),
+                 "Write a number, true, false, [list] or text");
+  }
+  if (parsed.entries.size() != 1) {
+    bad_input_at(source, "this is more than one value", "one key is set at a time", "Use one option for each key");
+  }
+  return parsed.entries.front().value;
+}
+
+/// Take the key, or one of several tables, out of the case.
+void remove(TomlValue& parent, const std::string& segment, const std::string& source) {
+  TomlValue* const found = parent.find(segment);
+  if (found == nullptr)
+    bad_input_at(source, fmt::format("there is no '{}' to take out", segment),
+                 "'none' takes out a key of the case file", "Check its name");
+  if (parent.is_array()) {
+    parent.items.erase(parent.items.begin() + (found - parent.items.data()));
+  } else {
+    std::erase_if(parent.entries, [&](const auto& entry) { return entry.name == segment; });
+  }
+}
+
+}  // namespace
+
+void apply_override(TomlValue& root, const std::string& assignment, const std::string& option) {
+  std::string shown = fmt::format("{} {}", option, assignment);
+  std::replace(shown.begin(), shown.end(), '\n', ' ');
+  const auto source = std::make_shared<const std::string>(std::move(shown));
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    bad_input_at(*source, "this sets nothing", "a key, '=' and a value are needed", "Write it as springs.kT=0.3e9");
+  }
+  const std::string given(trimmed(std::string_view(assignment).substr(equals + 1)));
+  TomlValue value = value_from(given, *source);
+  put_source(value, source);
+
+  const auto segments = segments_of(trimmed(std::string_view(assignment).substr(0, equals)));
+  TomlValue* at = &root;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const std::string& segment = segments[k];
+    if (given == "none" && k + 1 == segments.size()) return remove(*at, segment, *source);
+    if (!at->is_array() && !at->is_table()) {
+      const bool of_file = at->type == TomlValue::Type::text && at->text.ends_with(".toml");
+      bad_input_at(*source, fmt::format("there is nothing below '{}'", segments[k - 1]),
+                   fmt::format("in the case file it is {}", at->shown()),
+                   of_file ? fmt::format("Change the value in that file, or write [{}] with its keys in the case in "
+                                         "place of the name of the file; a sweep varies kT/kN by --key ratio",
+                                         segments[k - 1])
+                           : "Set the key itself, or change the file");
+    }
+    TomlValue* next = at->find(segment);
+    if (next == nullptr && at->is_array()) {
+      bad_input_at(*source, fmt::format("there is no entry '{}'", segment),
+                   fmt::format("the case file has {} of them, counted from 0", at->items.size()),
+                   "Name one that exists");
+    }
+    if (next == nullptr) {
+      at->entries.push_back({segment, {}});
+      next = &at->entries.back().value;
+      next->source = source;
+    }
+    at = next;
+  }
+  *at = std::move(value);
+}
+
+TomlValue parse_document(std::string_view text, const std::string& source, std::span<const std::string> overrides) {
+  TomlValue root = parse_toml(text, source);
+  for (const std::string& assignment : overrides) apply_override(root, assignment);
+  return root;
+}
+
+TomlValue read_document(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  return parse_document(read_file(path), path.string(), overrides);
+}
+
+const KeySpec* known_key(const FileSpec& spec, std::string_view path) {
+  std::string without_indices;
+  for (const std::string& segment : segments_of(path))
+    if (!number_from<std::size_t>(segment)) without_indices += (without_indices.empty() ? "" : ".") + segment;
+  const auto found = std::ranges::find(spec.keys, without_indices, &KeySpec::path);
+  return found == spec.keys.end() ? nullptr : &*found;
+}
+
+double number_of(const TomlValue& value) {
+  if (value.type == TomlValue::Type::boolean) return 0;
+  return bytes_of(value).value_or(0);
+}
+
+std::filesystem::path path_of(TomlValue& value, const std::filesystem::path& folder) {
+  const std::filesystem::path path = opened(value.text, folder);
+  value.text = path.string();
+  value.is_path = true;
+  return path;
+}
+
+const std::vector<TomlValue>& repeated(const TomlValue& root, const char* name) {
+  static const std::vector<TomlValue> none;
+  const TomlValue* list = root.find(name);
+  return list == nullptr ? none : list->items;
+}
+
+std::filesystem::path opened(const std::filesystem::path& written, const std::filesystem::path& folder) {
+  return (written.is_absolute() ? written : folder / written).lexically_normal();
+}
+
+void check_names(const TomlValue& root, const char* list, const std::string& prefix) {
+  const std::string key = fmt::format("{}{}.name", prefix, list);
+  std::map<std::string_view, const TomlValue*> known;
+  for (const TomlValue& table : repeated(root, list)) {
+    const TomlValue& name = *table.find("name");
+    if (name.text.empty()) fail_at(name, key, "the name is empty", fmt::format("a name means one {}", list), "Name it");
+    if (const auto [other, is_new] = known.try_emplace(name.text, &table); !is_new)
+      fail_at(name, key, fmt::format("there are two {}s '{}'", list, name.text),
+              fmt::format("the other is at {}", other->second->where()), "Give each its own name");
+  }
+}
+
+void check_plain_name(const TomlValue& value, const std::string& key, const std::string& what, const std::string& use) {
+  if (is_plain_name(value.text)) return;
+  fail_at(value, key, fmt::format("{} cannot name {}", value.shown(), what), use,
+          "Use letters, digits, '_' and '-' only");
+}
+
+void check_box(const TomlValue& given, const std::string& key, Vec2 low, Vec2 high) {
+  if (low.x >= high.x || low.y >= high.y)
+    fail_at(given, key, fmt::format("the box {} is empty", given.shown()), "it is [x_min, y_min, x_max, y_max]",
+            "Put the smaller numbers first");
 }
 
 }  // namespace equidem::casefile

@@ -102,6 +102,7 @@ struct TableSpec {
   std::string when_key = {};  ///< of the table around it, or of another: "assembly.kind"
   std::vector<std::string> when = {};
   std::string help = {};
+  std::string like = {};  ///< a table that describes the keys that both have with the same help
 
   /// "[springs]", "[[load]]".
   [[nodiscard]] std::string heading() const { return repeated ? "[[" + name + "]]" : "[" + name + "]"; }

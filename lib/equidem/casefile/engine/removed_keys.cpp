@@ -7,6 +7,14 @@
 namespace equidem::casefile {
 namespace {
 
+constexpr const char* chain_of_segments = "Give a chain of walls of shape = \"segment\": ends that meet are joined";
+constexpr const char* table_of_displacement =
+    "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by displacement and "
+    "schedule of [[wall]]";
+constexpr const char* end_of_law =
+    "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero overlap)";
+constexpr const char* both_limited = "Leave it out: friction limits spring and dashpot together";
+
 /// Keys and tables, in the order of the reference page.
 constexpr std::array keys_of_earlier_versions{
     RemovedKey{"springs", "ks", "", "Write kT instead"},
@@ -17,43 +25,27 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"output", "csv", "", "Name what is written in files, such as files = ['vtk', 'picture']"},
     RemovedKey{"output", "vtk", "", "Name what is written in files, such as files = ['csv', 'picture']"},
     RemovedKey{"output", "picture", "", "Name what is written in files, such as files = ['csv', 'vtk']"},
-    RemovedKey{"wall", "shape", "arc", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
-    RemovedKey{"wall", "centre", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
-    RemovedKey{"wall", "radius", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
-    RemovedKey{"wall", "from", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
-    RemovedKey{"wall", "to", "", "Give a chain of walls of shape = \"segment\": ends that meet are joined"},
+    RemovedKey{"wall", "shape", "arc", chain_of_segments},
+    RemovedKey{"wall", "centre", "", chain_of_segments},
+    RemovedKey{"wall", "radius", "", chain_of_segments},
+    RemovedKey{"wall", "from", "", chain_of_segments},
+    RemovedKey{"wall", "to", "", chain_of_segments},
     RemovedKey{"shaking", "unit", "", "Leave it out: accelerations are in m/s² (1 gal = 0.01, 1 g = 9.80665)"},
-    RemovedKey{"shaking", "record", "",
-               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
-               "displacement and schedule of [[wall]]"},
-    RemovedKey{"shaking", "quantity", "",
-               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
-               "displacement and schedule of [[wall]]"},
-    RemovedKey{"shaking", "baseline", "",
-               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
-               "displacement and schedule of [[wall]]"},
-    RemovedKey{"shaking", "scale", "",
-               "Integrate the record by a script, and let walls follow a [[schedule]] of kind = \"table\" by "
-               "displacement and schedule of [[wall]]"},
+    RemovedKey{"shaking", "record", "", table_of_displacement},
+    RemovedKey{"shaking", "quantity", "", table_of_displacement},
+    RemovedKey{"shaking", "baseline", "", table_of_displacement},
+    RemovedKey{"shaking", "scale", "", table_of_displacement},
     RemovedKey{"schedule", "kind", "smooth_table", "Write kind = \"table\" with points close enough"},
     RemovedKey{"measures", "thrown_gap", "", "Find bodies that lie apart in grains.csv or in the frames"},
     RemovedKey{"measures", "columns", "", "Leave it out: columns are two largest diameters wide"},
-    RemovedKey{"collisions", "contact_end", "",
-               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
-               "overlap)"},
-    RemovedKey{"collisions", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
-    RemovedKey{"collisions.walls", "contact_end", "",
-               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
-               "overlap)"},
-    RemovedKey{"collisions.walls", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
-    RemovedKey{"collisions.pair", "contact_end", "",
-               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
-               "overlap)"},
-    RemovedKey{"collisions.pair", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
-    RemovedKey{"stage.pair", "contact_end", "",
-               "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero "
-               "overlap)"},
-    RemovedKey{"stage.pair", "friction_cap", "", "Leave it out: friction limits spring and dashpot together"},
+    RemovedKey{"collisions", "contact_end", "", end_of_law},
+    RemovedKey{"collisions", "friction_cap", "", both_limited},
+    RemovedKey{"collisions.walls", "contact_end", "", end_of_law},
+    RemovedKey{"collisions.walls", "friction_cap", "", both_limited},
+    RemovedKey{"collisions.pair", "contact_end", "", end_of_law},
+    RemovedKey{"collisions.pair", "friction_cap", "", both_limited},
+    RemovedKey{"stage.pair", "contact_end", "", end_of_law},
+    RemovedKey{"stage.pair", "friction_cap", "", both_limited},
     RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
     RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
     RemovedKey{"settling", "start", "", "Leave it out: bodies fall in time; method = \"growth\" begins dense"},

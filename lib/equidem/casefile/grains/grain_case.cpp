@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/casefile/engine/value.hpp"
+#include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
@@ -190,15 +190,9 @@ std::vector<GrainStage> build_grain_stages(const GrainCase& resolved, double ste
     stages.push_back({.name = "run", .scene = build_grain_scene(resolved, step), .steps = count_steps(resolved, step)});
   for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
     const StageCase& stage = resolved.stages[k];
-    GrainStage& made =
-        stages.emplace_back(GrainStage{.name = stage.name,
-                                       .scene = stage.scene,
-                                       .steps = stage.steps ? *stage.steps : count_steps(*stage.duration, step),
-                                       .end = stage.end,
-                                       .bodies = stage.bodies,
-                                       .renamed_walls = stage.renamed_walls,
-                                       .bonds = stage.bonds,
-                                       .place = repeated(resolved.document, "stage")[k].where()});
+    GrainStage& made = stages.emplace_back(static_cast<const GrainStage&>(stage));
+    made.steps = stage.given_steps ? *stage.given_steps : count_steps(*stage.duration, step);
+    made.place = repeated(resolved.document, "stage")[k].where();
     made.scene.pairs = pairs_at(stage.contacts, resolved.options.law, step);
   }
   return stages;

@@ -14,24 +14,18 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/fields/box_measures.hpp"
-#include "equidem/grains/scene/grain_time_step.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/motion/probe.hpp"
 
 namespace equidem {
 
-/// One [[stage]].
-struct StageCase {
-  std::string name;
-  std::optional<double> duration;     ///< s; with an end its limit
-  std::optional<std::int64_t> steps;  ///< instead
-  StageEnd end;
-  StageBodies bodies;
-  std::vector<WallRenaming> renamed_walls;
-  std::optional<StageBonds> bonds;
-  /// As GrainStage::scene; `pairs` is not set. Its bodies are all that the run may have until then, with every group.
-  GrainScene scene;
+/// One [[stage]]. The scene has all bodies that the run may have until then, with every group; build_grain_stages sets
+/// its pairs and the number of steps.
+struct StageCase : GrainStage {
+  std::optional<double> duration;           ///< s; with an end its limit
+  std::optional<std::int64_t> given_steps;  ///< instead
   ContactTable contacts;
   std::optional<Shaking> shaking;  ///< from the start of the stage; also set in the walls
 };

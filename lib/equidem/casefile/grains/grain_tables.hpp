@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "equidem/casefile/contact_tables.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/motion_case.hpp"
-#include "equidem/casefile/springs_table.hpp"
 #include "equidem/grains/scene/grain_file.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
@@ -51,14 +51,6 @@ struct BondsTable {
   std::optional<std::filesystem::path> path;
 };
 
-/// [[stage]], without the tables in it.
-struct StageTable {
-  std::string name;
-  std::optional<double> duration;     ///< s
-  std::optional<std::int64_t> steps;  ///< instead
-  std::optional<Vec2> gravity;        ///< m/s²
-};
-
 /// A GrainCase and the tables from which it is completed.
 struct GrainTables : GrainCase, MotionTables {
   CommonBodyTable common;
@@ -69,16 +61,12 @@ struct GrainTables : GrainCase, MotionTables {
   std::optional<StrengthOptions> strength;
   std::optional<CellTable> cell_table;
   std::optional<ShakingOptions> shaking_table;
-  std::vector<StageTable> stage_tables;
 };
 
 /// The case file of colliding bodies, schema "equidem/1".
 const File<GrainTables>& grain_file();
 
 void bind_collisions(File<GrainTables>& file);
-void bind_bonds(File<GrainTables>& file);
-void bind_cell(File<GrainTables>& file);
-void bind_shaking(File<GrainTables>& file);
 void bind_stage_cell(File<GrainTables>& file);
 void bind_stages(File<GrainTables>& file);
 
@@ -140,8 +128,7 @@ StageBonds read_stage_bonds(const TomlValue& table, const GrainTables& tables, s
 
 /// Set the periodic cell of the scene.
 /// \throws Error (bad_input) with line and key: a height that is missing, [measures], spheres in a cell along x and y,
-///         a deformation of one that repeats along x alone, a schedule that is not there, or that counts from the
-///         start of the run beside stages
+///         a deformation of one that repeats along x alone, a schedule that is not there
 void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedules, GrainTables& tables);
 
 /// The cell of a stage, from that of the stage before: rates end with their stage; a component keeps its stress unless
@@ -149,15 +136,6 @@ void complete_cell(const TomlValue& root, std::span<const NamedSchedule> schedul
 /// \throws Error (bad_input) with line and key as complete_cell; a stage that deforms a cell that is not there
 std::optional<PeriodicCell> cell_of_stage(const TomlValue& stage, std::span<const NamedSchedule> schedules,
                                           std::optional<PeriodicCell> cell);
-
-/// [stage.shaking].
-std::vector<Key<ShakingOptions>> shaking_keys();
-/// The shaking of a table.
-/// \param path of the table
-/// \param duration of the run or of the stage, s; none: not known in seconds
-/// \throws Error (bad_input) with line and key: a duration of no whole cycles
-Shaking read_shaking(const TomlValue& table, const std::string& path, const ShakingOptions& given,
-                     std::optional<double> duration);
 
 /// The stages with their walls and gravity.
 /// \param tables with walls

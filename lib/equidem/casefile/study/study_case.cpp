@@ -6,7 +6,6 @@
 #include <set>
 
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/casefile/engine/value.hpp"
 #include "equidem/core/file.hpp"
 
 namespace equidem {

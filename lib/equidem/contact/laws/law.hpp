@@ -3,7 +3,7 @@
 /// The members of a law of normal contact.
 ///
 /// A law is a struct without data in a file of its own and one line of laws/list.hpp; models to copy are
-/// linear_dashpot.hpp for p = 1, hertz_dashpot.hpp for other p. check_law() reports a missing member at compile time.
+/// linear_dashpot.hpp for p = 1, hertz_dashpot.hpp for other p. A law without a member does not compile.
 ///
 /// A force law is F = spring(k, d) + dashpot(c, d) v with the overlap d and the closing speed v. Loops over eight
 /// contacts at a time evaluate it in SI units; loops over single contacts evaluate it without dimensions, as the maps
@@ -23,8 +23,6 @@
 ///
 /// The letter is one that no other law has.
 #pragma once
-
-#include <concepts>
 
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/contact/restitution.hpp"
@@ -79,53 +77,5 @@ struct LinearSpring {
 };
 
 }  // namespace laws
-
-/// Compiles if a law has every member that its kind needs.
-template <class Law>
-consteval bool check_law() {
-#define EQUIDEM_LAW_NEEDS(expression, type, message) \
-  static_assert(                                     \
-      requires(double x, ContactEnd end) {           \
-        { expression } -> std::convertible_to<type>; \
-      },                                             \
-      message)
-  EQUIDEM_LAW_NEEDS(Law::name, const char*, "a law needs `name`, its word in case files");
-  EQUIDEM_LAW_NEEDS(Law::letter, const char*, "a law needs `letter`, its short name in tables");
-  EQUIDEM_LAW_NEEDS(Law::source, const char*, "a law needs `source`, a reference");
-  EQUIDEM_LAW_NEEDS(Law::summary, const char*, "a law needs `summary`, a phrase for help and reports");
-  EQUIDEM_LAW_NEEDS(Law::kind, LawKind, "a law needs `kind`");
-  EQUIDEM_LAW_NEEDS(Law::has_dashpot, bool, "a law needs `has_dashpot`: then it has a contact end as well");
-  EQUIDEM_LAW_NEEDS(Law::usual_end, ContactEnd, "a law needs `usual_end` of its contacts");
-  EQUIDEM_LAW_NEEDS(Law::spring_power, double, "a law needs `spring_power`, p of F = k d^p");
-  EQUIDEM_LAW_NEEDS(Law::stiffness_unit, const char*, "a law needs `stiffness_unit`");
-  EQUIDEM_LAW_NEEDS(Law::hertz_spring, bool, "a law needs `hertz_spring`: whether k follows from Young's modulus");
-  EQUIDEM_LAW_NEEDS(Law::steps_per_contact, double, "a law needs `steps_per_contact` of an automatic step");
-  EQUIDEM_LAW_NEEDS(Law::length_factor(x), double, "a law needs `length_factor(d_c)`, d_c^(p - 1)");
-  EQUIDEM_LAW_NEEDS(Law::energy(x, x), double, "a law needs `energy(k, d)` of its spring");
-  EQUIDEM_LAW_NEEDS(Law::elastic_impact(x, x, x), ElasticImpact, "a law needs `elastic_impact(k, m, v)`");
-  EQUIDEM_LAW_NEEDS(Law::stiffness_from_overlap(x, x, x, x), double,
-                    "a law needs `stiffness_from_overlap(overlap, speed, m, damping_ratio)`");
-  EQUIDEM_LAW_NEEDS(Law::dissipation(x, end), double, "a law needs `dissipation(restitution, end)`");
-  EQUIDEM_LAW_NEEDS(Law::damping_ratio(x, end), double, "a law needs `damping_ratio(restitution, end)`");
-  EQUIDEM_LAW_NEEDS(Law::stable_step(x), double, "a law needs `stable_step(damping_ratio)`");
-  static_assert(
-      requires(double x) { Law::check_range(x, x); },
-      "a law needs `check_range(a, restitution)`, its limits of validity");
-  if constexpr (Law::kind == LawKind::force) {
-    EQUIDEM_LAW_NEEDS(Law::spring(x, x), double, "a force law needs `spring(k, d)`");
-    EQUIDEM_LAW_NEEDS(Law::dashpot(x, x), double, "a force law needs `dashpot(c, d)`");
-  } else if constexpr (Law::kind == LawKind::map) {
-    EQUIDEM_LAW_NEEDS(Law::step(x, x, x, x, true), ContactStep,
-                      "a map needs `step(depth, closing, a, restitution, first)`");
-  } else {
-    static_assert(Law::kind == LawKind::simultaneous);
-    EQUIDEM_LAW_NEEDS(Law::prepare(x, x, x, end, x), ExactPair,
-                      "a simultaneous law needs `prepare(m, k, dissipation, end, dt)`");
-    EQUIDEM_LAW_NEEDS(Law::step(ExactPair{}, x, x, true, x, x), ExactStep,
-                      "a simultaneous law needs `step(pair, overlap, closing, touching, h0, h1)`");
-  }
-#undef EQUIDEM_LAW_NEEDS
-  return true;
-}
 
 }  // namespace equidem

@@ -4,7 +4,6 @@
 #include <array>
 #include <string_view>
 
-#include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -12,7 +11,6 @@ namespace {
 
 template <class Law>
 constexpr LawDescription description_of(NormalLaw law) {
-  static_assert(check_law<Law>());
   LawDescription d;
   d.law = law;
   d.name = Law::name;
@@ -62,16 +60,8 @@ const LawDescription& describe(NormalLaw law) {
   return descriptions[static_cast<std::size_t>(law)];
 }
 
-NormalLaw normal_law_from(const std::string& name) {
-  return entry_named(normal_laws(), name, "law of normal contact").law;
-}
-
 std::string to_string(NormalLaw law) {
   return describe(law).name;
-}
-
-std::string letter_of(NormalLaw law) {
-  return describe(law).letter;
 }
 
 std::string names_of_laws(LawKind kind) {

@@ -52,11 +52,7 @@ struct LawDescription {
 std::span<const LawDescription> normal_laws();
 const LawDescription& describe(NormalLaw law);
 
-/// \throws Error (bad_input) naming the choices
-NormalLaw normal_law_from(const std::string& name);
 std::string to_string(NormalLaw law);
-/// "C", "T", "F", "P", "X".
-std::string letter_of(NormalLaw law);
 inline LawKind kind_of(NormalLaw law) {
   return describe(law).kind;
 }

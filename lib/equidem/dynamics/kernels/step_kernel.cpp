@@ -5,8 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "equidem/dynamics/kernels/finite_motion_step.hpp"
-#include "equidem/dynamics/kernels/small_motion_step.hpp"
+#include "equidem/dynamics/kernels/motion_step.hpp"
 
 namespace equidem {
 namespace {

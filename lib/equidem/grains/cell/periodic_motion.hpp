@@ -1,16 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Steps of a periodic cell that deforms, and its state.
+///
+/// Images of the bodies of a periodic cell, which the loops over pairs and over parts take for bodies.
+///
+/// A pair of i and an image of j is listed once, for i < j, the image as a body with a number behind those of all
+/// bodies, its parts behind all parts. Its impulse goes to the place for a body of a later block and from there to j.
+/// Loops and scenes without a cell do not change by it.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "equidem/core/vector.hpp"
-#include "equidem/grains/cell/periodic_images.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
+
+struct GrainSystem;
+struct ContactState;
+struct PeriodicCell;
+
+Periods periods_of(const PeriodicCell& cell);
+
+/// Whether a contact is one of near pairs or parts, not of candidates.
+bool is_listed(const GrainSystem& system, const ContactState& contact);
+/// Find the images again, and replace the near pairs and parts by contacts, in any order; those with walls are not
+/// read.
+void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts);
+
+/// Find the images again for the present margin of the candidates; contacts keep their state.
+void find_images(GrainSystem& system);
+
+/// Move the images to where their bodies are, for the loops.
+void place_images(GrainSystem& system);
+/// Turn those of ellipses and clumps as their bodies.
+void turn_images(GrainSystem& system);
+
+/// Steps after which bodies that have left the cell are taken as their images inside. That depends on the step alone: a
+/// resumed run does the same.
+constexpr std::int64_t steps_between_wraps = 256;
+
+/// Take each body as its image in the cell, and the period along y as the one of least shift. Candidates are found
+/// anew.
+void wrap_bodies(GrainSystem& system);
 
 struct GrainContact;
 struct GrainSystem;
@@ -34,17 +70,22 @@ struct CellSums {
   double work = 0;       ///< J
 };
 
+/// What the motion of a cell goes on from.
+struct CellMotion {
+  Periods now, before;                    ///< at the start of this step, of the last one
+  Tensor2 gradient = {};                  ///< L in the step that is being made, 1/s
+  Voigt strain = {};                      ///< as in CellState
+  Tensor2 moment = {};                    ///< sum of impulse times branch of the last kick, N s m
+  Tensor2 stress = {};                    ///< deforming cells: at the start of this step, Pa
+  std::array<CellControl, 2> controls{};  ///< of xx and yy
+};
+
 /// The cell in the present step.
-struct MovingCell {
+struct MovingCell : CellMotion {
   bool active = false, deforms = false;
   Vec2 centre;                 ///< it stays in place, m
   double largest_radius = 0;   ///< of the bodies, m
-  Periods now, before, next;   ///< at the start of this step, of the last one, at the end of this one
-  Tensor2 gradient;            ///< L in the step that is being made, 1/s
-  Voigt strain;                ///< as in CellState
-  Tensor2 moment;              ///< sum of impulse times branch of the last kick, N s m
-  Tensor2 stress;              ///< deforming cells: at the start of this step, Pa
-  CellControl controls[2];     ///< of xx and yy
+  Periods next;                ///< at the end of this step
   std::vector<CellSums> sums;  ///< of each block
   CellSums bond_sums;          ///< of the impulses of bonds on images
   double solid = 0;            ///< area of the bodies, m²
@@ -75,10 +116,5 @@ void begin_cell_stress(GrainSystem& system, std::span<const GrainContact> contac
 
 /// The cell as it is, its stress by the contacts of the last step.
 CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact> contacts);
-
-/// The numbers of a cell besides places of bodies, to save and to restore.
-std::vector<double> numbers_of_cell(const MovingCell& cell);
-/// \return whether there are as many as a cell has
-bool take_numbers(const std::vector<double>& numbers, MovingCell& cell);
 
 }  // namespace equidem

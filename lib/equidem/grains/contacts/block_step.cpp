@@ -5,8 +5,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "equidem/grains/contacts/move_bodies.hpp"
-
 namespace equidem {
 namespace {
 
@@ -28,7 +26,7 @@ void collide_block(GrainSystem& system, std::size_t block, bool clear) {
 void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
   std::vector<BodyImpulse>& impulses = system.bodies.impulses;
   for (const auto& [body, impulse] : system.bodies.inwards[block]) {
-    BodyImpulse& sum = impulses[static_cast<std::size_t>(body)];
+    BodyImpulse& sum = impulses[body];
     sum.impulse += impulse->impulse;
     sum.torque += impulse->torque;
     sum.rim += impulse->rim;
@@ -56,7 +54,6 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) system.lost.*term.value += sums.lost.*term.value;
   system.counters.evaluations += sums.evaluations;
   system.counters.contacts += sums.contacts;
-  if (sums.evaluations > 0) system.free_flight = false;
   system.deepest = std::max(system.deepest, sums.deepest);
   for (std::size_t w = 0; w < sums.on_walls.size(); ++w) system.walls.loads[w].add_in_step(sums.on_walls[w]);
   sums = {};
@@ -66,20 +63,19 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 
 bool touches_walls_alone(const GrainSystem& system) {
   if (system.shapes.parts.empty() || system.cell.active) return system.contacts.near.active;
-  const std::size_t discs = system.bodies.constants.size() - system.shapes.shaped.size();
-  return system.contacts.near_parts.active && (system.contacts.near.active || discs < 2);
+  const bool discs = system.bodies.constants.size() > system.shapes.shaped.size();
+  return system.contacts.near_parts.active && (system.contacts.near.active || !discs);
 }
 
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   if (!system.cell.images.empty()) place_images(system);
   const bool keeps = !system.bodies.impulses_before.empty();
   if (keeps) system.bodies.impulses_before.swap(system.bodies.impulses);
-  const bool clear = keeps || (!system.free_flight && !system.bodies.cleared);
+  const bool clear = keeps || !system.bodies.cleared;
   system.bodies.in_place = move && system.contacts.near.active && !keeps && !system.options.verlet() &&
                            system.shapes.parts.empty() && !system.cell.active;
   system.bodies.cleared = system.bodies.in_place && !system.contacts.near.record;
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
-  system.free_flight = true;
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();
   const bool walls_alone = touches_walls_alone(system);
   system.bodies.blocks.each_in_turn(
@@ -87,7 +83,7 @@ void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
       [&](std::size_t block) {
         complete_impulses(system, block, turning);
         if (walls_alone) collide_with_walls(system, block, loop);
-        if (move) move(system, block, false);
+        if (move) move(system, block);
       });
   if (!walls_alone) {
     BlockSums& sums = system.bodies.sums[0];

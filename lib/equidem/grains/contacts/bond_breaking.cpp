@@ -5,12 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
@@ -28,7 +26,7 @@ std::size_t number_of(const BreakableBonds& breakable, const TiedPair& bond) {
 
 /// The place of the bond as far as the levers say, between both centres.
 Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
-  return system.bodies.motions[static_cast<std::size_t>(bond.i)].position + bond.share * branch_of(system, bond);
+  return system.bodies.motions[bond.i].position + bond.share * branch_of(system, bond);
 }
 
 /// The bodies of a bond as a contact that begins now.
@@ -161,7 +159,6 @@ bool break_bonds(GrainSystem& system) {
     any = true;
   }
   if (!any) return false;
-  system.free_flight = false;
   tie_those_left(system);
   if (system.contacts.near.active) load_pair_bodies(system);
   find_candidates(system);
@@ -187,28 +184,6 @@ void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
   for (const BondBreak& event : breakable.breaks) by_number[event.bond] = 1;
   for (std::size_t b = 0; b < breakable.all.size(); ++b) breakable.broken[b] = by_number[breakable.number[b]];
   tie_those_left(system);
-}
-
-std::vector<double> numbers_of(const std::vector<BondBreak>& breaks) {
-  std::vector<double> numbers;
-  for (const BondBreak& event : breaks) {
-    numbers.insert(numbers.end(), {static_cast<double>(event.step), static_cast<double>(event.bond),
-                                   static_cast<double>(event.mode), event.place.x, event.place.y, event.energy});
-  }
-  return numbers;
-}
-
-std::vector<BondBreak> breaks_of(const std::vector<double>& numbers) {
-  std::vector<BondBreak> breaks;
-  for (std::size_t at = 0; at + numbers_per_break <= numbers.size(); at += numbers_per_break) {
-    const double* n = numbers.data() + at;
-    breaks.push_back({static_cast<std::int64_t>(n[0]),
-                      static_cast<std::size_t>(n[1]),
-                      static_cast<BreakMode>(n[2]),
-                      {n[3], n[4]},
-                      n[5]});
-  }
-  return breaks;
 }
 
 }  // namespace equidem

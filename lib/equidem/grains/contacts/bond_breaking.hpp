@@ -8,18 +8,41 @@
 /// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others, and rub
 /// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
 /// and an unstretched tangential spring.
+///
+/// Breaks of the bonds of colliding discs.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "equidem/breakage/break_search.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/core/vector.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/scene/bond_break.hpp"
+#include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
+
+/// A bond that broke.
+struct BondBreak {
+  std::int64_t step = 0;  ///< steps done when it broke
+  std::size_t bond = 0;   ///< in the order of the scene
+  BreakMode mode = BreakMode::tension;
+  Vec2 place = {};    ///< of the bond, m
+  double energy = 0;  ///< of its springs, J (discs: per metre of depth)
+};
+
+/// The numbers of a break in a saved state.
+inline constexpr auto break_numbers = [](auto& event, const auto& visit) {
+  visit(event.step), visit(event.bond), visit(event.mode), visit(event.place.x), visit(event.place.y);
+  visit(event.energy);
+};
+
+/// The bonds that have not broken, in their order.
+std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks);
 
 /// Strengths of the bonds of a scene, scattered in their order as those of the contacts of an assembly.
 /// \throws Error (bad_input) as contact_strengths
@@ -63,10 +86,5 @@ void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& break
 /// The state in which exactly these bonds have broken.
 /// \param breaks checked
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks);
-
-/// Numbers of a SavedState.
-inline constexpr std::size_t numbers_per_break = 6;
-std::vector<double> numbers_of(const std::vector<BondBreak>& breaks);
-std::vector<BondBreak> breaks_of(const std::vector<double>& numbers);
 
 }  // namespace equidem

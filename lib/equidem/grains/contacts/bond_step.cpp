@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/grains/contacts/bond_step.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
@@ -54,7 +50,7 @@ class BondGrouping {
   static constexpr std::size_t largest_tile = 512;
 
   static std::size_t at(std::int32_t body) { return static_cast<std::size_t>(body); }
-  [[nodiscard]] const TiedPair& tied(std::int32_t bond) const { return tied_[static_cast<std::size_t>(bond)]; }
+  [[nodiscard]] const TiedPair& tied(std::int32_t bond) const { return tied_[bond]; }
 
   [[nodiscard]] bool shares_body(const Lanes& group, const TiedPair& bond) const {
     return std::ranges::any_of(group, [&](std::int32_t b) {
@@ -110,7 +106,7 @@ void find_batches(const GrainSystem& system, PackedBonds& packed) {
   for (std::size_t b = 0; b < tied.size(); ++b) {
     bonds_of[batch_of(tied[b])].push_back(static_cast<std::int32_t>(b));
     for (const std::int32_t body : {tied[b].i, tied[b].j})
-      if (std::exchange(is_bonded[static_cast<std::size_t>(body)], char{1}) != 0) packed.alone = false;
+      if (std::exchange(is_bonded[body], char{1}) != 0) packed.alone = false;
   }
   BondGrouping grouping(tied, is_bonded.size(), packed.lanes);
   for (std::size_t k = 0; k < packed.batches.size(); ++k) {
@@ -142,8 +138,8 @@ class GroupWriter {
  private:
   void write(std::size_t number, bool used, std::size_t g, std::size_t lane) {
     const TiedPair& bond = system_.bonds.tied[number];
-    const GrainBody& i = system_.bodies.constants[static_cast<std::size_t>(bond.i)];
-    const GrainBody& j = system_.bodies.constants[static_cast<std::size_t>(bond.j)];
+    const GrainBody& i = system_.bodies.constants[bond.i];
+    const GrainBody& j = system_.bodies.constants[bond.j];
     const double dt = system_.dt();
     BondGroup& group = packed_.groups[g];
     group.i[lane] = bond.i;
@@ -240,9 +236,9 @@ void pack_bonds(GrainSystem& system) {
   if (!packed.dashpots.empty()) {
     packed.bonded.resize(bodies);
     for (const std::int32_t body : packed.bodies) {
-      const GrainBody& of = system.bodies.constants[static_cast<std::size_t>(body)];
+      const GrainBody& of = system.bodies.constants[body];
       const double weights[] = {of.inverse_mass, of.inverse_mass, of.radius * of.inverse_moment, of.inverse_moment};
-      std::ranges::copy(weights, packed.bonded[static_cast<std::size_t>(body)].weights);
+      std::ranges::copy(weights, packed.bonded[body].weights);
     }
   }
   GroupWriter writer(system, packed);
@@ -250,7 +246,7 @@ void pack_bonds(GrainSystem& system) {
     writer.write(g);
     for (std::size_t lane = 0; lane < lanes_of_pairs; ++lane)
       if (const std::int32_t bond = packed.lanes[g][lane]; bond >= 0)
-        tied[static_cast<std::size_t>(bond)].packed = static_cast<std::int32_t>(g * lanes_of_pairs + lane);
+        tied[bond].packed = static_cast<std::int32_t>(g * lanes_of_pairs + lane);
   }
   packed.stretch = spring_loop(system);
   packed.resist = dashpot_loop(system);
@@ -262,8 +258,7 @@ void pack_images(GrainSystem& system) {
   for (std::size_t g = 0; g < packed.images.size(); ++g) {
     for (std::size_t lane = 0; lane < lanes_of_pairs; ++lane) {
       const std::int32_t bond = packed.lanes[g][lane];
-      const PeriodicImage& image =
-          system.bonds.tied[static_cast<std::size_t>(bond >= 0 ? bond : packed.lanes[g][0])].image;
+      const PeriodicImage& image = system.bonds.tied[bond >= 0 ? bond : packed.lanes[g][0]].image;
       packed.images[g].a[lane] = image.a;
       packed.images[g].b[lane] = image.b;
     }
@@ -311,8 +306,7 @@ BondRest rest_of(const GrainScene& scene, std::size_t i, std::size_t j) {
 }
 
 Vec2 branch_of(const GrainSystem& system, const TiedPair& bond) {
-  const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(bond.j)].position -
-                      system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
+  const Vec2 branch = system.bodies.motions[bond.j].position - system.bodies.motions[bond.i].position;
   return system.cell.active ? branch + system.cell.now.shift(bond.image) : branch;
 }
 
@@ -320,8 +314,7 @@ void find_images_of_bonds(GrainSystem& system) {
   if (!system.cell.active) return;
   const auto find = [&](std::vector<TiedPair>& bonds) {
     for (TiedPair& bond : bonds) {
-      const Vec2 branch = system.bodies.motions[static_cast<std::size_t>(bond.j)].position -
-                          system.bodies.motions[static_cast<std::size_t>(bond.i)].position;
+      const Vec2 branch = system.bodies.motions[bond.j].position - system.bodies.motions[bond.i].position;
       bond.image = image_inside(system.cell.now, {}, branch);
     }
   };
@@ -447,8 +440,8 @@ std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene)
       std::swap(pair.i, pair.j);
       rest = {-rest.branch, rest.angle_j, rest.angle_i};
     }
-    const Grain& i = system.scene.grains[static_cast<std::size_t>(pair.i)];
-    const Grain& j = system.scene.grains[static_cast<std::size_t>(pair.j)];
+    const Grain& i = system.scene.grains[pair.i];
+    const Grain& j = system.scene.grains[pair.j];
     pair.dashpots = {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot};
     pair.share = share_of(i, j);
     pair.angle_i = rest.angle_i, pair.angle_j = rest.angle_j;
@@ -472,8 +465,7 @@ void refuse_crept_bonds(const GrainSystem& system) {
   for (const TiedPair& bond : system.bonds.tied) {
     if (is_wide(system, bond)) continue;
     computation_failed(fmt::format("step {}: the centres of the bonded grains {} and {} have crept together",
-                                   system.step, system.bodies.grain_of[static_cast<std::size_t>(bond.i)],
-                                   system.bodies.grain_of[static_cast<std::size_t>(bond.j)]),
+                                   system.step, system.bodies.grain_of[bond.i], system.bodies.grain_of[bond.j]),
                        "dashpots alone give way to a steady force, N/C_n, and bonded discs do not collide",
                        "Use larger dashpots, give normal_spring, or tie the discs as a clump");
   }
@@ -492,7 +484,6 @@ void push_springs(GrainSystem& system) {
 void add_bond_impulses(GrainSystem& system) {
   PackedBonds& packed = system.bonds.packed;
   std::vector<BodyImpulse>& impulses = system.bodies.impulses;
-  system.free_flight = false;
   if (packed.resist) {
     packed.drifted = true;
     step_batches(system, packed.resist);

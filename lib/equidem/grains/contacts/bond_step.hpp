@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bonds of discs in a step (contact/viscous_bond.hpp): impulses, step limit, deformation.
+/// Bonds of discs in a step (contact/finite_bond.hpp): impulses, step limit, deformation.
 ///
 /// Bonds in groups of eight for the loops over them.
 #pragma once
@@ -8,14 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/finite_bond.hpp"
-#include "equidem/contact/viscous_bond.hpp"
-#include "equidem/grains/cell/periodic_images.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/grains/contacts/contact_geometry.hpp"
 
-#include <algorithm>
 #include <cmath>
-
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 
 namespace equidem {
 namespace {
 
 PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
   const auto i = static_cast<std::size_t>(candidate.i), j = static_cast<std::size_t>(candidate.j);
-  const GrainPart& part_i = system.shapes.parts[static_cast<std::size_t>(pair.i)];
-  const GrainPart& part_j = system.shapes.parts[static_cast<std::size_t>(pair.j)];
+  const GrainPart& part_i = system.shapes.parts[pair.i];
+  const GrainPart& part_j = system.shapes.parts[pair.j];
   const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
   const Vec2 branch = system.position_of(candidate.j) - system.bodies.motions[i].position + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
@@ -74,7 +71,7 @@ bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart&
 PartGeometry meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
   if (candidate.covered) return {};
   const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
-  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(pair.i)];
+  const GrainPart& part = system.shapes.parts[pair.i];
   if (!part.is_round()) {
     if (is_clear_of_line(system, i, part, w)) return {};
     const EllipseContact contact =
@@ -151,7 +148,7 @@ Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t pa
   const auto i = static_cast<std::size_t>(grain);
   const Vec2 position = system.bodies.motions[i].position;
   if (system.shapes.parts.empty()) return position;
-  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(part_index)];
+  const GrainPart& part = system.shapes.parts[part_index];
   if (part.is_round()) return position + offset_of(part, system.shapes.axes[i]);
   const EllipseContact contact = contact_with_wall(system, grain, part, wall, {});
   return position + contact.arm_i + contact.gap * contact.normal;

@@ -44,7 +44,7 @@ inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& c
                               system.bodies.motions[j].position - system.bodies.motions[i].position);
   }
   const auto w = static_cast<std::size_t>(~candidate.j);
-  const GrainBody& body = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
+  const GrainBody& body = system.bodies.constants[candidate.i];
   if (candidate.covered) return {-body.radius, {1, 0}, body.radius, 0};  // apart
   return geometry_with_wall(system.bodies.constants[i], system.scene.walls[w], system.walls.places[w].displacement,
                             system.bodies.motions[i].position);
@@ -52,26 +52,26 @@ inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& c
 
 /// Velocity of j, or of the wall, relative to i.
 inline Vec2 relative_velocity(const GrainSystem& system, const Candidate& candidate) {
-  const Vec2 other = candidate.j >= 0 ? system.bodies.motions[static_cast<std::size_t>(candidate.j)].velocity
-                                      : system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity;
-  return other - system.bodies.motions[static_cast<std::size_t>(candidate.i)].velocity;
+  const Vec2 other = candidate.j >= 0 ? system.bodies.motions[candidate.j].velocity
+                                      : system.walls.places[~candidate.j].acting_velocity;
+  return other - system.bodies.motions[candidate.i].velocity;
 }
 
 /// Tangential velocity of the surface of j relative to that of i at the contact.
 inline double slip_velocity(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry,
                             Vec2 relative) {
-  double turning = system.bodies.motions[static_cast<std::size_t>(candidate.i)].spin * geometry.lever_i;
-  if (candidate.j >= 0) turning += system.bodies.motions[static_cast<std::size_t>(candidate.j)].spin * geometry.lever_j;
+  double turning = system.bodies.motions[candidate.i].spin * geometry.lever_i;
+  if (candidate.j >= 0) turning += system.bodies.motions[candidate.j].spin * geometry.lever_j;
   return dot(relative, perpendicular(geometry.normal)) - turning;
 }
 
 /// The inverse of the tangential mass: 1/m_i + 1/m_j + l_i²/I_i + l_j²/I_j, 1/kg.
 inline double inverse_tangential_mass(const GrainSystem& system, const Candidate& candidate,
                                       const ContactGeometry& geometry) {
-  const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
+  const GrainBody& bi = system.bodies.constants[candidate.i];
   double inverse = bi.inverse_mass + geometry.lever_i * geometry.lever_i * bi.inverse_moment;
   if (candidate.j >= 0) {
-    const GrainBody& bj = system.bodies.constants[static_cast<std::size_t>(system.body_of(candidate.j))];
+    const GrainBody& bj = system.bodies.constants[system.body_of(candidate.j)];
     inverse += bj.inverse_mass + geometry.lever_j * geometry.lever_j * bj.inverse_moment;
   }
   return inverse;

@@ -31,10 +31,10 @@ struct Pose {
 Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_index, double share) {
   const GrainMotion motion = motion_at(system, body, share);
   if (system.shapes.parts.empty()) {
-    const double radius = system.bodies.constants[static_cast<std::size_t>(system.body_of(body))].radius;
+    const double radius = system.bodies.constants[system.body_of(body)].radius;
     return {{{}, radius, radius, radius}, motion.position, {1, 0}};
   }
-  const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(part_index)];
+  const GrainPart& part = system.shapes.parts[part_index];
   const Vec2 axis = axis_at(motion.angle);
   return {part, motion.position + offset_of(part, axis), axis};
 }
@@ -50,8 +50,8 @@ PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, cons
 
 bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
   if (system.shapes.parts.empty()) return false;
-  if (!system.shapes.parts[static_cast<std::size_t>(parts.i)].is_round()) return true;
-  return candidate.j >= 0 && !system.shapes.parts[static_cast<std::size_t>(parts.j)].is_round();
+  if (!system.shapes.parts[parts.i].is_round()) return true;
+  return candidate.j >= 0 && !system.shapes.parts[parts.j].is_round();
 }
 
 const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
@@ -92,10 +92,10 @@ constexpr double slow_way = 0.1;
   const auto i = static_cast<std::size_t>(candidate.i);
   std::string other;
   if (candidate.j >= 0) {
-    other = fmt::format("grain {}", system.bodies.grain_of[static_cast<std::size_t>(system.body_of(candidate.j))]);
+    other = fmt::format("grain {}", system.bodies.grain_of[system.body_of(candidate.j)]);
   } else {
-    const Wall& wall = system.scene.walls[static_cast<std::size_t>(~candidate.j)];
-    other = wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[static_cast<std::size_t>(~candidate.j)])
+    const Wall& wall = system.scene.walls[~candidate.j];
+    other = wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[~candidate.j])
                               : fmt::format("wall \"{}\"", wall.name);
   }
   const double speed = norm(way) / system.dt();

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/contacts/flow_step.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/crossing.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/force_step.hpp"
 
 namespace equidem {
 namespace {
@@ -90,7 +89,7 @@ Line line_of(const GrainSystem& system, const Candidate& candidate, const Trial&
   const auto w = static_cast<std::size_t>(~candidate.j);
   const Wall& wall = system.scene.walls[w];
   if (wall.shape == Wall::Shape::line) return {-wall.normal, 1};
-  const Vec2 centre = system.bodies.motions[static_cast<std::size_t>(candidate.i)].position;
+  const Vec2 centre = system.bodies.motions[candidate.i].position;
   const auto normal_at = [&](double share) {
     return -nearest(wall, system.walls.places[w].displacement, centre - share * way).normal;
   };
@@ -223,8 +222,8 @@ void sweep_until_settled(GrainSystem& system, std::vector<Trial>& trials) {
     change = 0;
     for (std::size_t t = 0; t < trials.size(); ++t) {
       Visit& visit = visits[t];
-      std::int64_t& on_i = pushed[static_cast<std::size_t>(visit.i)];
-      std::int64_t& on_j = visit.j < 0 ? on_i : pushed[static_cast<std::size_t>(visit.j)];
+      std::int64_t& on_i = pushed[visit.i];
+      std::int64_t& on_j = visit.j < 0 ? on_i : pushed[visit.j];
       if (visit.quiet && on_i <= visit.when && on_j <= visit.when) continue;
       const double own = solve<Law>(system, trials[t]);
       visit.quiet = own <= settled;
@@ -297,10 +296,8 @@ void remember(GrainSystem& system, const std::vector<Trial>& trials) {
     }
     if (candidate.j < 0) {
       const Vec2 impulse = trial.impulse * trial.normal + trial.tangential * perpendicular(trial.normal);
-      const Vec2 point =
-          system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + trial.lever_i * trial.normal;
-      push_wall(system, candidate.j, point, impulse,
-                system.walls.places[static_cast<std::size_t>(~candidate.j)].velocity, system.sums());
+      const Vec2 point = system.bodies.motions[candidate.i].position + trial.lever_i * trial.normal;
+      push_wall(system, candidate.j, point, impulse, system.walls.places[~candidate.j].velocity, system.sums());
     }
     ++candidate.steps;
     candidate.touching = true;
@@ -324,7 +321,7 @@ void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
   }
   std::vector<int> contacts(system.bodies.constants.size(), 0);
   const auto touches = [](const Trial& trial) { return trial.impulse != 0; };
-  const auto count = [&](std::int32_t body) -> int& { return contacts[static_cast<std::size_t>(body)]; };
+  const auto count = [&](std::int32_t body) -> int& { return contacts[body]; };
   for (const Trial& trial : trials) {
     if (!touches(trial)) continue;
     const Candidate& candidate = system.contacts.candidates[trial.candidate];
@@ -335,7 +332,7 @@ void count_doubtful(GrainSystem& system, const std::vector<Trial>& trials) {
     if (!touches(trial)) continue;
     const Candidate& candidate = system.contacts.candidates[trial.candidate];
     const auto others = [&](std::int32_t body) {
-      return body < 0 ? 0 : system.bodies.constants[static_cast<std::size_t>(body)].inverse_mass * (count(body) - 1);
+      return body < 0 ? 0 : system.bodies.constants[body].inverse_mass * (count(body) - 1);
     };
     const double coupling = candidate.reduced_mass * (others(candidate.i) + others(candidate.j));
     if (coupling > 0 && square_step(trial) * (1 + coupling) > pi * pi) ++system.counters.doubtful;

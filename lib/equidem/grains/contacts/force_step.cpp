@@ -8,14 +8,10 @@
 /// is of the first order of the step there.
 #include "equidem/grains/contacts/force_step.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "equidem/contact/laws/visit.hpp"
-#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
-#include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 
@@ -44,14 +40,14 @@ inline Vec2 impulse_of(const Candidate& candidate) {
 }
 
 inline Vec2 passed_velocity(const GrainSystem& system, const Candidate& candidate) {
-  return candidate.j >= 0 ? Vec2{} : system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity;
+  return candidate.j >= 0 ? Vec2{} : system.walls.places[~candidate.j].passed_velocity;
 }
 
 /// Count what the body gave to a wall in the drift before: half of each of the kicks at its ends.
 /// \param kicks sum of both, N s
 inline void push_wall_in_drift(const GrainSystem& system, const Candidate& candidate, Vec2 arm, Vec2 kicks,
                                ContactSums sums) {
-  const Vec2 point = system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + arm;
+  const Vec2 point = system.bodies.motions[candidate.i].position + arm;
   push_wall(system, candidate.j, point, 0.5 * kicks, passed_velocity(system, candidate), sums);
 }
 
@@ -136,33 +132,23 @@ template <class Law, bool friction>
 
 namespace {
 
-template <class Law>
-ContactStep normal_step(const Candidate& candidate, double depth, double closing) {
-  if constexpr (Law::kind == LawKind::force) {
-    return force_step<Law>(depth, closing, candidate.a, candidate.dissipation, candidate.attraction);
-  } else {
-    static_assert(Law::kind == LawKind::map);
-    return Law::step(depth, closing, candidate.a, candidate.dissipation, !candidate.touching);
-  }
-}
-
 /// Give an impulse to j, its opposite to i.
 template <bool friction>
 void push(std::vector<BodyImpulse>& impulses, const Candidate& candidate, const ContactGeometry& geometry, Vec2 impulse,
           double tangential) {
-  BodyImpulse& on_i = impulses[static_cast<std::size_t>(candidate.i)];
+  BodyImpulse& on_i = impulses[candidate.i];
   on_i.impulse -= impulse;
   if constexpr (friction) on_i.torque -= geometry.lever_i * tangential;
   if (candidate.j >= 0) {
-    BodyImpulse& on_j = impulses[static_cast<std::size_t>(candidate.j)];
+    BodyImpulse& on_j = impulses[candidate.j];
     on_j.impulse += impulse;
     if constexpr (friction) on_j.torque -= geometry.lever_j * tangential;
   }
 }
 
 void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
-  system.bodies.moments[static_cast<std::size_t>(candidate.i)] += moment;
-  if (candidate.j >= 0) system.bodies.moments[static_cast<std::size_t>(candidate.j)] -= moment;
+  system.bodies.moments[candidate.i] += moment;
+  if (candidate.j >= 0) system.bodies.moments[candidate.j] -= moment;
 }
 
 /// Change of the slip of a contact in a step by the impulses of the previous step and gravity, its own tangential force
@@ -203,38 +189,27 @@ void shift(GrainSystem& system, const Candidate& candidate, Vec2 moment) {
   return step.force * dt;
 }
 
-TouchPlace place_of(const ContactGeometry& geometry, bool wall) {
-  return {geometry.overlap, geometry.normal, geometry.lever_i * geometry.normal,
-          wall ? Vec2{} : -geometry.lever_j * geometry.normal};
+TouchPlace place_of(const ContactGeometry& geometry) {
+  return {geometry.overlap, geometry.normal, geometry.lever_i * geometry.normal, {}};
 }
 
-/// The normal turns in a drift, and levers change: as in the loop over near pairs; with walls the normal is known.
+/// Of a disc and a wall.
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
-  const double dt = system.dt();
-  const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(candidate.i)];
-  if (candidate.j < 0) {
-    const Vec2 relative = system.walls.places[static_cast<std::size_t>(~candidate.j)].passed_velocity - motion.velocity;
-    const Vec2 before = candidate.steps > 0 ? candidate.normal : geometry.normal;
-    const Vec2 normal = 0.5 * (before + geometry.normal);
-    return {-dot(relative, normal), dot(relative, perpendicular(normal)) - motion.spin * geometry.lever_i,
-            candidate.overlap};
-  }
-  const GrainMotion& other = system.bodies.motions[static_cast<std::size_t>(candidate.j)];
-  const Vec2 relative = other.velocity - motion.velocity;
-  const double along = dot(relative, perpendicular(geometry.normal)), closing = -dot(relative, geometry.normal);
-  const double rims = motion.spin * geometry.lever_i + other.spin * geometry.lever_j;
-  const double part = dt / (geometry.lever_i + geometry.lever_j);
-  const double mean = closing + 0.5 * part * along * along;
-  const double before = std::hypot(1 + part * closing, part * along);  // distance, in the present one
-  return {mean, 0.5 * (along - rims + along / before - rims * before), geometry.overlap - mean * dt};
+  const GrainMotion& motion = system.bodies.motions[candidate.i];
+  const Vec2 relative = passed_velocity(system, candidate) - motion.velocity;
+  const Vec2 before = candidate.steps > 0 ? candidate.normal : geometry.normal;
+  const Vec2 normal = 0.5 * (before + geometry.normal);
+  return {-dot(relative, normal), dot(relative, perpendicular(normal)) - motion.spin * geometry.lever_i,
+          candidate.overlap};
 }
 
+/// The contacts of discs with walls in Verlet schemes.
 template <class Law, bool friction>
 void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
   for (std::size_t c = begin; c < end; ++c) {
     Candidate& candidate = system.contacts.candidates[c];
     const ContactGeometry geometry = geometry_of(system, candidate);
-    const TouchPlace place = place_of(geometry, candidate.j < 0);
+    const TouchPlace place = place_of(geometry);
     if (!(geometry.overlap > 0)) {
       if (candidate.touching)
         end_contact<Law>(system, candidate, place.arm_i, drift_of(system, candidate, geometry), sums.sums());
@@ -249,12 +224,9 @@ void collide_by_verlet(GrainSystem& system, std::size_t begin, std::size_t end, 
   }
 }
 
+/// The contacts of discs by a map.
 template <class Law, bool friction>
 void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums) {
-  constexpr bool map = Law::kind == LawKind::map;
-  if constexpr (!map) {
-    if (system.options.verlet()) return collide_by_verlet<Law, friction>(system, begin, end, sums);
-  }
   const double dt = system.dt();
   const double length = system.length;
   const double per_length = 1 / length, per_speed = dt / length, unit_speed = length / dt;
@@ -266,17 +238,14 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
       if (candidate.touching) forget_contact(candidate, lost);
       continue;
     }
-    if constexpr (map) {
-      if (candidate.parted) forget_contact(candidate, lost);
-    }
+    if (candidate.parted) forget_contact(candidate, lost);
     count_contact(candidate, geometry.overlap, sums);
     const Vec2 relative = relative_velocity(system, candidate);
     const double closing = -dot(relative, geometry.normal);
     const double depth = geometry.overlap * per_length;
     const double sigma = closing * per_speed;
-    const ContactStep step = normal_step<Law>(candidate, depth, sigma);
+    const ContactStep step = Law::step(depth, sigma, candidate.a, candidate.dissipation, !candidate.touching);
     const double unit = candidate.reduced_mass * unit_speed;
-    if constexpr (!map) lost.lost_dashpot += dashpot_heat<Law>(candidate, step, depth, closing, unit, unit_speed);
     candidate.touching = true;
     ++candidate.steps;
     candidate.mode = step.mode;
@@ -285,11 +254,9 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
     candidate.normal = geometry.normal;
     candidate.impulse = -step.change * unit;
     Vec2 impulse = candidate.impulse * geometry.normal;
-    if constexpr (map) {
-      candidate.parted = depth + step.shift + sigma + step.change <= 0;
-      lost.lost_restitution += step.loss * unit * unit_speed;
-      if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
-    }
+    candidate.parted = depth + step.shift + sigma + step.change <= 0;
+    lost.lost_restitution += step.loss * unit * unit_speed;
+    if (step.shift != 0) shift(system, candidate, (step.shift * length * candidate.reduced_mass) * geometry.normal);
     double tangential = 0;  // also where the friction of an earlier stage left one
     if constexpr (friction) {
       if (candidate.sliding.coefficient > 0)
@@ -299,10 +266,8 @@ void collide(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums&
     candidate.tangential_impulse = tangential;
     push<friction>(system.bodies.impulses, candidate, geometry, impulse, candidate.tangential_impulse);
     if (candidate.j < 0)
-      push_wall(
-          system, candidate.j,
-          system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.lever_i * geometry.normal,
-          impulse, system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
+      push_wall(system, candidate.j, system.bodies.motions[candidate.i].position + geometry.lever_i * geometry.normal,
+                impulse, system.walls.places[~candidate.j].acting_velocity, sums.sums());
   }
 }
 
@@ -312,87 +277,52 @@ CandidateLoop candidate_loop(NormalLaw law, bool friction) {
   return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
     if constexpr (Law::kind == LawKind::simultaneous) {
       return nullptr;
+    } else if constexpr (Law::kind == LawKind::force) {
+      return friction ? collide_by_verlet<Law, true> : collide_by_verlet<Law, false>;
     } else {
       return friction ? collide<Law, true> : collide<Law, false>;
     }
   });
 }
 
-void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight) {
+void move_by_euler(GrainSystem& system, std::size_t block) {
+  if (system.contacts.near.active) return move_pair_bodies(system, block);
   const double dt = system.dt();
   const Vec2 fall = dt * system.scene.gravity;
-  if (system.contacts.near.active) {
-    move_pair_bodies(system, block);
-  } else if (free_flight) {
-    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += fall;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-  } else {
-    system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
-      const GrainBody& body = system.bodies.constants[i];
-      const BodyImpulse& push = system.bodies.impulses[i];
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += body.inverse_mass * push.impulse + fall;
-      motion.spin += body.inverse_moment * push.torque;
-      motion.position += dt * motion.velocity;
-      if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-  }
-}
-
-void drift_of_verlet(GrainSystem& system) {
-  const double dt = system.dt();
-  const Vec2 fall = dt * system.scene.gravity;
-  if (system.contacts.near.active) {
-    move_bodies(system, [&](std::size_t i) {
-      const GrainBody& body = system.bodies.constants[i];
-      GrainMotion motion = system.bodies.motions[i];
-      const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
-      const double turn = body.inverse_moment * system.bodies.impulses[i].torque;
-      motion.velocity += 0.5 * (gain + fall);
-      motion.spin += 0.5 * turn;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      system.contacts.near.bodies[i] = pair_body(body, motion, gain, turn);
-      return motion;
-    });
-    return;
-  }
-  if (system.free_flight) {
-    move_bodies(system, [&](std::size_t i) {
-      GrainMotion motion = system.bodies.motions[i];
-      motion.velocity += 0.5 * fall;
-      motion.position += dt * motion.velocity;
-      motion.angle += dt * motion.spin;
-      return motion;
-    });
-    return;
-  }
-  move_bodies(system, [&](std::size_t i) {
+  system.bodies.ways[block] = move_block(system, block, [&](std::size_t i) {
     const GrainBody& body = system.bodies.constants[i];
+    const BodyImpulse& push = system.bodies.impulses[i];
     GrainMotion motion = system.bodies.motions[i];
-    motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
-    motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
+    motion.velocity += body.inverse_mass * push.impulse + fall;
+    motion.spin += body.inverse_moment * push.torque;
     motion.position += dt * motion.velocity;
+    if (!system.bodies.moments.empty()) motion.position += body.inverse_mass * system.bodies.moments[i];
     motion.angle += dt * motion.spin;
     return motion;
   });
 }
 
-void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight) {
+void drift_of_verlet(GrainSystem& system) {
+  const double dt = system.dt();
+  const Vec2 fall = dt * system.scene.gravity;
+  move_bodies(system, [&, near = system.contacts.near.active](std::size_t i) {
+    const GrainBody& body = system.bodies.constants[i];
+    GrainMotion motion = system.bodies.motions[i];
+    const Vec2 gain = body.inverse_mass * system.bodies.impulses[i].impulse;
+    const double turn = body.inverse_moment * system.bodies.impulses[i].torque;
+    motion.velocity += 0.5 * (gain + fall);
+    motion.spin += 0.5 * turn;
+    motion.position += dt * motion.velocity;
+    motion.angle += dt * motion.spin;
+    if (near) system.contacts.near.bodies[i] = pair_body(body, motion, gain, turn);
+    return motion;
+  });
+}
+
+void kick_of_verlet(GrainSystem& system, std::size_t block) {
   const Vec2 fall = system.dt() * system.scene.gravity;
   for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
     GrainMotion& motion = system.bodies.motions[i];
-    if (free_flight) {
-      motion.velocity += 0.5 * fall;
-      continue;
-    }
     const GrainBody& body = system.bodies.constants[i];
     motion.velocity += 0.5 * (body.inverse_mass * system.bodies.impulses[i].impulse + fall);
     motion.spin += 0.5 * body.inverse_moment * system.bodies.impulses[i].torque;
@@ -425,8 +355,7 @@ struct PartContact {
 [[gnu::always_inline]] inline Vec2 relative_velocity(const GrainSystem& system, const PartContact& contact) {
   const GrainMotion& motion = system.bodies.motions[contact.i()];
   const Vec2 of_i = motion.velocity + motion.spin * perpendicular(contact.geometry.arm_i);
-  if (!contact.body_j)
-    return system.walls.places[static_cast<std::size_t>(~contact.candidate.j)].acting_velocity - of_i;
+  if (!contact.body_j) return system.walls.places[~contact.candidate.j].acting_velocity - of_i;
   const GrainMotion& other = system.bodies.motions[contact.j()];
   return other.velocity + other.spin * perpendicular(contact.geometry.arm_j) - of_i;
 }
@@ -504,7 +433,7 @@ TouchPlace place_before(const Candidate& candidate, const PartPair& pair) {
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const TouchPlace& now,
                       const TouchPlace& before) {
   const auto at = [&](std::int32_t body, Vec2 arm) {
-    const GrainMotion& motion = system.bodies.motions[static_cast<std::size_t>(body)];
+    const GrainMotion& motion = system.bodies.motions[body];
     return motion.velocity + motion.spin * perpendicular(arm);
   };
   const auto relative = [&](const TouchPlace& place) {
@@ -588,9 +517,8 @@ void collide_parts(GrainSystem& system, std::size_t begin, std::size_t end, Bloc
     candidate.tangential_impulse = tangential;
     push(system.bodies.impulses, contact, impulse);
     if (candidate.j < 0)
-      push_wall(system, candidate.j,
-                system.bodies.motions[static_cast<std::size_t>(candidate.i)].position + geometry.arm_i, impulse,
-                system.walls.places[static_cast<std::size_t>(~candidate.j)].acting_velocity, sums.sums());
+      push_wall(system, candidate.j, system.bodies.motions[candidate.i].position + geometry.arm_i, impulse,
+                system.walls.places[~candidate.j].acting_velocity, sums.sums());
   }
 }
 

@@ -3,21 +3,32 @@
 /// Steps in which every contact is evaluated by itself: force laws and maps.
 ///
 /// The contacts of a step in scenes with ellipses or clumps.
+///
+/// A step of a simultaneous law (exact_flow): all contacts together.
+///
+/// Each contact is solved exactly over the step (exact_contact.hpp) under an outside force that is linear in time and
+/// has the impulse and the first moment of all other forces on its two bodies; sweeps over the contacts repeat this
+/// until convergence. The normal is the mean normal of the step, (r + r')/|r + r'|, and the displacement along it is
+/// scaled to the change of the distance: the step is reversible in time, and elastic impacts conserve energy on
+/// average.
+///
+/// The tangential force is constant over the step, its spring stretched by the way of the bodies, the moments of normal
+/// forces included: slow loads lead to the forces of statics at any step.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "equidem/grains/contacts/block_step.hpp"
+#include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
 
-/// The loop compiled for a force law or a map, with or without friction: impulses of this step from positions and
-/// velocities. Null for a simultaneous law.
+/// The loop compiled for a map, or over contacts with walls by a force law in Verlet schemes, with or without friction:
+/// impulses of this step from positions and velocities. Null for a simultaneous law.
 CandidateLoop candidate_loop(NormalLaw law, bool friction);
 
-/// The loop over contacts with walls of discs whose pairs are near pairs, eight at a time; null where candidate_loop()
-/// is needed.
+/// The loop over contacts of discs with walls by a force law and semi-implicit Euler, eight at a time; null in other
+/// scenes.
 CandidateLoop wall_loop(const GrainSystem& system);
 
 /// Count a contact that acts in this step.
@@ -44,12 +55,12 @@ double dashpot_heat(const Candidate& candidate, const ContactStep& step, double 
 
 /// Set system.bodies.next of a block from the impulses: v' = v + a dt, x' = x + v' dt (+ the shifts of maps); and
 /// system.bodies.ways.
-void move_by_euler(GrainSystem& system, std::size_t block, bool free_flight);
+void move_by_euler(GrainSystem& system, std::size_t block);
 
 /// Set system.bodies.next: half kick by the impulses of the last step, then the drift.
 void drift_of_verlet(GrainSystem& system);
 /// Second half kick of a block, by the impulses computed from the velocities at the half step.
-void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight);
+void kick_of_verlet(GrainSystem& system, std::size_t block);
 
 /// The loop over contacts of parts compiled for a force law, with or without friction; null for other laws.
 ///
@@ -59,5 +70,12 @@ void kick_of_verlet(GrainSystem& system, std::size_t block, bool free_flight);
 /// n)²/I_j: its duration is shorter by sqrt(m'/m), and zeta' = zeta sqrt(m/m') makes its restitution smaller than
 /// prescribed. The tangential dashpot is 2 zeta_T sqrt(m_T kT) with the tangential mass of the present arms.
 CandidateLoop part_candidate_loop(NormalLaw law, bool friction);
+
+/// The step compiled for a simultaneous law; it sets system.bodies.next and the state of the contacts. Null for other
+/// laws. The step throws:
+/// \throws Error (computation_failed) if sweeps do not converge or bodies would pass through one another; the contacts
+///         keep the state of the failed step
+using FlowFunction = void (*)(GrainSystem&);
+FlowFunction flow_function(NormalLaw law);
 
 }  // namespace equidem

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Dashpots of bonds (contact/viscous_bond.hpp).
+/// Dashpots of bonds (contact/finite_bond.hpp).
 ///
 /// The energy that they take in a step is -sum J (v + s (g0 + g)): J their impulses, v the rates at its start, g0 and g
 /// what the impulses of others and those of dashpots add to the rates, s the share of all impulses that has acted. A
@@ -8,7 +8,7 @@
 /// impulses that are given one after the other make together sum J g = sum J (2 d + J/m), needs no second pass.
 #include <array>
 
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/kernels/bond_lanes.hpp"
 
 namespace equidem {
@@ -22,7 +22,7 @@ constexpr int terms_of_mean = 14;
 constexpr auto coefficients_of_mean = [] {
   std::array<double, terms_of_mean> coefficient{};
   double factorial = 1;
-  for (int k = 0; k < terms_of_mean; ++k) coefficient[static_cast<std::size_t>(k)] = 1 / (factorial *= k + 1);
+  for (int k = 0; k < terms_of_mean; ++k) coefficient[k] = 1 / (factorial *= k + 1);
   return coefficient;
 }();
 
@@ -103,7 +103,7 @@ EQUIDEM_ALWAYS_INLINE void add_motion_of_cell(const GrainSystem& system, std::si
       apart[k] = load<Row<Lanes>>(&before[group.j[k]]) - load<Row<Lanes>>(&before[group.i[k]]);
     Lanes u, v;
     columns_of(apart, x, y, u, v);
-    const LanesOfVectors<Lanes> shift = shift_of<Lanes>(system.cell.before, packed.images[g]);
+    const Vectors<Lanes> shift = shift_of<Lanes>(system.cell.before, packed.images[g]);
     x += shift.x;
     y += shift.y;
   }

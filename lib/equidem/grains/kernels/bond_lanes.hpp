@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "equidem/dynamics/kernels/lanes_math.hpp"
+#include "equidem/dynamics/kernels/lanes.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 
@@ -81,14 +81,9 @@ EQUIDEM_ALWAYS_INLINE Numbers without_fourth(const Numbers& row) {
   return as<Numbers>(bits_of(row) & load<Bits<Numbers>>(three));
 }
 
-template <class Lanes>
-struct LanesOfVectors {
-  Lanes x{}, y{};
-};
-
 /// Ways from the second bodies to their images.
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE LanesOfVectors<Lanes> shift_of(const Periods& periods, const BondImages& images) {
+EQUIDEM_ALWAYS_INLINE Vectors<Lanes> shift_of(const Periods& periods, const BondImages& images) {
   const auto a = load<Lanes>(images.a), b = load<Lanes>(images.b);
   return {a * periods.a.x + b * periods.b.x, a * periods.a.y + b * periods.b.y};
 }
@@ -98,7 +93,7 @@ template <class Lanes>
 struct ImageSums {
   Lanes xx{}, xy{}, yx{}, yy{};
 
-  EQUIDEM_ALWAYS_INLINE void add(const Lanes& x, const Lanes& y, const LanesOfVectors<Lanes>& shift) {
+  EQUIDEM_ALWAYS_INLINE void add(const Lanes& x, const Lanes& y, const Vectors<Lanes>& shift) {
     xx += x * shift.x;
     xy += x * shift.y;
     yx += y * shift.x;
@@ -129,7 +124,7 @@ EQUIDEM_ALWAYS_INLINE BondNow<Lanes> bonds_now(const GrainSystem& system, std::s
   columns_of(apart, now.x, now.y, now.u, now.v);
   if constexpr (turns) columns_of(angles, now.spin_i, now.angle_i, now.spin_j, now.angle_j);
   if constexpr (cell) {
-    const LanesOfVectors<Lanes> shift = shift_of<Lanes>(system.cell.now, system.bonds.packed.images[g]);
+    const Vectors<Lanes> shift = shift_of<Lanes>(system.cell.now, system.bonds.packed.images[g]);
     now.x += shift.x;
     now.y += shift.y;
   }

@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "equidem/contact/viscous_bond.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 

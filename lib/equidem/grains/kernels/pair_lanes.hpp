@@ -4,9 +4,7 @@
 /// numbers Twice. Plain C++ with the vector types of GCC and Clang.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -334,5 +332,11 @@ template <class Numbers>
 EQUIDEM_ALWAYS_INLINE void subtract(void* from, const Numbers& change) {
   store(load<Numbers>(from) - change, from);
 }
+
+/// Eight vectors.
+template <class Lanes>
+struct Vectors {
+  Lanes x, y;
+};
 
 }  // namespace equidem::eight

@@ -2,22 +2,29 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <utility>
 
 #include "equidem/contact/laws/visit.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/pair_lanes.hpp"
 #include "equidem/grains/kernels/vector_width.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 
 namespace equidem {
 namespace {
 
 using Pair = eight::Two;
+
+// These members are loaded and stored as one row, here and by the loops over bonds.
+static_assert(offsetof(GrainMotion, velocity) == sizeof(Vec2) &&
+              offsetof(GrainMotion, angle) - offsetof(GrainMotion, spin) == sizeof(double));
+static_assert(offsetof(BodyImpulse, rim) - offsetof(BodyImpulse, impulse) == 3 * sizeof(double));
+static_assert(offsetof(PairBody, rim_speed) - offsetof(PairBody, middle_velocity) == 3 * sizeof(double));
 
 /// Two numbers anywhere: copied byte by byte they would go through general registers. A struct, because Clang 14 takes
 /// an alias of a vector type with less alignment for the aligned type.
@@ -120,15 +127,14 @@ std::pair<double, double> elastic_of_block(const GrainSystem& system, const Pair
   const NearPairs& near = system.contacts.near;
   const bool images = system.meets_images();
   const auto position_of = [&](std::int32_t j) {
-    return images ? system.position_of(j) : system.bodies.motions[static_cast<std::size_t>(j)].position;
+    return images ? system.position_of(j) : system.bodies.motions[j].position;
   };
   double normal = 0, tangential = 0;
   for (std::size_t g = 0; g < block.groups.size(); ++g) {
     const PairGroup& group = block.groups[g];
     PairLanes x, y, energy;
     for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-      const Vec2 branch =
-          position_of(group.j[k]) - system.bodies.motions[static_cast<std::size_t>(group.i[k])].position;
+      const Vec2 branch = position_of(group.j[k]) - system.bodies.motions[group.i[k]].position;
       x[k] = branch.x;
       y[k] = branch.y;
     }
@@ -194,7 +200,7 @@ void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
     const std::size_t used = std::min(most, end - first);
     double angle[most] = {}, largest = 0;
     for (std::size_t k = 0; k < used; ++k) {
-      angle[k] = system.bodies.motions[static_cast<std::size_t>(system.shapes.shaped[first + k])].angle;
+      angle[k] = system.bodies.motions[system.shapes.shaped[first + k]].angle;
       largest = std::max(largest, std::abs(angle[k]));
     }
     double x[most], y[most];
@@ -205,8 +211,7 @@ void TurnAxes::run(GrainSystem& system, std::size_t begin, std::size_t end) {
       store(sines_of_turns(turns), y + k);
     }
     for (std::size_t k = 0; k < used; ++k) {
-      system.shapes.axes[static_cast<std::size_t>(system.shapes.shaped[first + k])] =
-          largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
+      system.shapes.axes[system.shapes.shaped[first + k]] = largest < most_turns ? Vec2{x[k], y[k]} : axis_at(angle[k]);
     }
   }
 }

@@ -10,11 +10,6 @@
 namespace equidem::eight {
 
 template <class Lanes>
-struct Vectors {
-  Lanes x, y;
-};
-
-template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes dot(const Vectors<Lanes>& a, const Vectors<Lanes>& b) {
   return a.x * b.x + a.y * b.y;
 }

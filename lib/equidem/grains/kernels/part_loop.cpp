@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/grain_system.hpp"
@@ -10,6 +8,10 @@
 
 namespace equidem {
 namespace {
+
+// These members are loaded as one row.
+static_assert(offsetof(PartBody, middle_velocity) == 2 * sizeof(Vec2) &&
+              offsetof(PartBody, turned) - offsetof(PartBody, spin) == 2 * sizeof(double));
 
 using namespace eight;
 

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <type_traits>
-#include <vector>
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
@@ -26,6 +25,10 @@ static_assert(offsetof(Candidate, stretch) - offsetof(Candidate, overlap) == 7 *
 static_assert(offsetof(Candidate, sliding) - offsetof(Candidate, stiffness) == sizeof(double));
 static_assert(offsetof(Sliding, coefficient) == 2 * sizeof(double));
 static_assert(offsetof(WallLoad, work) - offsetof(WallLoad, step_impulse) == 3 * sizeof(double));
+static_assert(offsetof(Wall, normal) - offsetof(Wall, point) == sizeof(Vec2));
+static_assert(offsetof(WallPlace, velocity) - offsetof(WallPlace, displacement) == sizeof(Vec2));
+static_assert(offsetof(GrainBody, inverse_moment) - offsetof(GrainBody, radius) == 2 * sizeof(double) &&
+              sizeof(GrainBody) == offsetof(GrainBody, radius) + 4 * sizeof(double));
 
 /// Eight discs and the walls that they may touch.
 struct NearWalls {

@@ -47,7 +47,7 @@ void BodyBlocks::each_in_turn(const std::vector<std::size_t>& earliest, const st
   parallel_shares(count(), [&](std::size_t block, int worker) {
     first(block);
     done[block].store(1, std::memory_order_release);
-    std::vector<std::size_t>& mine = waiting[static_cast<std::size_t>(worker)].blocks;
+    std::vector<std::size_t>& mine = waiting[worker].blocks;
     mine.push_back(block);
     std::erase_if(mine, [&](std::size_t other) {
       if (!may_follow(other)) return false;

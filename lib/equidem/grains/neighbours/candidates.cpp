@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
 #include "equidem/contact/restitution.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
+#include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
@@ -106,7 +105,7 @@ double dashpot_of(const GrainSystem& system, const Candidate& candidate) {
 }
 
 void set_constants(const GrainSystem& system, Candidate& candidate) {
-  const GrainBody& bi = system.bodies.constants[static_cast<std::size_t>(candidate.i)];
+  const GrainBody& bi = system.bodies.constants[candidate.i];
   double inverse_mass = bi.inverse_mass;
   const auto other = static_cast<std::size_t>(system.body_of(candidate.j));
   if (candidate.j >= 0) inverse_mass += system.bodies.constants[other].inverse_mass;
@@ -141,7 +140,7 @@ void find_candidates(GrainSystem& system) {
   if (system.meets_images()) {
     find_images(system);
     for (const PeriodicImage& image : system.cell.images) {
-      const Circle& body = circles[static_cast<std::size_t>(image.body)];
+      const Circle& body = circles[image.body];
       circles.push_back({body.centre + system.cell.now.shift(image), body.radius});
     }
   }
@@ -181,7 +180,7 @@ void find_candidates(GrainSystem& system) {
                                            : system.contacts.near.active;
   for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
     for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
-      const std::int32_t j = list.partner[static_cast<std::size_t>(p)];
+      const std::int32_t j = list.partner[p];
       if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.contacts.near.active
                                                              : system.contacts.near_parts.active)
         continue;

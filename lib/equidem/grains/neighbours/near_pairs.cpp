@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
+#include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/move_bodies.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 
@@ -26,13 +25,13 @@ PairLaw law_of(const Candidate& candidate) {
 /// All kinds except those of walls only.
 std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   std::vector<bool> of_walls(static_cast<std::size_t>(scene.kinds)), met(of_walls);
-  for (const Wall& wall : scene.walls) of_walls[static_cast<std::size_t>(wall.kind)] = true;
-  for (const Grain& grain : scene.grains) met[static_cast<std::size_t>(grain.kind)] = true;
+  for (const Wall& wall : scene.walls) of_walls[wall.kind] = true;
+  for (const Grain& grain : scene.grains) met[grain.kind] = true;
   for (std::size_t k = 0; k < met.size(); ++k) met[k] = met[k] || !of_walls[k];
   std::vector<const PairProperties*> pairs;
   for (int a = 0; a < scene.kinds; ++a) {
     for (int b = 0; b < scene.kinds; ++b) {
-      if (met[static_cast<std::size_t>(a)] && met[static_cast<std::size_t>(b)]) pairs.push_back(&scene.between(a, b));
+      if (met[a] && met[b]) pairs.push_back(&scene.between(a, b));
     }
   }
   return pairs;
@@ -88,11 +87,9 @@ class PairLists {
     set_constants(system_, candidate);
     const std::size_t k = make_room(i, j);
     near_.groups.back().since[k] = PairGroup::apart;
-    near_.groups.back().reach[k] = system_.bodies.constants[static_cast<std::size_t>(i)].radius +
-                                   system_.bodies.constants[static_cast<std::size_t>(other)].radius;
+    near_.groups.back().reach[k] = system_.bodies.constants[i].radius + system_.bodies.constants[other].radius;
     near_.groups.back().dashpot[k] = dashpot_of(system_, candidate) * system_.dt();
-    const GrainBody &bi = system_.bodies.constants[static_cast<std::size_t>(i)],
-                    &bj = system_.bodies.constants[static_cast<std::size_t>(other)];
+    const GrainBody &bi = system_.bodies.constants[i], &bj = system_.bodies.constants[other];
     near_.groups.back().half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
     near_.groups.back().impulse[k] = 0;
     if (system_.friction) {
@@ -197,7 +194,7 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
     const Vec2 centre = system.bodies.motions[i].position;
     const double own = system.bodies.constants[i].radius + near.margin;
     for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const std::int32_t partner = list.partner[static_cast<std::size_t>(p)];
+      const std::int32_t partner = list.partner[p];
       if (system.cell.active ? is_bonded_image(system, static_cast<std::int32_t>(i), partner)
                              : are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), partner))
         continue;
@@ -205,7 +202,7 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
       const std::int32_t other = system.body_of(partner);
       if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself
       const Vec2 branch = system.position_of(partner) - centre;
-      const double far = own + system.bodies.constants[static_cast<std::size_t>(other)].radius;
+      const double far = own + system.bodies.constants[other].radius;
       lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
     }
   }
@@ -230,7 +227,7 @@ std::optional<PairLaw> common_law(const GrainSystem& system) {
     const bool plain = pair->stiffness > 0 && (!system.friction || pair->friction > 0);
     return plain && *pair == *pairs[0];
   });
-  if (!equal) return {};
+  if (!equal || system.bodies.constants.size() < 2) return {};
   Candidate candidate;
   candidate.j = 1;
   set_constants(system, candidate);
@@ -245,9 +242,8 @@ double margin_of_near_pairs(const GrainSystem& system, double size, double reach
 void prepare_near_pairs(GrainSystem& system) {
   NearPairs& near = system.contacts.near;
   const std::vector<Grain>& grains = system.scene.grains;
-  const auto discs =
-      std::count_if(grains.begin(), grains.end(), [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
-  if (discs < 2 || !gives_force(system.options.law) || system.options.one_by_one) return;
+  const bool discs = std::ranges::any_of(grains, [](const Grain& grain) { return grain.shape() == GrainShape::disc; });
+  if (!discs || !gives_force(system.options.law)) return;
   near.active = true;
   if (const std::optional<PairLaw> law = common_law(system)) {
     near.equal = true;
@@ -319,7 +315,8 @@ Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::si
   return candidate;
 }
 
-void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts) {
+void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
+  std::ranges::sort(contacts, {}, [](const ContactState& contact) { return std::pair(contact.i, contact.j); });
   const BodyBlocks& blocks = system.bodies.blocks;
   auto contact = contacts.begin();
   for (std::size_t b = 0; b < blocks.count(); ++b) {

@@ -13,14 +13,15 @@
 #include <vector>
 
 #include "equidem/core/vector.hpp"
+#include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 
 struct GrainSystem;
 struct Candidate;
+struct ContactState;
 struct GrainBody;
 struct GrainMotion;
 
@@ -137,8 +138,8 @@ Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::s
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);
 
-/// Replace the pairs by the contacts of a saved state, ordered by (i, j).
-void take_near_pairs(GrainSystem& system, const std::vector<Candidate>& contacts);
+/// Replace the pairs by these contacts; j may be an image.
+void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts);
 
 /// The loop compiled for the law of the scene; it computes the impulses of this step by the pairs of a block.
 NearPairs::Loop near_pair_loop(const GrainSystem& system);

@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/neighbours/part_pairs.hpp"
 
 namespace equidem {
 
@@ -33,8 +31,8 @@ void place_parts(GrainSystem& system) {
 PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   PartPair pair;
   if (system.shapes.parts.empty()) return pair;
-  pair.i = system.shapes.first_part[static_cast<std::size_t>(i)];
-  pair.j = system.shapes.first_part[static_cast<std::size_t>(j)];
+  pair.i = system.shapes.first_part[i];
+  pair.j = system.shapes.first_part[j];
   return pair;
 }
 
@@ -63,8 +61,8 @@ std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::
   std::vector<PartPair> near;
   for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
     for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
-      const GrainPart& part_i = system.shapes.parts[static_cast<std::size_t>(p)];
-      const GrainPart& part_j = system.shapes.parts[static_cast<std::size_t>(q)];
+      const GrainPart& part_i = system.shapes.parts[p];
+      const GrainPart& part_j = system.shapes.parts[q];
       const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
                           (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
       const double reach = part_i.a + part_j.a + system.contacts.margin;
@@ -85,7 +83,7 @@ std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::
 std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall) {
   std::vector<PartPair> near;
   for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
-    const GrainPart& part = system.shapes.parts[static_cast<std::size_t>(p)];
+    const GrainPart& part = system.shapes.parts[p];
     const Vec2 centre = system.bodies.motions[i].position + offset_of(part, system.shapes.axes[i]);
     const Wall& shape = system.scene.walls[wall];
     const WallContact contact = nearest(shape, system.walls.places[wall].displacement, centre);
@@ -147,13 +145,12 @@ class NewList {
   /// A new pair. \param apart a direction along which they are apart, or {}
   void add(std::int32_t i, std::int32_t j, Vec2 apart) {
     Candidate candidate;
-    candidate.i = system_.shapes.body_of_part[static_cast<std::size_t>(i)];
-    candidate.j = system_.shapes.body_of_part[static_cast<std::size_t>(j)];
+    candidate.i = system_.shapes.body_of_part[i];
+    candidate.j = system_.shapes.body_of_part[j];
     set_constants(system_, candidate);
-    const GrainPart &part_i = system_.shapes.parts[static_cast<std::size_t>(i)],
-                    &part_j = system_.shapes.parts[static_cast<std::size_t>(j)];
-    const GrainBody &body_i = system_.bodies.constants[static_cast<std::size_t>(candidate.i)],
-                    &body_j = system_.bodies.constants[static_cast<std::size_t>(system_.body_of(candidate.j))];
+    const GrainPart &part_i = system_.shapes.parts[i], &part_j = system_.shapes.parts[j];
+    const GrainBody &body_i = system_.bodies.constants[candidate.i],
+                    &body_j = system_.bodies.constants[system_.body_of(candidate.j)];
     const std::size_t k = make_room(i, j);
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
@@ -199,7 +196,7 @@ class NewList {
     ++list_.count;
     list_.groups.back().i[k] = i;
     list_.groups.back().j[k] = j;
-    const std::int32_t body = system_.shapes.body_of_part[static_cast<std::size_t>(j)];
+    const std::int32_t body = system_.shapes.body_of_part[j];
     if (body >= end_) {
       list_.first_outward = std::min(list_.first_outward, list_.groups.size() - 1);
       list_.outward.add(body);
@@ -246,12 +243,10 @@ Apart apart_along_axes(const Ellipse& i, const Ellipse& j, Vec2 branch) {
 /// Gap of two parts, or a sufficient lower bound of it; negative: overlap.
 /// \param[in,out] apart a direction along which they were apart, or {}
 double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double enough, Vec2& apart) {
-  const GrainPart &part_i = system.shapes.parts[static_cast<std::size_t>(p)],
-                  &part_j = system.shapes.parts[static_cast<std::size_t>(q)];
-  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(p)]);
-  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[static_cast<std::size_t>(q)]);
-  const Vec2 branch = system.position_of(system.shapes.body_of_part[static_cast<std::size_t>(q)]) -
-                      system.bodies.motions[i].position +
+  const GrainPart &part_i = system.shapes.parts[p], &part_j = system.shapes.parts[q];
+  const auto i = static_cast<std::size_t>(system.shapes.body_of_part[p]);
+  const auto j = static_cast<std::size_t>(system.shapes.body_of_part[q]);
+  const Vec2 branch = system.position_of(system.shapes.body_of_part[q]) - system.bodies.motions[i].position +
                       (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
   if (part_i.is_round() && part_j.is_round()) return norm(branch) - (part_i.a + part_j.a);
   const Ellipse of_i{part_i.a, part_i.b, system.shapes.axes[i]}, of_j{part_j.a, part_j.b, system.shapes.axes[j]};
@@ -277,8 +272,8 @@ void find_met_parts(GrainSystem& system) {
       for (std::size_t p = 0; p < list.count; ++p) {
         const PartGroup& group = list.groups[p / lanes_of_pairs];
         for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]}) {
-          near.met[static_cast<std::size_t>(part)] = 1;
-          near.met[static_cast<std::size_t>(system.own_part(part))] = 1;
+          near.met[part] = 1;
+          near.met[system.own_part(part)] = 1;
         }
       }
     }
@@ -286,8 +281,7 @@ void find_met_parts(GrainSystem& system) {
 }
 
 std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
-  const bool round = system.shapes.parts[static_cast<std::size_t>(p)].is_round() &&
-                     system.shapes.parts[static_cast<std::size_t>(q)].is_round();
+  const bool round = system.shapes.parts[p].is_round() && system.shapes.parts[q].is_round();
   return round ? 0 : 1;
 }
 
@@ -300,7 +294,7 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
     const bool disc = are_discs(system, body, body);
     for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
       for (std::int64_t n = neighbours.begin[i]; n < neighbours.begin[i + 1]; ++n) {
-        const std::int32_t partner = neighbours.partner[static_cast<std::size_t>(n)];
+        const std::int32_t partner = neighbours.partner[n];
         if (disc && are_discs(system, body, partner)) continue;
         const std::int32_t other = system.body_of(partner);
         if (other != partner && other <= body) continue;  // listed with the other one, or itself
@@ -355,14 +349,14 @@ std::size_t NearParts::bytes() const {
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   const auto is_disc = [&](std::int32_t body) {
-    return system.scene.grains[static_cast<std::size_t>(system.body_of(body))].shape() == GrainShape::disc;
+    return system.scene.grains[system.body_of(body)].shape() == GrainShape::disc;
   };
   return is_disc(i) && is_disc(j);
 }
 
 void prepare_near_parts(GrainSystem& system) {
   if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !gives_force(system.options.law)) return;
-  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact || system.options.one_by_one) return;
+  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.law = common_law(system);
@@ -387,17 +381,18 @@ void refresh_near_parts(GrainSystem& system, double reach) {
   near.moved += reach;
 }
 
-void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts) {
-  std::ranges::sort(contacts, {}, [](const auto& contact) { return std::pair(contact.second.i, contact.second.j); });
+void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts) {
+  std::ranges::sort(contacts, {},
+                    [](const ContactState& contact) { return std::pair(contact.part_i, contact.part_j); });
   auto next = contacts.begin();
   for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
     auto& lists = system.contacts.near_parts.blocks[b].lists;
     lists[0].count = lists[1].count = 0;
     std::array<NewList, 2> taken{NewList(system, lists[0], b), NewList(system, lists[1], b)};
-    for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->first.i)) == b; ++next) {
-      const auto& [contact, pair] = *next;
-      const std::size_t l = list_of(system, pair.i, pair.j);
-      taken[l].add(pair.i, pair.j, contact.normal);
+    for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next) {
+      const ContactState& contact = *next;
+      const std::size_t l = list_of(system, contact.part_i, contact.part_j);
+      taken[l].add(contact.part_i, contact.part_j, contact.normal);
       PartGroup& group = lists[l].groups.back();
       const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
       group.since[k] = system.step + 1 - contact.steps;
@@ -407,19 +402,13 @@ void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartP
       set(PartGroup::stretch, contact.stretch);
       set(PartGroup::overlap, contact.overlap);
       set(PartGroup::closing, contact.closing);
-      set(PartGroup::arm_i_x, pair.arm_i.x);
-      set(PartGroup::arm_i_y, pair.arm_i.y);
-      set(PartGroup::arm_j_x, pair.arm_j.x);
-      set(PartGroup::arm_j_y, pair.arm_j.y);
+      set(PartGroup::arm_i_x, contact.arm_i.x);
+      set(PartGroup::arm_i_y, contact.arm_i.y);
+      set(PartGroup::arm_j_x, contact.arm_j.x);
+      set(PartGroup::arm_j_y, contact.arm_j.y);
     }
   }
 }
-
-namespace {
-
-using PartColumn = PartGroup::Column;
-
-}  // namespace
 
 void load_part_bodies(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;
@@ -469,8 +458,8 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
   const auto number = [&](PartColumn column) { return group.numbers[column][k]; };
   const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
   Candidate candidate;
-  candidate.i = system.shapes.body_of_part[static_cast<std::size_t>(group.i[k])];
-  candidate.j = system.shapes.body_of_part[static_cast<std::size_t>(group.j[k])];
+  candidate.i = system.shapes.body_of_part[group.i[k]];
+  candidate.j = system.shapes.body_of_part[group.j[k]];
   set_constants(system, candidate);
   PartPair pair;
   pair.i = group.i[k];

@@ -143,11 +143,29 @@ std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const Nea
 /// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
-/// Replace the pairs by the contacts of a saved state, which may come in any order.
-void take_near_parts(GrainSystem& system, std::vector<std::pair<Candidate, PartPair>> contacts);
+/// Replace the pairs by these contacts; j may be an image.
+void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts);
 
 /// The loop compiled for round parts or for ellipses; it computes the impulses of this step by the
 /// pairs of a block.
 NearParts::Loop near_part_loop(const GrainSystem& system, bool round);
+
+/// Set the parts of all bodies and their axes if the scene has ellipses or clumps.
+void place_parts(GrainSystem& system);
+
+/// The parts of two whole discs in a scene with shapes; {} in other scenes. \param j may be an image
+PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
+
+/// Update the axes to the present angles of the bodies.
+void turn_axes(GrainSystem& system);
+
+/// Upper bound of the displacement of a point of a body by its rotation in the step, m; discs excluded.
+double longest_turn(const GrainSystem& system);
+
+/// Pairs of parts that come nearer than the margin, in their order.
+std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j);
+/// Pairs of the parts of a body with a wall that come nearer than the margin; ellipses at a segment by their
+/// bounding circle.
+std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall);
 
 }  // namespace equidem

@@ -5,10 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"

@@ -5,16 +5,15 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <string>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/cell/periodic_images.hpp"
+#include "equidem/geometry/neighbours.hpp"
+#include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/neighbours/neighbours.hpp"
-#include "equidem/grains/scene/clipped_area.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
+#include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
 #include "equidem/grains/servo_walls.hpp"
 
@@ -79,7 +78,7 @@ void check_shape(const GrainScene& scene, std::size_t i) {
   }
   // grains of the same clump and radius are checked once
   const bool known = i > 0 && scene.grains[i - 1].clump == grain.clump && scene.grains[i - 1].radius == grain.radius;
-  if (!known) check_clump(scene.clumps[static_cast<std::size_t>(grain.clump)], grain, i);
+  if (!known) check_clump(scene.clumps[grain.clump], grain, i);
 }
 
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) {
@@ -185,41 +184,19 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
   }
 }
 
-/// 1/m of the two lightest bodies of a kind, 0 of walls and of bodies that are not there.
-struct Lightest {
-  double inverse = 0, second = 0;
-  int bodies = 0;
-};
-
-std::vector<Lightest> lightest_of_kinds(const GrainScene& scene) {
-  std::vector<Lightest> kinds(static_cast<std::size_t>(scene.kinds));
-  for (const Grain& grain : scene.grains) {
-    Lightest& kind = kinds[static_cast<std::size_t>(grain.kind)];
-    const double inverse = 1 / grain.inertia.mass;
-    kind.second = std::max(kind.second, std::min(kind.inverse, inverse));
-    kind.inverse = std::max(kind.inverse, inverse);
-    ++kind.bodies;
-  }
-  for (const Wall& wall : scene.walls) ++kinds[static_cast<std::size_t>(wall.kind)].bodies;
-  return kinds;
-}
-
 /// The range of the law, by a of the lightest bodies of every two kinds.
 void check_range(const GrainScene& scene, const GrainOptions& options) {
-  const std::vector<Lightest> kinds = lightest_of_kinds(scene);
+  const std::vector<KindMasses> masses = masses_of_kinds(scene.grains, scene.kinds);
   const LawDescription& law = describe(options.law);
   const double per_stiffness =
       law.length_factor(reference_length(scene, options)) * options.time_step * options.time_step;
   for (int a = 0; a < scene.kinds; ++a) {
     for (int b = a; b < scene.kinds; ++b) {
-      const Lightest& first = kinds[static_cast<std::size_t>(a)];
-      const Lightest& other = kinds[static_cast<std::size_t>(b)];
-      if (first.bodies == 0 || other.bodies < (a == b ? 2 : 1)) continue;
-      const double inverse = first.inverse + (a == b ? first.second : other.inverse);
-      if (inverse == 0) continue;  // two walls
+      const auto reduced = reduced_masses(masses, a, b);
+      if (!reduced) continue;
       const PairProperties& pair = scene.between(a, b);
-      const double dimensionless = pair.stiffness > 0 ? pair.stiffness * per_stiffness * inverse : pair.dimensionless;
-      law.check_range(dimensionless, pair.restitution);
+      law.check_range(pair.stiffness > 0 ? pair.stiffness * per_stiffness / reduced->smallest : pair.dimensionless,
+                      pair.restitution);
     }
   }
 }
@@ -247,43 +224,28 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
   bad_input_at(where ? where(grain) : "", std::move(problem), std::move(why), std::move(remedy));
 }
 
-/// Take bodies as their images inside a cell, and add the images that are near.
-void add_images(const PeriodicCell& cell, std::vector<Circle>& circles, std::vector<std::size_t>& grain_of) {
-  const Periods periods = periods_of(cell);
-  const Vec2 centre = cell.corner + 0.5 * Vec2{cell.width, cell.height};
-  for (Circle& circle : circles) circle.centre += periods.shift(image_inside(periods, centre, circle.centre));
-  for (const PeriodicImage& image : images_near(circles, periods, 0)) {
-    const Circle& body = circles[static_cast<std::size_t>(image.body)];
-    circles.push_back({body.centre + periods.shift(image), body.radius});
-    grain_of.push_back(static_cast<std::size_t>(image.body));
-  }
-}
-
 /// Nothing may start inside something else.
 void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   std::vector<Circle> circles;
   for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
-  const std::size_t count = circles.size();
-  std::vector<std::size_t> grain_of(count);
-  std::iota(grain_of.begin(), grain_of.end(), std::size_t{0});
-  if (scene.cell) add_images(*scene.cell, circles, grain_of);
-  const NeighbourList near = neighbours_within(circles, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::int64_t p = near.begin[i]; p < near.begin[i + 1]; ++p) {
-      const auto partner = static_cast<std::size_t>(near.partner[static_cast<std::size_t>(p)]);
-      const std::size_t j = grain_of[partner];
-      const double distance = norm(circles[partner].centre - circles[i].centre);
-      Grain grain = scene.grains[i], other = scene.grains[j];
-      grain.position = circles[i].centre;
-      other.position = circles[partner].centre;
-      if (!are_inside_one_another(scene, grain, other)) continue;
-      refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
-                   fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", distance,
-                               circles[i].radius, circles[j].radius),
-                   "Move them apart");
-    }
+  std::optional<Periods> periods;
+  if (const auto& cell = scene.cell) {
+    periods = periods_of(*cell);
+    const Vec2 centre = cell->corner + 0.5 * Vec2{cell->width, cell->height};
+    for (Circle& circle : circles) circle.centre += periods->shift(image_inside(*periods, centre, circle.centre));
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  for (const CirclePair& pair : pairs_within(circles, periods, 0)) {
+    const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
+    Grain grain = scene.grains[i], other = scene.grains[j];
+    grain.position = circles[i].centre;
+    other.position = circles[j].centre + pair.shift;
+    if (!are_inside_one_another(scene, grain, other)) continue;
+    refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
+                 fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m",
+                             norm(other.position - grain.position), circles[i].radius, circles[j].radius),
+                 "Move them apart");
+  }
+  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
     for (const Wall& wall : scene.walls) {
       if (!is_behind(scene, scene.grains[i], wall)) continue;
       refuse_grain(i, where, fmt::format("grain {} starts behind wall \"{}\" or on it", i, wall.name),

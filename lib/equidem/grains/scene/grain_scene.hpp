@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -103,9 +102,7 @@ struct GrainScene : AnyScene {
   int kinds = 1;
   std::vector<PairProperties> pairs;  ///< kinds x kinds, symmetric, row by row
 
-  [[nodiscard]] const PairProperties& between(int a, int b) const {
-    return pairs[static_cast<std::size_t>(a * kinds + b)];
-  }
+  [[nodiscard]] const PairProperties& between(int a, int b) const { return pairs[a * kinds + b]; }
 };
 
 struct GrainOptions {
@@ -133,7 +130,6 @@ struct GrainOptions {
   /// Bodies of a block, the work that a thread does at a time (body_blocks.hpp); 0: chosen from the number of bodies,
   /// one block of few. The order of sums, and so the last bits, depend on it.
   std::size_t bodies_per_block = 0;
-  bool one_by_one = false;      ///< contacts one by one instead of eight at a time: an oracle for tests
   bool refuse_crossing = true;  ///< false: bodies may pass through one another (for studies of laws that allow it)
 };
 

@@ -5,6 +5,8 @@
 /// The parts of bodies, between which contacts are found: one for a disc or an ellipse, the discs of a clump.
 ///
 /// Shape, mass and moment of inertia of a body from its lengths and its density.
+///
+/// Exact areas of bodies and of their parts within a rectangle.
 #pragma once
 
 #include <array>
@@ -13,11 +15,34 @@
 #include <span>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {
+
+/// Area of the intersection of a disc and a rectangle, m².
+double clipped_area(Vec2 centre, double radius, const Rectangle& region);
+/// Area of the intersection of an ellipse and a rectangle, m².
+double clipped_area(const Ellipse& ellipse, Vec2 centre, const Rectangle& region);
+/// Area of the intersection of a union of discs and a rectangle, m².
+double clipped_area(std::span<const Clump::Disc> discs, const Rectangle& region);
+/// Area of the intersection of a grain and a rectangle, m².
+double clipped_area(const Grain& grain, std::span<const Clump> clumps, const Rectangle& region);
+/// That of all grains; where two overlap the overlap counts twice, as their solid does.
+double clipped_area(std::span<const Grain> grains, std::span<const Clump> clumps, const Rectangle& region);
+
+/// Area moments of a union of discs.
+struct DiscUnion {
+  double area = 0;          ///< m²
+  Vec2 centre;              ///< centroid, m
+  double polar_moment = 0;  ///< integral of the squared distance from the centroid, m⁴
+};
+DiscUnion union_of(std::span<const Clump::Disc> discs);
+
+/// Area of a grain, m².
+double area_of(const Grain& grain, std::span<const Clump> clumps);
 
 /// The discs, shifted so that the centroid of their union is the origin.
 /// \param discs in any position, overlapping or not
@@ -54,6 +79,7 @@ double smallest_inscribed_radius(const GrainScene& scene);
 
 /// The x-axis of a body as unit vector, to 1e-15; bit-identical on every machine.
 Vec2 axis_at(double angle);
+Vec2 axis_of_turns(double turns);  ///< angle over 2 pi
 
 /// From the centre of mass of a body to the centre of a part.
 inline Vec2 offset_of(const GrainPart& part, Vec2 axis) {

@@ -3,9 +3,12 @@
 /// Contact options of two bodies, and the constants derived from them.
 ///
 /// Kinds of bodies and walls, and the contact properties of every two kinds.
+///
+/// Time step of colliding bodies from the duration of contacts and the stability limit.
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -125,10 +128,8 @@ struct ContactTable {
   std::vector<PairContact> pairs;  ///< row by row, symmetric
 
   [[nodiscard]] int kind_count() const { return static_cast<int>(kinds.size()); }
-  [[nodiscard]] const PairContact& between(int a, int b) const {
-    return pairs[static_cast<std::size_t>(a * kind_count() + b)];
-  }
-  [[nodiscard]] const std::string& kind(int a) const { return kinds[static_cast<std::size_t>(a)]; }
+  [[nodiscard]] const PairContact& between(int a, int b) const { return pairs[a * kind_count() + b]; }
+  [[nodiscard]] const std::string& kind(int a) const { return kinds[a]; }
 };
 
 /// Sets the kinds of bodies and walls of a scene, and the contact properties of every two kinds.
@@ -155,5 +156,43 @@ struct ReducedMasses {
 };
 /// Extremes over all pairs of two kinds; none if the scene has no two such bodies.
 std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b);
+
+/// Longest lever of a normal force about the centre of mass of a body, m: a - b for an ellipse, 0 for a disc.
+double longest_lever(const Grain& grain, std::span<const Clump> clumps);
+
+struct GrainStepOptions {
+  std::optional<double> time_step = {};                      ///< s; none: by steps_per_contact
+  std::optional<double> steps_per_contact = {};              ///< none: LawDescription::steps_per_contact
+  double longest = std::numeric_limits<double>::infinity();  ///< largest step to choose, s: the duration of the run
+};
+
+/// The step of a run and its shortest contact.
+struct GrainTimeStep {
+  double step = 0;      ///< s
+  double contact = 0;   ///< duration of the shortest contact, s; 0: not known (no closing_speed, or no two bodies)
+  std::string between;  ///< kinds of that contact, "grains and walls"
+  /// omega dt of that contact, omega = sqrt(k/m), i.e. sqrt(a); nonlinear springs: with the tangent stiffness at the
+  /// largest overlap; 0: not known.
+  double omega_step = 0;
+  double limit = 0;       ///< LawDescription::stable_step, the largest omega dt; 0: none
+  double bond_limit = 0;  ///< step limit of bonds, s; 0: none
+  /// Limit of explicit dashpots, s, where bonds are exact and the step is more than a tenth of it, else 0. Each bond is
+  /// exact with the others as they are; those that share discs lose too little energy, in proportion to the step: in
+  /// bending 7 % at this limit.
+  double chain_limit = 0;
+  bool automatic = false;
+
+  [[nodiscard]] double steps_in_contact() const { return contact / step; }
+};
+
+/// The given step, or a fraction of the shortest contact and at most half the limit of bonds (at which the dashpots of
+/// a pair bring it to rest in one step).
+/// \param scene with kinds set; pairs are not read
+/// \param options time_step is not read
+/// \throws Error (bad_input), its place the name of the option ("time_step", "law", "bonds"): a step that cannot be
+///         chosen (DimensionlessStiffness, a nonlinear spring without closing_speed, no two bodies that can meet), a
+///         step at which a force law is unstable even for one contact, bonds that check_bonds refuses
+GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
+                               const GrainStepOptions& wanted = {});
 
 }  // namespace equidem

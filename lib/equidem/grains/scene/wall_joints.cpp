@@ -33,10 +33,10 @@ double gap_between(const Wall& a, const Wall& b, double tolerance) {
 
 /// The wall that covers a contact of grain i with an end of wall w; -1: none.
 std::int32_t cover_of(const GrainSystem& system, std::int32_t i, std::int32_t part, std::int32_t w) {
-  const WallJoints& joints = system.walls.joints[static_cast<std::size_t>(w)];
+  const WallJoints& joints = system.walls.joints[w];
   if (joints[0].empty() && joints[1].empty()) return -1;
   // The contacts of an ellipse with two walls are seen from two points.
-  const bool round = system.shapes.parts.empty() || system.shapes.parts[static_cast<std::size_t>(part)].is_round();
+  const bool round = system.shapes.parts.empty() || system.shapes.parts[part].is_round();
   struct Met {
     WallContact contact;
     Vec2 point;  // without displacement
@@ -49,11 +49,11 @@ std::int32_t cover_of(const GrainSystem& system, std::int32_t i, std::int32_t pa
   };
   const auto is_at = [&](const Met& met, std::int32_t wall, int end, double reach) {
     if (met.contact.end == end) return true;
-    return round && norm(met.point - end_of(system.scene.walls[static_cast<std::size_t>(wall)], end)) <= reach;
+    return round && norm(met.point - end_of(system.scene.walls[wall], end)) <= reach;
   };
   const Met own = meet(w);
   for (const int end : {1, 2}) {
-    for (const WallJoint& joint : joints[static_cast<std::size_t>(end - 1)]) {
+    for (const WallJoint& joint : joints[end - 1]) {
       const bool at_end = own.contact.end == end;
       if (joint.end == 0 && at_end) return joint.wall;
       if (joint.end == 0 || !is_at(own, w, end, joint.reach)) continue;
@@ -74,21 +74,6 @@ bool move_alike(const Wall& a, const Wall& b) {
 
 void put_end(Wall& wall, int end, Vec2 point) {
   (end == 1 ? wall.point : wall.end) = point;
-}
-
-/// Transfer of the state of a contact to another one at the same point.
-void go_on(const Candidate& left, Candidate& contact) {
-  contact.touching = true;
-  contact.parted = left.parted;
-  contact.mode = left.mode;
-  contact.steps = left.steps;
-  contact.overlap = left.overlap;
-  contact.closing = left.closing;
-  contact.normal = left.normal;
-  contact.impulse = left.impulse;
-  contact.moment = left.moment;
-  contact.tangential_impulse = left.tangential_impulse;
-  contact.stretch = left.stretch;
 }
 
 }  // namespace
@@ -190,7 +175,7 @@ std::vector<WallJoints> joints_of(std::span<const Wall> walls, double tolerance)
           for (const int other : {1, 2})
             if (norm(end_of(walls[k], other) - point) <= joint.reach) joint.end = other;
         }
-        all[w][static_cast<std::size_t>(end - 1)].push_back(joint);
+        all[w][end - 1].push_back(joint);
         any = true;
       }
     }
@@ -204,7 +189,7 @@ std::vector<std::string> gaps_of_walls(std::span<const Wall> given, double small
   const std::vector<Wall> walls = joined_walls(given, joint_gap * smallest_radius);
   const std::vector<WallJoints> joints = joints_of(walls, joint_gap * smallest_radius);
   const auto is_free = [&](std::size_t w, int end) {
-    return has_ends(walls[w]) && (joints.empty() || joints[w][static_cast<std::size_t>(end - 1)].empty());
+    return has_ends(walls[w]) && (joints.empty() || joints[w][end - 1].empty());
   };
   std::vector<std::string> sentences;
   const auto compare = [&](std::size_t w, int end, std::size_t k, int other) {
@@ -230,12 +215,12 @@ void cover_joints(GrainSystem& system) {
     if (candidate->j >= 0) continue;
     const auto part_of = [&](const Candidate& other) {
       if (system.contacts.part_pairs.empty()) return 0;
-      return system.contacts.part_pairs[static_cast<std::size_t>(&other - system.contacts.candidates.data())].i;
+      return system.contacts.part_pairs[&other - system.contacts.candidates.data()].i;
     };
     const std::int32_t cover = cover_of(system, candidate->i, part_of(*candidate), ~candidate->j);
     candidate->covered = cover >= 0;
     if (!candidate->covered || !candidate->touching) continue;
-    const Candidate left = *candidate;
+    const ContactState left = state_of(system, *candidate, {});
     candidate->stretch = 0;  // not lost
     forget_contact(*candidate, system.lost);
     const auto same_body = [&](const Candidate& other) { return other.i == candidate->i; };
@@ -244,7 +229,7 @@ void cover_joints(GrainSystem& system) {
     const auto is_cover = [&] { return other->j == ~cover && part_of(*other) == part_of(*candidate); };
     while (other != system.contacts.candidates.end() && same_body(*other) && !is_cover()) ++other;
     if (other == system.contacts.candidates.end() || !same_body(*other) || other->touching) continue;
-    go_on(left, *other);
+    take(left, *other);
   }
 }
 

@@ -2,7 +2,6 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
-#include "equidem/grains/stages/unbalance.hpp"
 
 namespace equidem {
 namespace {
@@ -299,9 +297,7 @@ std::vector<DiscMotion> StagedSimulation::of_run(const std::vector<DiscMotion>& 
 
 std::vector<BodyContact> StagedSimulation::body_contacts() const {
   std::vector<BodyContact> contacts = present_->body_contacts();
-  const auto number = [&](std::int32_t place) {
-    return static_cast<std::int32_t>(numbers()[static_cast<std::size_t>(place)]);
-  };
+  const auto number = [&](std::int32_t place) { return static_cast<std::int32_t>(numbers()[place]); };
   for (BodyContact& contact : contacts) {
     contact.i = number(contact.i);
     if (contact.j >= 0) contact.j = number(contact.j);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/contact/bending.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/material_springs.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/progress.hpp"

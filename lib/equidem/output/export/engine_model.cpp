@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/dynamics/loop_choice.hpp"
+#include "equidem/core/vector.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 
 namespace equidem {
@@ -49,6 +51,12 @@ std::string engine_features_table() {
     text += fmt::format("| {} | {} | {} |\n", row.name, joined(cells, " | "), row.why);
   }
   return text;
+}
+
+bool equal_masses(const EngineModel& model) {
+  const auto [least, most] =
+      std::ranges::minmax_element(model.bodies, {}, [](const EngineBody& body) { return body.inertia.mass; });
+  return most->inertia.mass - least->inertia.mass <= 1e-9 * most->inertia.mass;
 }
 
 namespace {
@@ -192,42 +200,26 @@ void set_velocities(EngineModel& model, const Scene& scene) {
     }
 }
 
-/// Extremes of the masses of bodies.
-std::pair<double, double> extreme_masses(const EngineModel& model) {
-  const auto [least, most] =
-      std::ranges::minmax_element(model.bodies, {}, [](const EngineBody& body) { return body.inertia.mass; });
-  return {least->inertia.mass, most->inertia.mass};
-}
-
-bool equal_masses(const EngineModel& model) {
-  const auto [least, most] = extreme_masses(model);
-  return most - least <= 1e-9 * most;
-}
-
 /// Stiffness where the properties give it by mass: k = a m/dt², of bodies of one mass.
 void set_stiffness(EngineModel& model, double time_step) {
   const bool equal = equal_masses(model);
-  const EngineBody& body = model.bodies.front();
-  std::vector<char> of_bodies(static_cast<std::size_t>(model.kinds), 0);
-  for (const EngineBody& each : model.bodies) of_bodies[static_cast<std::size_t>(each.kind)] = 1;
+  const double mass = model.bodies.front().inertia.mass;
   for (int a = 0; a < model.kinds; ++a)
     for (int b = 0; b < model.kinds; ++b) {
       PairProperties& pair = model.pairs[static_cast<std::size_t>(a * model.kinds + b)];
       if (pair.stiffness > 0) continue;
       if (!equal) add(model.found, other_laws, "stiffness that follows from unequal masses");
-      const bool two = of_bodies[static_cast<std::size_t>(a)] && of_bodies[static_cast<std::size_t>(b)];
-      pair.stiffness = pair.dimensionless * reduced_mass(body, two ? &body : nullptr) / squared(time_step);
+      const double reduced = model.has_bodies(a) && model.has_bodies(b) ? mass * mass / (mass + mass) : mass;
+      pair.stiffness = pair.dimensionless * reduced / squared(time_step);
     }
 }
 
 void find_features_of_pairs(EngineModel& model, NormalLaw law) {
-  std::vector<char> of_bodies(static_cast<std::size_t>(model.kinds), 0);
-  for (const EngineBody& each : model.bodies) of_bodies[static_cast<std::size_t>(each.kind)] = 1;
   const PairProperties* first = nullptr;
   bool damped = false, differ = false;
   for (int a = 0; a < model.kinds; ++a)
     for (int b = 0; b < model.kinds; ++b) {
-      if (!of_bodies[static_cast<std::size_t>(a)] && !of_bodies[static_cast<std::size_t>(b)]) continue;
+      if (!model.has_bodies(a) && !model.has_bodies(b)) continue;
       const PairProperties& pair = model.between(a, b);
       const double zeta = damping_ratio(law, pair);
       const std::string restitution = fmt::format("restitution {:.6g}", pair.restitution);
@@ -252,19 +244,6 @@ void find_features_of_pairs(EngineModel& model, NormalLaw law) {
 }
 
 }  // namespace
-
-double reduced_mass(const EngineBody& i, const EngineBody* j) {
-  return j == nullptr ? i.inertia.mass : i.inertia.mass * j->inertia.mass / (i.inertia.mass + j->inertia.mass);
-}
-
-std::optional<double> common_mass(const EngineModel& model) {
-  if (!equal_masses(model)) return std::nullopt;
-  return model.bodies.front().inertia.mass;
-}
-
-double tangential_mass_share(Body body) {
-  return 1 / (1 + 1 / inertia_factor(body));
-}
 
 EngineModel engine_model(const Scene& scene, const SimulationOptions& options, Body body) {
   const Assembly& assembly = scene.assembly;
@@ -338,6 +317,99 @@ EngineModel engine_model(const GrainScene& scene, const GrainOptions& options, B
   set_stiffness(model, options.time_step);
   find_features_of_pairs(model, options.law);
   return model;
+}
+
+std::string exact(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string formula_of(const Schedule& schedule, const std::string& time) {
+  const auto negative = [](double value) { return value < 0 ? fmt::format("({})", value) : exact(value); };
+  const auto since = [&](double start) { return fmt::format("({0}-{1}+abs({0}-{1}))/2", time, negative(start)); };
+  // The time between two instants, from 0 to their distance.
+  const auto between = [&](double start, double end) {
+    return fmt::format("(abs({0}-{1})-abs({0}-{2})+{3})/2", time, negative(start), negative(end), exact(end - start));
+  };
+  const auto slope_of = [&](std::size_t k) {
+    return (schedule.values[k + 1] - schedule.values[k]) / (schedule.times[k + 1] - schedule.times[k]);
+  };
+  std::string sum;
+  switch (schedule.kind) {
+    case Schedule::Kind::constant:
+      sum = exact(schedule.value);
+      break;
+    case Schedule::Kind::ramp:
+      sum =
+          fmt::format("{}*(1-cos({}*({})))", negative(0.5 * schedule.value),
+                      exact(std::numbers::pi / (schedule.end - schedule.start)), between(schedule.start, schedule.end));
+      break;
+    case Schedule::Kind::sine:
+      sum = fmt::format("{}*sin({}*({}))", negative(schedule.value), exact(2 * std::numbers::pi * schedule.frequency),
+                        since(schedule.start));
+      break;
+    case Schedule::Kind::cycles:
+      sum = fmt::format("{}*(1-cos({}*({})))", negative(schedule.value),
+                        exact(2 * std::numbers::pi * schedule.frequency), between(schedule.start, schedule.end));
+      break;
+    case Schedule::Kind::table:
+      sum = exact(schedule.values.front());
+      for (std::size_t k = 0; k + 1 < schedule.times.size(); ++k) {
+        if (slope_of(k) == 0) continue;
+        sum += fmt::format("+{}*{}", negative(slope_of(k)), between(schedule.times[k], schedule.times[k + 1]));
+      }
+      break;
+  }
+  return sum;
+}
+
+EngineFile readme_of(const EngineModel& model, Engine engine) {
+  const bool lammps = engine == Engine::lammps;
+  const std::string bodies = counted(std::ssize(model.bodies), model.body == Body::disc ? "disc" : "sphere");
+  const std::string contacts = model.bonded ? " and " + counted(std::ssize(model.bonds), "bond") : " that collide";
+  std::string text =
+      fmt::format("{}{}{} for {}, written by equidem; start: {} (the state at the end: {}).\n",
+                  model.title.empty() ? "" : model.title + ": ", bodies, contacts, to_string(engine),
+                  lammps ? "lmp -in in.equidem" : "yade -n -x run_equidem.py", lammps ? "end.dump" : "end.txt");
+  text +=
+      model.body == Body::disc
+          ? "Units: SI. Masses, moments of inertia, springs and forces are those of one metre of depth: kg/m, kg m, "
+            "N/m², N/m.\n"
+          : "Units: SI; masses and forces are those of whole spheres; springs N/m.\n";
+  text += fmt::format("Time step {} s, stable; {}.\n", exact(model.time_step),
+                      model.bonded ? "motions are finite here, bonds neither break nor carry forces at the start"
+                                   : "tangential springs are without force at the start");
+  for (const auto& [feature, instance] : model.found) {
+    const EngineFeatureRow& row = entry_of(feature);
+    if (!row.carried_by(engine) && row.accept != nullptr) text += fmt::format("Accepted: {}; {}.\n", row.name, row.why);
+  }
+  return {"README", text};
+}
+
+std::int64_t steps_of(const EngineModel& model) {
+  if (!model.to_rest) return std::max<std::int64_t>(1, count_steps(model.duration, model.time_step));
+  double low = model.bodies.front().position.x, high = low, bottom = model.bodies.front().position.y, top = bottom;
+  for (const EngineBody& body : model.bodies) {
+    low = std::min(low, body.position.x), high = std::max(high, body.position.x);
+    bottom = std::min(bottom, body.position.y), top = std::max(top, body.position.y);
+  }
+  double length = 0;
+  for (const EngineBond& bond : model.bonds) length += bond.length;
+  length /= static_cast<double>(std::max<std::size_t>(1, model.bonds.size()));
+  const double across = 1 + std::max(high - low, top - bottom) / length;
+  constexpr double steps_across = 2000;
+  return static_cast<std::int64_t>(std::ceil(steps_across * across));
+}
+
+double force_scale(const EngineModel& model) {
+  double stiffness = 0, force = 0;
+  for (const EngineBond& bond : model.bonds) stiffness = std::max(stiffness, bond.springs.kN);
+  for (const EngineBody& body : model.bodies) {
+    force = std::max({force, norm(body.load.force), std::abs(body.load.moment) / body.radius,
+                      body.inertia.mass * norm(model.gravity)});
+    for (std::size_t k = 0; k < 3; ++k)
+      if (body.held[k]) force = std::max(force, stiffness * std::abs(*body.held[k]) * (k == 2 ? body.radius : 1));
+  }
+  return force;
 }
 
 }  // namespace equidem

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The parts of a model that each discrete-element code carries, as one table.
-/// A model as discrete-element codes take it: bodies, bonds or contact properties, walls, and what acts.
+/// A model as discrete-element codes take it: bodies, bonds or contact properties, walls, and what acts; the parts that
+/// each code carries, as one table; the files that it runs.
 ///
 /// Forces, masses and moments of inertia of discs are per metre of depth, those of spheres are whole.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -19,6 +20,7 @@
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/motion/schedule.hpp"
 #include "equidem/motion/wall.hpp"
 
 namespace equidem {
@@ -187,6 +189,9 @@ struct EngineModel {
   [[nodiscard]] const PairProperties& between(int a, int b) const {
     return pairs[static_cast<std::size_t>(a * kinds + b)];
   }
+  [[nodiscard]] bool has_bodies(int kind) const {
+    return std::ranges::find(bodies, kind, &EngineBody::kind) != bodies.end();
+  }
 };
 
 /// Contact points that differ by less, of the length of the bond, count as the same: an engine then computes the model
@@ -199,13 +204,40 @@ EngineModel engine_model(const Scene& scene, const SimulationOptions& options, B
 /// The model of colliding bodies; title, duration and time_step are not set.
 EngineModel engine_model(const GrainScene& scene, const GrainOptions& options, Body body);
 
-/// Reduced mass of two bodies, or of a body and a wall.
-double reduced_mass(const EngineBody& i, const EngineBody* j);
+/// Whether the masses of all bodies are equal to 1e-9.
+bool equal_masses(const EngineModel& model);
 
-/// The mass of all bodies, kg, equal to 1e-9; none where they differ.
-std::optional<double> common_mass(const EngineModel& model);
+/// A number in the shortest form that reads back to the same bits.
+std::string exact(double value);
 
-/// The mass at a contact across its normal, 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), over the reduced mass.
-double tangential_mass_share(Body body);
+/// A schedule as a formula that LAMMPS and Python read, with abs, sin and cos.
+/// \param time the name of the time in it, s
+std::string formula_of(const Schedule& schedule, const std::string& time);
+
+struct EngineFile {
+  std::string name;
+  std::string text;
+};
+
+/// LAMMPS: in.equidem, assembly.data, and the loads where bodies have some. Bonds: BPM's bpm/rotational with a bond
+/// type for each pair of kN and kT. Grains: gran/hooke/history, or, where dashpots or groups differ, the style granular
+/// (LAMMPS of 2023 or later).
+/// \param model carried by LAMMPS (require_carried)
+std::vector<EngineFile> lammps_files(const EngineModel& model);
+
+/// YADE: run_equidem.py. Bonds: CohFrictMat with kn and ks of each, bodies of the radii that place the contact points.
+/// Grains: FrictMat, Cundall and Strack's law; ViscElMat where bodies of one mass have dashpots.
+/// \param model carried by YADE
+std::vector<EngineFile> yade_files(const EngineModel& model);
+
+/// README: model, units and depth, how to start.
+EngineFile readme_of(const EngineModel& model, Engine engine);
+
+/// The steps of a run: of its duration; to rest at most so many, after about fifty periods of the longest wave.
+std::int64_t steps_of(const EngineModel& model);
+
+/// N/m: the largest load, weight, or force of a bond that is stretched by a prescribed displacement; the measure of the
+/// unbalanced force at rest.
+double force_scale(const EngineModel& model);
 
 }  // namespace equidem

@@ -4,23 +4,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "equidem/contact/restitution.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
-#include "equidem/output/export/engine_files.hpp"
-#include "equidem/output/export/lammps_actions.hpp"
+#include "equidem/output/export/engine_model.hpp"
 
 namespace equidem {
 namespace {
 
+constexpr char axes[] = {'x', 'y'};
+
+double along_axis(std::size_t axis, Vec2 vector) {
+  return axis == 0 ? vector.x : vector.y;
+}
+
 class LammpsWriter {
  public:
-  LammpsWriter(const EngineModel& model, const LammpsActions& actions) : model_(model), actions_(actions) {
+  explicit LammpsWriter(const EngineModel& model) : model_(model) {
     for (const EngineBond& bond : model.bonds) bond_types_.try_emplace(coefficients_of(bond), 0);
     int type = 0;
     for (auto& [coefficients, number] : bond_types_) number = ++type;
@@ -29,6 +38,14 @@ class LammpsWriter {
     for (auto& [kind, number] : types_) number = ++type;
   }
 
+  [[nodiscard]] std::vector<EngineFile> files() {
+    std::vector<EngineFile> all{{"in.equidem", input()}, {"assembly.data", data()}};
+    all.insert(all.end(), tables_.begin(), tables_.end());
+    all.push_back(readme_of(model_, Engine::lammps));
+    return all;
+  }
+
+ private:
   [[nodiscard]] std::string data() const {
     std::string text = "assembly of equidem\n\n";
     line(text, "{} atoms\n{} atom types", model_.bodies.size(), types_.size());
@@ -52,7 +69,7 @@ class LammpsWriter {
     return text;
   }
 
-  [[nodiscard]] std::string input() const {
+  [[nodiscard]] std::string input() {
     std::string text = head();
     text += model_.bonded ? bonds() : contacts();
     text += actions();
@@ -69,7 +86,6 @@ class LammpsWriter {
     return text;
   }
 
- private:
   template <typename... Values>
   static void line(std::string& text, fmt::format_string<Values...> format, Values&&... values) {
     fmt::format_to(std::back_inserter(text), format, std::forward<Values>(values)...);
@@ -154,16 +170,12 @@ class LammpsWriter {
 
   /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
   [[nodiscard]] bool by_mass() const {
-    if (common_mass(model_)) return !differ_between_bodies();
-    return !model_.graded_dashpots && !differ_between_bodies();
-  }
-
-  [[nodiscard]] bool differ_between_bodies() const {
+    if (!equal_masses(model_) && model_.graded_dashpots) return false;
     const PairProperties& first = model_.between(types_.begin()->first, types_.begin()->first);
     for (const auto& [a, type_a] : types_)
       for (const auto& [b, type_b] : types_)
-        if (!(model_.between(a, b) == first)) return true;
-    return false;
+        if (!(model_.between(a, b) == first)) return false;
+    return true;
   }
 
   /// Dashpots over the reduced mass.
@@ -173,9 +185,12 @@ class LammpsWriter {
   [[nodiscard]] Dashpots dashpots_by_mass(const PairProperties& pair, double mass) const {
     const double normal = 2 * damping_ratio(NormalLaw::linear_dashpot, pair) * std::sqrt(pair.stiffness / mass);
     const double along =
-        2 * pair.tangential_damping * std::sqrt(tangential_mass_share(model_.body) * stiffness_along(pair) / mass);
+        2 * pair.tangential_damping * std::sqrt(tangential_mass_share() * stiffness_along(pair) / mass);
     return {std::max(normal, smallest_dashpot), pair.friction > 0 ? along : 0};
   }
+
+  /// The mass at a contact across its normal, 1/(1/m_i + 1/m_j + r_i²/I_i + r_j²/I_j), over the reduced mass.
+  [[nodiscard]] double tangential_mass_share() const { return 1 / (1 + 1 / inertia_factor(model_.body)); }
 
   /// kn kt gamma_n gamma_t xmu dampflag.
   [[nodiscard]] std::string coefficients_by_mass(const PairProperties& pair, double mass) const {
@@ -203,10 +218,9 @@ class LammpsWriter {
   /// one as a multiple of it.
   [[nodiscard]] std::string coefficients_by_restitution(const PairProperties& pair) const {
     const double zeta = damping_ratio(NormalLaw::linear_dashpot, pair);
-    const double along =
-        zeta == 0 ? 0
-                  : pair.tangential_damping / zeta *
-                        std::sqrt(tangential_mass_share(model_.body) * stiffness_along(pair) / pair.stiffness);
+    const double along = zeta == 0 ? 0
+                                   : pair.tangential_damping / zeta *
+                                         std::sqrt(tangential_mass_share() * stiffness_along(pair) / pair.stiffness);
     return fmt::format("hooke {} {} tangential linear_history {} {} {} damping coeff_restitution{}",
                        exact(pair.stiffness), exact(restitution_of(zeta, ContactEnd::at_zero_overlap)),
                        exact(stiffness_along(pair)), exact(along), exact(pair.friction), limit(pair));
@@ -278,8 +292,77 @@ class LammpsWriter {
     return text.empty() ? text : text + "\n";
   }
 
+  /// Declares the variable NAME of a file of values of atoms, which are counted from 1; a value 0 is left out.
+  /// \return whether there are others
+  bool declare_atoms(std::string& text, const std::string& name, std::vector<std::pair<std::size_t, double>> values) {
+    std::erase_if(values, [](const auto& entry) { return entry.second == 0; });
+    if (values.empty()) return false;
+    line(text, "variable {0} atomfile {0}.txt", name);
+    std::string rows = fmt::format("{}\n", values.size());
+    for (const auto& [body, value] : values) line(rows, "{} {}", body + 1, exact(value));
+    tables_.push_back({name + ".txt", rows});
+    return true;
+  }
+
+  /// Variable t is the time.
+  [[nodiscard]] std::string loads() {
+    std::string text, forces;
+    for (std::size_t k = 0; k < model_.timed_loads.size(); ++k)
+      line(text, "variable factor_{} equal {}", k, formula_of(model_.timed_loads[k].factor, "v_t"));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      std::vector<std::string> terms;
+      std::vector<std::pair<std::size_t, double>> values;
+      for (const EngineBody& body : model_.bodies)
+        values.emplace_back(values.size(), along_axis(axis, body.load.force));
+      const std::string constant = fmt::format("load_{}", axes[axis]);
+      if (declare_atoms(text, constant, values)) terms.push_back("v_" + constant);
+      for (std::size_t k = 0; k < model_.timed_loads.size(); ++k) {
+        values.clear();
+        for (const auto& [body, share] : model_.timed_loads[k].shares)
+          values.emplace_back(body, along_axis(axis, share.force));
+        const std::string timed = fmt::format("load_{}_{}", axes[axis], k);
+        if (declare_atoms(text, timed, values)) terms.push_back(fmt::format("v_{}*v_factor_{}", timed, k));
+      }
+      if (!terms.empty()) line(text, "variable loads_{} atom {}", axes[axis], joined(terms, "+"));
+      forces += terms.empty() ? "0 " : fmt::format("v_loads_{} ", axes[axis]);
+    }
+    if (forces != "0 0 ") line(text, "fix loads all addforce {}0", forces);
+    return text;
+  }
+
+  /// A support that follows a schedule u is driven by the force m (u(t + h) - 2 u(t) + u(t - h))/h², with which the
+  /// step h of LAMMPS puts it into its place.
+  [[nodiscard]] std::string driven_supports() {
+    std::string text;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      std::vector<std::string> members, accelerations;
+      for (std::size_t k = 0; k < model_.motions.size(); ++k) {
+        const EngineMotion& motion = model_.motions[k];
+        if (motion.component != axis) continue;
+        for (const auto& [name, time] : {std::pair("next", "(v_t+dt)"), {"now", "v_t"}, {"last", "(v_t-dt)"}})
+          line(text, "variable {}_{} equal {}", name, k, formula_of(motion.displacement, time));
+        line(text,
+             "variable acceleration_{0} equal "
+             "((step>0)*(v_next_{0}-2*v_now_{0}+v_last_{0})+(step==0)*2*(v_next_{0}-v_now_{0}))/(dt*dt)",
+             k);
+        std::vector<std::pair<std::size_t, double>> driven;
+        for (const std::int32_t body : motion.bodies) driven.emplace_back(body, 1);
+        if (!declare_atoms(text, fmt::format("driven_{}", k), driven)) continue;
+        members.push_back(fmt::format("v_driven_{}", k));
+        accelerations.push_back(fmt::format("v_driven_{0}*v_acceleration_{0}", k));
+      }
+      if (members.empty()) continue;
+      line(text,
+           "variable driven_{0} atom {1}\nvariable drive_{0} atom mass*({2})\ngroup driven_{0} variable driven_{0}\n"
+           "fix drive_{0} driven_{0} setforce {3}",
+           axes[axis], joined(members, "+"), joined(accelerations, "+"),
+           axis == 0 ? "v_drive_x NULL NULL" : "NULL v_drive_y NULL");
+    }
+    return text;
+  }
+
   /// Gravity, loads, walls, supports, damping, motion, in the order in which they change the forces.
-  [[nodiscard]] std::string actions() const {
+  [[nodiscard]] std::string actions() {
     std::string text;
     if (std::ranges::any_of(model_.walls, &Wall::moves) || !model_.motions.empty() || !model_.timed_loads.empty())
       text += "variable t equal step*dt\n";
@@ -287,7 +370,7 @@ class LammpsWriter {
     if (model_.gravity != Vec2{})
       line(text, "fix gravity all gravity {} vector {} {} 0", exact(norm(model_.gravity)),
            exact(model_.gravity.x / norm(model_.gravity)), exact(model_.gravity.y / norm(model_.gravity)));
-    text += actions_.loads;
+    text += loads();
     const std::string held_x = group_of("held_x", [](const EngineBody& body) { return body.held[0].has_value(); });
     const std::string held_y = group_of("held_y", [](const EngineBody& body) { return body.held[1].has_value(); });
     const std::string rigid = group_of("rigid", [](const EngineBody& body) { return body.held[2].has_value(); });
@@ -296,7 +379,7 @@ class LammpsWriter {
     if (!held_y.empty()) text += "fix hold_y held_y setforce NULL 0 NULL\n";
     if (model_.local_damping > 0)
       line(text, "fix damping all damping/cundall {} {}", exact(model_.local_damping), exact(model_.local_damping));
-    text += actions_.supports;
+    text += driven_supports();
     const char* of_disc = model_.body == Body::disc ? " disc" : "";
     if (rigid.empty()) {
       line(text, "fix motion all nve/{}{}", style(), of_disc);
@@ -339,7 +422,7 @@ class LammpsWriter {
   static constexpr double smallest_dashpot = 1e-200;
 
   const EngineModel& model_;
-  const LammpsActions& actions_;
+  std::vector<EngineFile> tables_;  ///< of values of atoms, which the commands read
   std::map<std::array<double, 4>, int> bond_types_;
   std::map<int, int> types_;  // atom type of each kind of bodies
 };
@@ -347,12 +430,7 @@ class LammpsWriter {
 }  // namespace
 
 std::vector<EngineFile> lammps_files(const EngineModel& model) {
-  const LammpsActions actions = lammps_actions(model);
-  const LammpsWriter writer(model, actions);
-  std::vector<EngineFile> files{{"in.equidem", writer.input()}, {"assembly.data", writer.data()}};
-  files.insert(files.end(), actions.tables.begin(), actions.tables.end());
-  files.push_back(readme_of(model, Engine::lammps));
-  return files;
+  return LammpsWriter(model).files();
 }
 
 }  // namespace equidem

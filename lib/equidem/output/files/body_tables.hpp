@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The discs of a clump at the present position of its body.
-/// Bodies, their contacts and bonds as CSV.
+/// An assembly with its results, and bodies, their contacts and bonds as CSV.
 #pragma once
 
+#include <cassert>
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -11,15 +11,38 @@
 #include <string>
 #include <vector>
 
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/breakage/strengths.hpp"
+#include "equidem/contact/frame.hpp"
 #include "equidem/core/turns.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/output/files/state.hpp"
 
 namespace equidem {
+
+/// A view: the data must outlive it. An empty span means "not computed": its columns, arrays and colours are omitted.
+struct AssemblyState {
+  const Assembly& assembly;
+  std::span<const DiscMotion> motions = {};           ///< per disc
+  std::span<const ContactForce> contact_forces = {};  ///< per contact
+  std::span<const Tensor2> stresses = {};             ///< per disc, Pa
+  std::span<const double> bending_moments = {};       ///< per contact, N, on its first disc
+};
+
+/// Precondition: sizes agree.
+inline void assert_consistent([[maybe_unused]] const AssemblyState& state) {
+  assert(state.motions.empty() || state.motions.size() == state.assembly.size());
+  assert(state.contact_forces.empty() || state.contact_forces.size() == state.assembly.contacts.size());
+  assert(state.bending_moments.empty() || state.bending_moments.size() == state.assembly.contacts.size());
+  assert(state.stresses.empty() || state.stresses.size() == state.assembly.size());
+}
+
+/// Half the trace of a plane stress tensor, Pa; tension positive.
+constexpr double mean_stress(const Tensor2& stress) {
+  return 0.5 * (stress.xx + stress.yy);
+}
 
 /// Rotation of a vector from the frame of a body.
 /// \param angle of the body, rad

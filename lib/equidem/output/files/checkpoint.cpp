@@ -17,13 +17,13 @@
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/output/files/json.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 namespace {
 
 constexpr std::string_view magic = "equidem-checkpoint/";
-constexpr int format_version = 10;
+constexpr int format_version = 11;
 constexpr std::size_t header_size = 512;
 
 /// The 512 bytes before the HDF5 part; the last line is a checksum of the lines before and of all that follows.

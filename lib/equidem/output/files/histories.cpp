@@ -5,15 +5,16 @@
 #include <cassert>
 #include <cmath>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/fields/coarse_fields.hpp"
+#include "equidem/fields/box_measures.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/run/cell_history.hpp"
 
 namespace equidem {
 namespace {
@@ -44,6 +45,46 @@ void check(const std::vector<Probe>& probes, std::size_t bodies) {
   }
 }
 
+/// A number of a state, as a column of a history.
+template <class State>
+struct Column {
+  const char* name;
+  double (*value)(const State&);
+  bool per_depth = false;  ///< of discs
+  bool summed = false;     ///< since the start, of colliding bodies alone
+
+  [[nodiscard]] bool is_written(BodyFamily family) const { return family == BodyFamily::colliding || !summed; }
+};
+
+constexpr Column<WallState> wall_quantities[] = {
+    {"x_m", [](const WallState& w) { return w.place.x; }},
+    {"y_m", [](const WallState& w) { return w.place.y; }},
+    {"vx_m_per_s", [](const WallState& w) { return w.velocity.x; }},
+    {"vy_m_per_s", [](const WallState& w) { return w.velocity.y; }},
+    {"force_x_N", [](const WallState& w) { return w.force.x; }, true},
+    {"force_y_N", [](const WallState& w) { return w.force.y; }, true},
+    {"moment_N_m", [](const WallState& w) { return w.moment; }, true},
+    {"impulse_x_N_s", [](const WallState& w) { return w.impulse.x; }, true, true},
+    {"impulse_y_N_s", [](const WallState& w) { return w.impulse.y; }, true, true},
+    {"work_J", [](const WallState& w) { return w.work; }, true, true},
+};
+
+constexpr Column<CellState> cell_quantities[] = {
+    {"cell_width_m", [](const CellState& c) { return c.width; }},
+    {"cell_height_m", [](const CellState& c) { return c.height; }},
+    {"cell_shift_m", [](const CellState& c) { return c.shift; }},
+    {"cell_area_m2", [](const CellState& c) { return c.area(); }},
+    {"cell_strain_xx", [](const CellState& c) { return c.strain.xx; }},
+    {"cell_strain_yy", [](const CellState& c) { return c.strain.yy; }},
+    {"cell_strain_xy", [](const CellState& c) { return c.strain.xy; }},
+    {"cell_stress_xx_Pa", [](const CellState& c) { return c.stress.xx; }},
+    {"cell_stress_xy_Pa", [](const CellState& c) { return c.stress.xy; }},
+    {"cell_stress_yx_Pa", [](const CellState& c) { return c.stress.yx; }},
+    {"cell_stress_yy_Pa", [](const CellState& c) { return c.stress.yy; }},
+    {"cell_void_ratio", [](const CellState& c) { return c.void_ratio; }},
+    {"cell_coordination_number", [](const CellState& c) { return c.coordination_number; }},
+};
+
 std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const ProbeOptions& options) {
   std::vector<std::string> columns{"step", "time_s"};
   for (const Probe& probe : probes) {
@@ -53,16 +94,18 @@ std::vector<std::string> probe_columns(const std::vector<Probe>& probes, const P
     if (probe.box) columns.push_back(probe.name + "_inside");
   }
   const std::set<std::string> taken(columns.begin(), columns.end());
-  const auto add = [&](const char* owner, const std::vector<std::string>& names) {
-    for (const std::string& name : names) {
-      columns.push_back(name);
-      if (!taken.contains(name)) continue;
+  const auto add = [&](const char* owner, const std::string& name) {
+    columns.push_back(name);
+    if (taken.contains(name))
       bad_input(fmt::format("a probe and {} both have the column '{}'", owner, name),
                 "columns are found by their names", "Rename the probe");
-    }
   };
-  add("a wall", wall_columns(options.walls, options.family, options.body));
-  if (options.cell) add("the cell", cell_columns());
+  for (const std::string& wall : options.walls)
+    for (const auto& column : wall_quantities)
+      if (column.is_written(options.family))
+        add("a wall", fmt::format("wall_{}_{}{}", wall, column.name, column.per_depth ? per_depth(options.body) : ""));
+  for (const auto& column : cell_quantities)
+    if (options.cell) add("the cell", column.name);
   for (const std::string& name : energy_columns(options.family, options.body)) columns.push_back(name);
   return columns;
 }
@@ -130,9 +173,13 @@ void ProbeWriter::record(std::int64_t step, double time, std::span<const DiscMot
     }
     if (probe.box) cells.push_back(count_inside(probe, motions));
   }
-  for (const double value : wall_cells(walls_, family_, walls)) cells.push_back(value);
-  if (cell_)
-    for (const double value : cell_cells(*cell)) cells.push_back(value);
+  for (const std::string& name : walls_) {
+    const auto found = std::ranges::find(walls, name, &WallState::name);
+    for (const auto& column : wall_quantities)
+      if (column.is_written(family_)) cells.push_back(found == walls.end() ? NAN : column.value(*found));
+  }
+  for (const auto& column : cell_quantities)
+    if (cell_) cells.push_back(column.value(*cell));
   for (const double value : energy_cells(family_, ledger)) cells.push_back(value);
   table_.add(step, cells, regular);
 }
@@ -181,54 +228,6 @@ Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger,
            "energy: error of the balance, relative to the largest term");
 }
 
-namespace {
-
-struct WallColumn {
-  const char* name;
-  bool per_depth;  ///< of discs
-  bool summed;     ///< since the start, of colliding bodies alone
-  double (*value)(const WallState&);
-};
-
-constexpr WallColumn wall_quantities[] = {
-    {"x_m", false, false, [](const WallState& w) { return w.place.x; }},
-    {"y_m", false, false, [](const WallState& w) { return w.place.y; }},
-    {"vx_m_per_s", false, false, [](const WallState& w) { return w.velocity.x; }},
-    {"vy_m_per_s", false, false, [](const WallState& w) { return w.velocity.y; }},
-    {"force_x_N", true, false, [](const WallState& w) { return w.force.x; }},
-    {"force_y_N", true, false, [](const WallState& w) { return w.force.y; }},
-    {"moment_N_m", true, false, [](const WallState& w) { return w.moment; }},
-    {"impulse_x_N_s", true, true, [](const WallState& w) { return w.impulse.x; }},
-    {"impulse_y_N_s", true, true, [](const WallState& w) { return w.impulse.y; }},
-    {"work_J", true, true, [](const WallState& w) { return w.work; }},
-};
-
-bool is_written(const WallColumn& column, BodyFamily family) {
-  return family == BodyFamily::colliding || !column.summed;
-}
-
-}  // namespace
-
-std::vector<std::string> wall_columns(std::span<const std::string> names, BodyFamily family, Body body) {
-  std::vector<std::string> columns;
-  for (const std::string& name : names)
-    for (const WallColumn& column : wall_quantities)
-      if (is_written(column, family))
-        columns.push_back(fmt::format("wall_{}_{}{}", name, column.name, column.per_depth ? per_depth(body) : ""));
-  return columns;
-}
-
-std::vector<double> wall_cells(std::span<const std::string> names, BodyFamily family,
-                               std::span<const WallState> walls) {
-  std::vector<double> cells;
-  for (const std::string& name : names) {
-    const auto found = std::ranges::find(walls, name, &WallState::name);
-    for (const WallColumn& column : wall_quantities)
-      if (is_written(column, family)) cells.push_back(found == walls.end() ? NAN : column.value(*found));
-  }
-  return cells;
-}
-
 Results wall_results(std::span<const WallState> walls, BodyFamily family, Body body) {
   const bool disc = body == Body::disc, summed = family == BodyFamily::colliding;
   const char *force = disc ? "N/m" : "N", *moment = disc ? "N" : "N m", *impulse = disc ? "N s/m" : "N s",
@@ -253,6 +252,29 @@ Results wall_results(std::span<const WallState> walls, BodyFamily family, Body b
   out.line("walls", fmt::format("forces on them in the last step, moments about their places{}:",
                                 summed ? ", works since the start" : ""));
   return out.table("forces_on_walls", std::move(rows));
+}
+
+Results cell_results(const CellState& cell) {
+  Results out;
+  out.line("cell")
+      .add("width", "", cell.width, "m")
+      .note(" by ")
+      .add("height", "", cell.height, "m")
+      .add("shift", "images above shifted by", cell.shift, "m")
+      .set("area", cell.area(), "m²");
+  out.line("")
+      .add("strain_xx", "strain xx", cell.strain.xx, "", {.digits = 4})
+      .add("strain_yy", "yy", cell.strain.yy, "", {.digits = 4})
+      .add("strain_xy", "xy", cell.strain.xy, "", {.digits = 4});
+  out.line("")
+      .add("stress_xx", "stress xx", cell.stress.xx, "Pa", {.digits = 4})
+      .add("stress_xy", "xy", cell.stress.xy, "Pa", {.digits = 4})
+      .add("stress_yx", "yx", cell.stress.yx, "Pa", {.digits = 4})
+      .add("stress_yy", "yy", cell.stress.yy, "Pa", {.digits = 4});
+  out.line("")
+      .add("void_ratio", "void ratio", cell.void_ratio, "", {.digits = 4})
+      .add("coordination_number", "coordination number", cell.coordination_number, "", {.digits = 4});
+  return out.under("cell");
 }
 
 }  // namespace equidem

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Histories: how chosen discs and the energies change with time, as CSV.
-/// The energy ledger as columns of tables and as a JSON object.
-/// Loads of bodies on walls, as columns of tables and as results.
+/// Histories: how chosen discs, the energies, walls and a periodic cell change with time, as columns of tables and as
+/// results.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +35,11 @@ struct ProbeOptions {
 
 /// Writes rows: step, time_s; the quantities of every probe: NAME_ux_m, NAME_uy_m; NAME_rotation_rad; NAME_x_m,
 /// NAME_y_m; NAME_angle_rad; NAME_vx_m_per_s, NAME_vy_m_per_s; NAME_spin_rad_per_s; NAME_stress_xx_Pa, _xy_, _yx_,
-/// _yy_; NAME_inside of a probe with a box; those of every wall (wall_loads.hpp) and of the periodic cell
-/// (cell_history.hpp); then the columns of the energy ledger (energies.hpp).
+/// _yy_; NAME_inside of a probe with a box; of every wall wall_NAME_x_m, _y_m, _vx_m_per_s, _vy_m_per_s,
+/// _force_x_N, _force_y_N, _moment_N_m, of colliding bodies also _impulse_x_N_s, _impulse_y_N_s, _work_J, NaN where it
+/// is not there (of discs forces, moments, impulses and works per metre of depth: _per_m); of the periodic cell
+/// cell_width_m, cell_height_m, cell_shift_m, cell_area_m2, cell_strain_xx, _yy, _xy, cell_stress_xx_Pa, _xy_, _yx_,
+/// _yy_, cell_void_ratio, cell_coordination_number; then energy_columns.
 class ProbeWriter {
  public:
   /// \param bodies of the scene
@@ -92,14 +94,10 @@ void write_energy_csv(const std::filesystem::path& path, std::span<const EnergyS
 /// Every term of the ledger, then elastic, dissipated, input, error, and relative_error, the error over `scale`.
 Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale);
 
-/// For each wall wall_NAME_x_m, wall_NAME_y_m, wall_NAME_vx_m_per_s, wall_NAME_vy_m_per_s, wall_NAME_force_x_N,
-/// wall_NAME_force_y_N, wall_NAME_moment_N_m; of colliding bodies also wall_NAME_impulse_x_N_s,
-/// wall_NAME_impulse_y_N_s, wall_NAME_work_J. Of discs the names of the latter six end with _per_m.
-std::vector<std::string> wall_columns(std::span<const std::string> names, BodyFamily family, Body body);
-/// In the order of wall_columns; NaN for a wall that is not there.
-std::vector<double> wall_cells(std::span<const std::string> names, BodyFamily family, std::span<const WallState> walls);
-
 /// forces_on_walls: a list with name, place, force, moment, of colliding bodies also impulse and work.
 Results wall_results(std::span<const WallState> walls, BodyFamily family, Body body);
+
+/// cell: width, height, shift, area, strain, stress, void ratio and coordination number of a periodic cell.
+Results cell_results(const CellState& cell);
 
 }  // namespace equidem

@@ -16,7 +16,7 @@
 
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/core/vector.hpp"
-#include "equidem/output/files/state.hpp"
+#include "equidem/output/files/body_tables.hpp"
 
 namespace equidem {
 

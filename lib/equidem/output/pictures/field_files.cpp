@@ -11,7 +11,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/pictures/scene.hpp"
+#include "equidem/output/pictures/canvas.hpp"
 
 namespace equidem {
 namespace {
@@ -44,7 +44,7 @@ void add_fields(Table& table, const CoarseFields& f) {
 
 Table table_of(const CoarseFields& fields) {
   const auto middle = [&](std::size_t k) {
-    const Region cell = fields.grid.cell(k);
+    const Rectangle cell = fields.grid.cell(k);
     return 0.5 * (cell.low + cell.high);
   };
   Table table;
@@ -131,10 +131,10 @@ std::string draw(const CoarseFields& fields) {
                       {"coordination", "", fields.coordination},
                       {"speed", "m/s", speed}};
   const Vec2 size = fields.grid.region.high - fields.grid.region.low;
-  const double width = 0.5 * (PageFrame::width - 2 * page_margin - map_gap) - map_bar_room;
+  const double width = 0.5 * (page_width - 2 * page_margin - map_gap) - map_bar_room;
   const double height = std::clamp(width * size.y / size.x, 60.0, 1.5 * width);
   const double pitch = height + map_title_room + 26;
-  Canvas canvas(PageFormat::png, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(2 * pitch + 16)), 1);
+  Canvas canvas(PageFormat::png, 2 * pitch + 16);
   for (std::size_t k = 0; k < 4; ++k)
     draw_map(canvas, fields.grid, maps[k].values, maps[k].title, maps[k].unit,
              {page_margin + static_cast<double>(k % 2) * (width + map_bar_room + map_gap),

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "equidem/fields/coarse_fields.hpp"
+#include "equidem/fields/box_measures.hpp"
 
 namespace equidem {
 

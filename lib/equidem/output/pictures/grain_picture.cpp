@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -12,36 +15,46 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/output/files/body_tables.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
+#include "equidem/output/files/vtk.hpp"
+#include "equidem/output/page/page.hpp"
 #include "equidem/output/pictures/canvas.hpp"
-#include "equidem/output/pictures/picture.hpp"
-#include "equidem/output/pictures/scene.hpp"
+#include "equidem/output/results.hpp"
+#include "equidem/output/texts.hpp"
 
 namespace equidem {
 
-void GrainView::include_grain(std::size_t grain, Vec2 centre, double angle, double radius) {
-  if (!std::isfinite(centre.x + centre.y + angle))
-    bad_input(fmt::format("grain {} at ({}, {}) cannot be drawn", grain, centre.x, centre.y), "its place is not finite",
-              "Check the run that it comes from");
-  include(centre, radius);
-}
+namespace {
 
-void GrainView::include_walls(std::span<const Wall> walls, double time) {
-  for (const Wall& wall : walls) {
-    if (wall.shape == Wall::Shape::line) continue;
-    for (const Vec2 point : outline(wall, time)) include(point, 0);
+struct GrainView : Bounds {
+  /// \throws Error (bad_input) where position or angle of the grain are not finite
+  void include_grain(std::size_t grain, Vec2 centre, double angle, double radius) {
+    if (!std::isfinite(centre.x + centre.y + angle))
+      bad_input(fmt::format("grain {} at ({}, {}) cannot be drawn", grain, centre.x, centre.y),
+                "its place is not finite", "Check the run that it comes from");
+    include(centre, radius);
   }
-}
+  /// Segments; lines cross the view.
+  void include_walls(std::span<const Wall> walls, double time) {
+    for (const Wall& wall : walls) {
+      if (wall.shape == Wall::Shape::line) continue;
+      for (const Vec2 end : {wall.point, wall.end}) include(end + wall.displacement(time), 0);
+    }
+  }
+  /// Adds a margin, and room where the view is very narrow or flat.
+  void widen() {
+    const double edge = 0.04 * larger_side();
+    low -= Vec2{edge, edge};
+    high += Vec2{edge, edge};
+    const Vec2 missing{std::max(0.0, 0.5 * size().y - size().x), std::max(0.0, 0.25 * size().x - size().y)};
+    low -= 0.5 * missing;
+    high += 0.5 * missing;
+  }
+  [[nodiscard]] Vec2 size() const { return high - low; }
+};
 
-void GrainView::widen() {
-  const double edge = 0.04 * larger_side();
-  low -= Vec2{edge, edge};
-  high += Vec2{edge, edge};
-  const Vec2 missing{std::max(0.0, 0.5 * size().y - size().x), std::max(0.0, 0.25 * size().x - size().y)};
-  low -= 0.5 * missing;
-  high += 0.5 * missing;
-}
-
+/// Which of the places of grains at a time belong to an open scene: they lie no farther from the box round the
+/// segments and the grains that started than half its larger side. Others have fallen out of it. Empty: all
+/// belong, because there are lines alone or no grain is known to have started.
 std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const Grain> started,
                                  std::span<const Wall> walls, double time) {
   const auto is_finite = [](const Wall& wall) { return wall.shape != Wall::Shape::line; };
@@ -57,13 +70,6 @@ std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const G
   }
   return near;
 }
-
-std::vector<Vec2> outline(const Wall& segment, double time) {
-  const Vec2 moved = segment.displacement(time);
-  return {segment.point + moved, segment.end + moved};
-}
-
-namespace {
 
 constexpr double smallest_marked = 6;  // units, radius
 constexpr Colour wall_colour{0.25, 0.25, 0.28}, pale_colour{0.62, 0.62, 0.66};
@@ -125,7 +131,7 @@ GrainView view_of(const GrainPicture& picture) {
 }
 
 PageFrame lay_out(const GrainPicture& picture) {
-  return lay_out_page(view_of(picture), !picture.title.empty(), page_margin, 0, 1);
+  return lay_out_page(view_of(picture), !picture.title.empty(), page_margin, 0);
 }
 
 /// The piece of the line through `point` along `along` that lies in the view.
@@ -148,15 +154,10 @@ std::optional<std::array<Vec2, 2>> clipped(const PageFrame& frame, Vec2 point, V
 
 void draw_walls(Canvas& canvas, const PageFrame& frame, const GrainPicture& picture) {
   for (const Wall& wall : picture.walls) {
-    std::vector<Vec2> points;
-    if (wall.shape != Wall::Shape::line) {
-      points = outline(wall, picture.time);
-    } else if (const auto ends =
-                   clipped(frame, wall.point + wall.displacement(picture.time), perpendicular(wall.normal))) {
-      points.assign(ends->begin(), ends->end());
-    }
-    for (std::size_t k = 1; k < points.size(); ++k)
-      canvas.line(frame.to_page(points[k - 1]), frame.to_page(points[k]), 2, wall_colour);
+    const Vec2 moved = wall.displacement(picture.time);
+    std::optional ends = std::array{wall.point + moved, wall.end + moved};
+    if (wall.shape == Wall::Shape::line) ends = clipped(frame, wall.point + moved, perpendicular(wall.normal));
+    if (ends) canvas.line(frame.to_page((*ends)[0]), frame.to_page((*ends)[1]), 2, wall_colour);
   }
 }
 
@@ -285,7 +286,7 @@ std::string caption_of(const GrainPicture& picture, std::size_t whole) {
 }
 
 std::string draw(const GrainPicture& picture, std::size_t whole, const PageFrame& frame, PageFormat format_of_page) {
-  Canvas canvas(format_of_page, static_cast<int>(PageFrame::width), static_cast<int>(std::ceil(frame.height)), 1);
+  Canvas canvas(format_of_page, frame.height);
   draw_walls(canvas, frame, picture);
   draw_starts(canvas, frame, picture);
   draw_grains(canvas, frame, picture);
@@ -295,10 +296,111 @@ std::string draw(const GrainPicture& picture, std::size_t whole, const PageFrame
   return canvas.finish();
 }
 
+constexpr double film_width = 900, film_height = 1260;  // pixels
+constexpr double levels = 4096;                         // of places in the view, of angles in a turn
+
+/// The walls as they move to their places in a frame.
+std::vector<Wall> walls_of(const GrainAnimation& animation, const GrainFrame& frame) {
+  std::vector<Wall> walls(animation.walls.begin(), animation.walls.end());
+  for (std::size_t w = 0; w < frame.walls.size(); ++w) {
+    const Vec2 move = frame.walls[w] - walls[w].point;
+    walls[w].move_x = {.value = move.x};
+    walls[w].move_y = {.value = move.y};
+  }
+  return walls;
+}
+
+/// The walls that are there in a frame.
+std::vector<Wall> present_walls(const GrainAnimation& animation, const GrainFrame& frame) {
+  std::vector<Wall> walls = walls_of(animation, frame);
+  std::erase_if(walls, [](const Wall& w) { return !std::isfinite(w.move_x.value) || !std::isfinite(w.move_y.value); });
+  return walls;
+}
+
+/// Which grains each frame shows.
+struct ShownBodies {
+  std::vector<std::vector<bool>> in;  ///< a row for each frame
+  bool some_fell = false;             ///< grains that are there are not shown, because they fell out of the scene
+
+  explicit ShownBodies(const GrainAnimation& animation) {
+    const auto show = [&](bool all) {
+      in.clear();
+      std::ptrdiff_t shown = 0;
+      for (const GrainFrame& frame : animation.frames) {
+        const std::vector<bool> near =
+            all ? std::vector<bool>()
+                : near_the_scene(frame.places, animation.started, present_walls(animation, frame), frame.time);
+        std::vector<bool>& row = in.emplace_back();
+        for (std::size_t g = 0; g < frame.places.size(); ++g)
+          row.push_back(is_there(frame.places[g]) && (near.empty() || near[g]));
+        shown += std::ranges::count(row, true);
+      }
+      return shown;
+    };
+    const std::ptrdiff_t shown = show(false);
+    some_fell = show(true) > shown && shown > 0;
+    if (some_fell) show(false);
+  }
+};
+
+GrainView view_of(const GrainAnimation& animation, const ShownBodies& shown) {
+  GrainView view;
+  for (std::size_t f = 0; f < animation.frames.size(); ++f) {
+    const GrainFrame& frame = animation.frames[f];
+    for (std::size_t g = 0; g < frame.places.size(); ++g)
+      if (shown.in[f][g]) view.include_grain(g, frame.places[g], frame.angles[g], animation.shapes[g].radius);
+    view.include_walls(present_walls(animation, frame), frame.time);
+  }
+  view.widen();
+  return view;
+}
+
+/// Discs or the ellipse of a body: x, y, a, b of each in the frame of the body.
+std::vector<double> outlines(const Grain& grain, std::span<const Clump> clumps) {
+  if (grain.clump < 0) return {0, 0, grain.radius, grain.short_half_axis > 0 ? grain.short_half_axis : grain.radius};
+  std::vector<double> values;
+  for (const Clump::Disc& disc : clumps[static_cast<std::size_t>(grain.clump)].discs)
+    values.insert(values.end(), {disc.offset.x, disc.offset.y, disc.radius, disc.radius});
+  return values;
+}
+
+/// x and y of both ends of a wall at time 0; of a line, more than the view shows.
+std::vector<double> wall_points(const Wall& wall, const GrainView& view) {
+  Vec2 from = wall.point, to = wall.end;
+  if (wall.shape == Wall::Shape::line) {
+    const Vec2 along = perpendicular(wall.normal), middle = 0.5 * (view.low + view.high);
+    const Vec2 foot = wall.point + dot(middle - wall.point, along) * along, reach = 4 * norm(view.size()) * along;
+    from = foot - reach;
+    to = foot + reach;
+  }
+  return {from.x, from.y, to.x, to.y};
+}
+
+Results frame_results(const GrainFrame& frame, const std::vector<bool>& shown, const GrainAnimation& animation,
+                      const GrainView& view, double unit) {
+  std::vector<std::int64_t> bodies;
+  for (std::size_t g = 0; g < frame.places.size(); ++g) {
+    if (!shown[g]) {
+      bodies.insert(bodies.end(), {0, 0, -1});
+      continue;
+    }
+    const Vec2 place = frame.places[g] - view.low;
+    const double turns = frame.angles[g] / (2 * std::numbers::pi);
+    for (const double value : {place.x / unit, place.y / unit, levels * (turns - std::floor(turns))})
+      bodies.push_back(std::llround(value));
+  }
+  std::vector<double> moves;
+  for (const Wall& wall : walls_of(animation, frame)) {
+    const Vec2 move = wall.displacement(frame.time);
+    moves.insert(moves.end(), {move.x, move.y});
+  }
+  return Results().set("time", frame.time).set("bodies", bodies).set("moves", moves);
+}
+
 }  // namespace
 
-std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
-                                                       const GrainPicture& whole, bool overwrite) {
+void write_grain_picture(const std::filesystem::path& folder, const std::string& name, const GrainPicture& whole,
+                         bool overwrite) {
   GrainPicture picture = whole;
   std::optional<ShownGrains> shown;
   if (const std::vector<bool> near = shown_of(whole); !near.empty()) {
@@ -306,17 +408,44 @@ std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::pa
     picture.grains = shown->grains, picture.groups = shown->groups, picture.bonds = shown->bonds;
   }
   const PageFrame frame = lay_out(picture);
-  std::vector<std::filesystem::path> files{folder / (name + ".png")};
-  write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::png), overwrite);
+  const std::filesystem::path png = folder / (name + ".png");
+  write_file(png, draw(picture, whole.grains.size(), frame, PageFormat::png), overwrite);
   DrawnFigures::add({.name = name,
                      .title = fmt::format("{}{}{} at t = {:.4g} s", picture.title, picture.title.empty() ? "" : ": ",
                                           counted(std::ssize(whole.grains), "body", "bodies"), picture.time),
-                     .file = files.back()});
-  if (picture.grains.size() <= most_drawn_discs) {
-    files.push_back(folder / (name + ".svg"));
-    write_file(files.back(), draw(picture, whole.grains.size(), frame, PageFormat::svg), overwrite);
-  }
-  return files;
+                     .file = png});
+  if (picture.grains.size() <= most_drawn_discs)
+    write_file(folder / (name + ".svg"), draw(picture, whole.grains.size(), frame, PageFormat::svg), overwrite);
+}
+
+std::string grain_animation_player(const GrainAnimation& animation) {
+  assert(!animation.shapes.empty() && !animation.frames.empty());
+  const ShownBodies shown(animation);
+  const GrainView view = view_of(animation, shown);
+  const Vec2 size = view.size();
+  const double unit = std::max(size.x, size.y) / levels;
+  std::vector<std::int64_t> groups(animation.groups.begin(), animation.groups.end());
+  groups.resize(animation.shapes.size(), 0);
+  std::vector<std::vector<double>> bodies, walls;
+  for (const Grain& grain : animation.shapes) bodies.push_back(outlines(grain, animation.clumps));
+  for (const Wall& wall : animation.walls) walls.push_back(wall_points(wall, view));
+  std::vector<Results> frames;
+  for (std::size_t f = 0; f < animation.frames.size(); ++f)
+    frames.push_back(frame_results(animation.frames[f], shown.in[f], animation, view, unit));
+  Results data;
+  data.set("low", view.low).set("size", size).set("unit", unit).set("turn", 2 * std::numbers::pi / levels);
+  data.set("speed", animation.speed)
+      .set("by_motion", animation.by_motion)
+      .set("groups", groups)
+      .set("bodies", bodies)
+      .set("walls", walls);
+  data.set("frames", frames);
+  const double scale = std::min(film_width / size.x, film_height / size.y);
+  std::string caption = animation.caption;
+  if (shown.some_fell) caption += (caption.empty() ? "B" : "; b") + std::string("odies far outside are left out");
+  return fmt::format(player_html, fmt::arg("title", escape_xml(animation.title)),
+                     fmt::arg("caption", escape_xml(caption)), fmt::arg("width", scale * size.x),
+                     fmt::arg("height", scale * size.y), fmt::arg("data", data.json()), fmt::arg("script", player_js));
 }
 
 }  // namespace equidem

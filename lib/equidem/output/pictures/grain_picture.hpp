@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The part of the plane that pictures of colliding bodies show.
-/// Pictures of colliding bodies, walls and the paths of a few bodies.
+/// Bodies that collide in a picture, and as a film of an HTML page.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +12,9 @@
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/motion/wall.hpp"
-#include "equidem/output/pictures/scene.hpp"
+#include "equidem/output/pictures/canvas.hpp"
 
 namespace equidem {
-
-struct GrainView : Bounds {
-  /// \throws Error (bad_input) where position or angle of the grain are not finite
-  void include_grain(std::size_t grain, Vec2 centre, double angle, double radius);
-  /// Segments; lines cross the view.
-  void include_walls(std::span<const Wall> walls, double time);
-  /// Adds a margin, and room where the view is very narrow or flat.
-  void widen();
-  [[nodiscard]] Vec2 size() const { return high - low; }
-};
-
-/// Which of the places of grains at a time belong to an open scene: they lie no farther from the box round the
-/// segments and the grains that started than half its larger side. Others have fallen out of it. Empty: all
-/// belong, because there are lines alone or no grain is known to have started.
-std::vector<bool> near_the_scene(std::span<const Vec2> places, std::span<const Grain> started,
-                                 std::span<const Wall> walls, double time);
-
-/// Both ends of a segment.
-std::vector<Vec2> outline(const Wall& segment, double time);
 
 /// Largest number of grains whose paths are drawn; more are illegible.
 inline constexpr std::size_t most_drawn_paths = 60;
@@ -52,11 +32,37 @@ struct GrainPicture {
   std::span<const std::vector<Vec2>> paths = {};
 };
 
-/// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs (picture.hpp) are drawn. The view
-/// holds grains, their paths, segments; lines are clipped to it. Without paths, grains are
-/// left out that have fallen out of the scene (near_the_scene), unless all have. The caption tells how many are shown.
+/// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs are drawn. The view holds grains,
+/// their paths, segments; lines are clipped to it. Without paths, grains are left out that lie farther from the box
+/// round the segments and the grains that started than half its larger side, unless all do. The caption tells how many
+/// are shown.
 /// \throws Error (bad_input) without grains, on places that are not finite, and as write_file does
-std::vector<std::filesystem::path> write_grain_picture(const std::filesystem::path& folder, const std::string& name,
-                                                       const GrainPicture& picture, bool overwrite);
+void write_grain_picture(const std::filesystem::path& folder, const std::string& name, const GrainPicture& picture,
+                         bool overwrite);
+
+/// Positions of all bodies at one time.
+struct GrainFrame {
+  double time = 0;               ///< s, by which walls have moved
+  std::vector<Vec2> places;      ///< m; NaN: not there
+  std::vector<double> angles;    ///< rad
+  std::vector<Vec2> walls = {};  ///< places of Wall::point, m; NaN: not there; empty: by the schedules of the walls
+};
+
+struct GrainAnimation {
+  std::string title = {};
+  std::string caption = {};            ///< a line under the picture, such as what the colours mean
+  std::span<const Grain> shapes = {};  ///< their positions are not used
+  std::span<const Clump> clumps = {};
+  std::span<const int> groups = {};  ///< of each grain: its colour; empty: all alike
+  std::span<const Wall> walls = {};
+  std::span<const Grain> started = {};  ///< the scene before it moved, by which grains are left out; empty: none is
+  std::span<const GrainFrame> frames = {};
+  double speed = 1;        ///< of the picture, in seconds of motion per second
+  bool by_motion = false;  ///< bodies are the bluer the further they are from their places in the first frame
+};
+
+/// The part of a page that plays the frames: canvas, button, slider, clock and script.
+/// \throws Error (bad_input) on a place that is not finite
+std::string grain_animation_player(const GrainAnimation& animation);
 
 }  // namespace equidem

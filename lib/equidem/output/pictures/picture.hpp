@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pictures of an assembly, deformed, coloured by stress, with its force chains: SVG and PNG.
+/// Pictures of an assembly: discs in colours, force chains, cracks, supports, loads; and the page that all pictures
+/// have.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,22 +15,14 @@
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
-#include "equidem/output/files/state.hpp"
+#include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/pictures/canvas.hpp"
 #include "equidem/statics/supports.hpp"
 
 namespace equidem {
 
 /// Quantity shown by the colour of a disc.
-enum class DiscColour { none, mean_stress, stress_xx, stress_yy, stress_xy, displacement };
-
-template <>
-struct EnumNames<DiscColour> {
-  static constexpr const char* what = "colouring of discs";
-  static constexpr NamedValue<DiscColour> list[] = {
-      {DiscColour::none, "none"},           {DiscColour::mean_stress, "mean_stress"},
-      {DiscColour::stress_xx, "stress_xx"}, {DiscColour::stress_yy, "stress_yy"},
-      {DiscColour::stress_xy, "stress_xy"}, {DiscColour::displacement, "displacement"}};
-};
+enum class DiscColour { none, mean_stress, stress_xy };
 
 /// An arrow at a disc.
 struct DrawnLoad {
@@ -68,43 +63,53 @@ std::vector<DrawnSupport> drawn_supports(const Assembly& assembly, std::span<con
 struct PictureOptions {
   std::string title = {};
   DiscColour colour = DiscColour::mean_stress;  ///< none is used if the state does not contain the quantity
-  /// Lines along the branches, width in proportion to |normal force|; left out where the mean radius is below 5
-  /// pixels (a wider picture shows them).
-  bool force_chains = true;
-  bool undeformed = false;  ///< outlines of the discs at their initial positions
+  bool undeformed = false;                      ///< outlines of the discs at their initial positions
   /// Factor of the displacements; none: a factor 1, 2 or 5 times a power of ten, at least 1, with which the largest
   /// one is between 2 and 5 % of the larger side of the assembly.
   std::optional<double> displacement_scale = {};
-  int width = 1000;  ///< pixels, 400 to 5000; text and lines grow with it, the height follows from the assembly
   std::vector<DrawnLoad> loads = {};
   std::vector<DrawnSupport> supports = {};
   std::vector<DrawnGauge> gauges = {};
   std::vector<DrawnCrack> cracks = {};
 };
 
-/// Above this many discs they are drawn as an image in which each point has the colour of the nearest disc, in the SVG
-/// too, and outlines and force chains, too fine to be seen, are omitted (stated in the caption).
-inline constexpr std::size_t most_drawn_discs = 10000;
-
 /// The factor of displacements that makes the largest one visible: 1, 2 or 5 times a power of ten, at least 1, with
 /// which it is between 2 and 5 % of the side.
 /// \param largest, side both in m
 double visible_scale(double largest, double side);
 
-struct PictureResult {
-  int width = 0;  ///< pixels
-  int height = 0;
+/// Write NAME.svg and NAME.png, 1000 pixels wide. Positions are those of the discs moved by the scaled displacements;
+/// lines along the branches show normal forces, where the mean radius is at least 5 pixels; a contact through the
+/// period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a sequential
+/// one (colour_scale).
+/// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, and as write_file does
+void write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
+                   const PictureOptions& options, bool overwrite);
+
+struct PictureScene {
+  const AssemblyState& state;
+  const PictureOptions& options;
+  PageFrame frame = {};
+  std::vector<Vec2> centres = {};  ///< m, displaced
   double displacement_scale = 1;
-  std::string caption = {};  ///< the line under the picture
-  std::vector<std::filesystem::path> files = {};
+
+  std::vector<double> values = {};  ///< per disc, in shown units; empty: not coloured
+  ColourScale colours = {};         ///< of the values
+  std::string colour_label = {};    ///< "mean stress"
+  std::string colour_unit = {};     ///< "(MPa)"
+
+  Vec2 middle = {};          ///< m, of the displaced centres
+  double longest_arrow = 0;  ///< m
+
+  bool as_image = false;      ///< more than most_drawn_discs
+  bool force_chains = false;  ///< known and not too fine
+  double widest_force = 0;    ///< N/m, |normal force| of the widest line; stronger ones are as wide
+  double widest_line = 0;     ///< units
+  std::string caption = {};
 };
 
-/// Write NAME.svg and NAME.png. Positions are those of the discs moved by the scaled displacements; a contact through
-/// the period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a
-/// sequential one (colour_map.hpp describes the choice of the range).
-/// \throws Error (bad_input) on an empty assembly, motions or radii that are not finite, a width out of range, a load,
-///         support or gauge at an absent disc, and as write_file does
-PictureResult write_picture(const std::filesystem::path& folder, const std::string& name, const AssemblyState& state,
-                            const PictureOptions& options, bool overwrite);
+/// Everything that is decided before drawing.
+/// \throws Error (bad_input) as write_picture does
+PictureScene plan_scene(const AssemblyState& state, const PictureOptions& options);
 
 }  // namespace equidem

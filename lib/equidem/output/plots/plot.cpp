@@ -26,7 +26,8 @@
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
-#include "equidem/output/page/drawn_figures.hpp"
+#include "equidem/output/page/page.hpp"
+#include "equidem/output/texts.hpp"
 
 namespace equidem {
 namespace {
@@ -135,16 +136,10 @@ namespace {
 
 /// gnuplot takes a file name that begins with '<' or '|' as a command, so only plain names pass.
 void check_name(const std::string& name) {
-  const bool plain = !name.empty() && name.front() != '-' && name.front() != '.' &&
-                     std::all_of(name.begin(), name.end(), [](unsigned char c) {
-                       return c >= 0x80 || std::isalnum(c) != 0 ||
-                              (c != 0 && std::string("_-+.=, ").find(static_cast<char>(c)) != std::string::npos);
-                     });
-  if (!plain) {
-    bad_input(fmt::format("'{}' cannot name the files of a plot", name),
-              "it must be made of letters, digits and _ - + . = , or spaces, and not begin with - or .",
-              "Choose a plain name");
-  }
+  if (!name.empty() && name.find_first_of("-.") != 0 && name.find_first_of("/|<>'\"`\\\n") == std::string::npos) return;
+  bad_input(fmt::format("'{}' cannot name the files of a plot", name),
+            "it begins with - or ., or holds a character that gnuplot or folders take for more than a name",
+            "Choose a plain name");
 }
 
 void check_axis(const Axis& axis, const char* letter) {
@@ -301,8 +296,8 @@ std::string vertical_line(const VerticalLine& line, const std::string& plain) {
                   line.x, hex(line.colour));
   if (!line.label.empty()) {
     text +=
-        fmt::format("set label {} at first {}, graph 0.985 right rotate by 90 offset char {},0 tc rgb '{}' front{}\n",
-                    gnuplot_string(line.label), line.x, line.label_left ? -1 : 1, hex(line.colour), plain);
+        fmt::format("set label {} at first {}, graph 0.985 right rotate by 90 offset char 1,0 tc rgb '{}' front{}\n",
+                    gnuplot_string(line.label), line.x, hex(line.colour), plain);
   }
   return text;
 }
@@ -355,34 +350,6 @@ std::vector<std::string> plot_clauses(const Series& series, const PlotData::Plac
   clauses.push_back(fmt::format("data{} {} with {} lc rgb '{}' {}", every, columns, look, colour, title));
   return clauses;
 }
-
-/// The script of every plot, in gnuplot's order. Each terminal has its own unit for fonts and markers.
-constexpr const char* script_template =
-    R"(# Draws {name}.svg and {name}.png from {name}.csv. Edit it and run, in this folder:  gnuplot {name}.gp
-data = {data}
-set datafile separator comma
-set encoding utf8
-
-set border 3 lw 0.8 lc rgb '#333333'
-set tics out nomirror scale 0.7 tc rgb '#222222'
-set key below horizontal Left reverse samplen 2.2 spacing 1.2 width 1 height 0.4{plain}
-set title {title} offset 0,-0.2{plain}
-set xlabel {x}."\n " offset 0,0.3{plain}
-set ylabel {y}{plain}
-set xrange [{x_min}:{x_max}]
-set yrange [{y_min}:{y_max}]
-{axes}
-set terminal svg size 900,650 enhanced font 'sans-serif,16' background rgb 'white'
-set output {svg}
-marker = 0.72
-stride = {stride}
-{plot}
-set terminal pngcairo size 900,650 enhanced font 'sans-serif,13' background rgb 'white'
-set output {png}
-marker = 1.25
-stride = 1
-{plot}set output
-)";
 
 /// Points of lines that the SVG leaves out, so that it has at most 15,000 of them, less than 300 kB.
 std::size_t svg_stride(const Plot& plot) {
@@ -489,38 +456,35 @@ std::string without_markup(const std::string& label) {
 }
 
 /// Write data and script, and let gnuplot draw.
-PlotResult draw(const std::filesystem::path& folder, const std::string& name, const std::string& title,
-                const std::string& csv, const std::string& script, bool overwrite) {
+std::string draw(const std::filesystem::path& folder, const std::string& name, const std::string& title,
+                 const std::string& csv, const std::string& script, bool overwrite) {
   const auto path = [&](const char* extension) { return folder / (name + extension); };
   for (const char* extension : {".csv", ".gp", ".svg", ".png"}) check_writable(path(extension), overwrite);
 
   write_file(path(".csv"), csv, overwrite);
   write_file(path(".gp"), script, overwrite);
-  PlotResult result;
-  result.files = {path(".csv"), path(".gp")};
   // A picture of earlier data must not stay beside new data where gnuplot fails.
   std::error_code ignored;
-  for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
-
+  const auto remove_pictures = [&] {
+    for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
+  };
+  remove_pictures();
   const GnuplotRun run = DrawnFigures::gnuplot_hangs() ? GnuplotRun{false, "gnuplot did not end at the plot before"}
                                                        : run_gnuplot(folder, name + ".gp");
-  result.drawn =
-      run.succeeded && std::filesystem::exists(path(".svg"), ignored) && std::filesystem::exists(path(".png"), ignored);
-  if (result.drawn) {
-    result.files.insert(result.files.end(), {path(".svg"), path(".png")});
-    result.message = fmt::format("The plot is in '{}' and '{}'.", path(".svg").string(), path(".png").string());
-  } else {
-    for (const char* extension : {".svg", ".png"}) std::filesystem::remove(path(extension), ignored);
-    result.message = fmt::format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
-                                 run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
-                                 path(".gp").string());
+  std::string missing;
+  if (!run.succeeded || !std::filesystem::exists(path(".svg"), ignored) ||
+      !std::filesystem::exists(path(".png"), ignored)) {
+    remove_pictures();
+    missing = fmt::format("No picture was drawn ({}): data and script are in '{}' and '{}'.",
+                          run.reason.empty() ? "gnuplot wrote no file" : run.reason, path(".csv").string(),
+                          path(".gp").string());
   }
   DrawnFigures::add({.name = name,
                      .title = title,
-                     .file = result.drawn ? path(".svg") : std::filesystem::path(),
-                     .missing = result.drawn ? "" : result.message,
+                     .file = missing.empty() ? path(".svg") : std::filesystem::path(),
+                     .missing = missing,
                      .timed_out = run.timed_out});
-  return result;
+  return missing;
 }
 
 }  // namespace
@@ -568,7 +532,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
   std::vector<std::string> clauses;
   for (std::size_t k = 0; k < plot.series.size(); ++k)
     std::ranges::move(plot_clauses(plot.series[k], data.places[k], plain), std::back_inserter(clauses));
-  return fmt::format(script_template, fmt::arg("name", name), fmt::arg("data", gnuplot_string(name + ".csv")),
+  return fmt::format(plot_gp_in, fmt::arg("name", name), fmt::arg("data", gnuplot_string(name + ".csv")),
                      fmt::arg("title", gnuplot_string(plot.title)), fmt::arg("x", gnuplot_string(plot.x.label)),
                      fmt::arg("y", gnuplot_string(plot.y.label)), fmt::arg("plain", plain), fmt::arg("x_min", x.min),
                      fmt::arg("x_max", x.max), fmt::arg("y_min", y.min), fmt::arg("y_max", y.max),
@@ -577,7 +541,7 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
                      fmt::arg("plot", fmt::format("plot {}\n", joined(clauses, ", \\\n     "))));
 }
 
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
+std::string write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite) {
   check_name(name);
   check_plot(plot);
   const PlotData data = plot_data(plot);

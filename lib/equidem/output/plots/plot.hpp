@@ -42,6 +42,9 @@ struct Series {
   std::string column = {};  ///< its name in the data file; empty: made of the label
   /// Ends of an error bar at each point; empty: none. A bar with an end that is not finite is left out.
   std::vector<double> low = {}, high = {};
+
+  /// A point behind the others, without an error bar.
+  void add(double x_of_point, double y_of_point) { x.push_back(x_of_point), y.push_back(y_of_point); }
 };
 
 /// A vertical line across the plot with its label written along its upper end.
@@ -49,7 +52,6 @@ struct VerticalLine {
   double x = 0;
   std::string label = {};
   PlotColour colour = PlotColour::black;
-  bool label_left = false;  ///< label left of the line
 };
 
 /// One axis. The range is that of the data where a bound is not given; points outside it are not drawn.
@@ -77,13 +79,6 @@ std::string literal(const std::string& text);
 /// literal(), but the words kT and kN are written with subscripts, and "nu" as the Greek letter.
 std::string with_symbols(const std::string& text);
 
-/// Result of writing a plot.
-struct PlotResult {
-  bool drawn = false;        ///< the SVG and the PNG were written
-  std::string message = {};  ///< one sentence: files written, or reason without a picture
-  std::vector<std::filesystem::path> files = {};
-};
-
 /// The data of a plot: its file and where each series lies in it.
 struct PlotData {
   struct Place {
@@ -107,10 +102,11 @@ std::string plot_script(const std::string& name, const Plot& plot, const PlotDat
 
 /// Write NAME.csv (the data: plot_data), NAME.gp (the script; `gnuplot NAME.gp` in that folder draws
 /// again) and, by gnuplot, NAME.svg and NAME.png (900 x 650 pixels). If gnuplot is absent or fails, data and script are
-/// still written and the result states the reason. The legend stands below the plot. The SVG draws at most 15,000
+/// still written. The legend stands below the plot. The SVG draws at most 15,000
 /// points of lines, every n-th.
+/// \return a sentence that states why there is no picture; empty: there is
 /// \throws Error (bad_input) on a plot that cannot be drawn (x and y of different length, no finite point, a value not
 ///         positive on a logarithmic axis, an empty range, a name that is no plain file name), and as write_file does
-PlotResult write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
+std::string write_plot(const std::filesystem::path& folder, const std::string& name, const Plot& plot, bool overwrite);
 
 }  // namespace equidem

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "equidem/core/random.hpp"
-#include "equidem/packing/outline.hpp"
+#include "equidem/packing/overlaps.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {

@@ -12,38 +12,56 @@
 
 namespace equidem {
 
-/// Random sequential adsorption. Equal discs approach 0.5471 as attempts^(-1/2) (Feder 1980).
-void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
-  Random random(options.seed);
+namespace {
+
+/// Place one body after the other.
+/// \param insert tries a place for a body of a radius; its attempts at each are counted from 0
+/// \param hopeless whether no further attempt is worth it
+/// \param doing, room, limit for reports
+template <class Insert, class Hopeless>
+void place_all(const PackingOptions& options, GrainPacking& packing, const PlacedBodies& placed, const Insert& insert,
+               const Hopeless& hopeless, const char* doing, const char* room, const char* limit) {
   std::vector<double> radii = options.radii;
   // Large bodies first, since they find less room later; where not all need to fit, the order given decides which stay.
   if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
-  PlacedBodies placed(options.box, unit_body_of(options.shape), radii);
-  Progress progress("placing");
+  Progress progress(doing);
   keep_failure(packing, [&] {
     for (std::size_t k = 0; k < radii.size(); ++k) {
       if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
       bool found = false;
-      for (std::int64_t attempt = 0; attempt < options.attempts && !found; ++attempt) {
-        ++packing.work;
-        if (packing.work % 4096 == 0) stop_if_interrupted();
-        const Placement there = placement_at_random(options, placed.shape(), radii[k], random);
-        found = placed.has_room(there.place, radii[k], there.turns);
-        if (found) placed.add(there.place, radii[k], there.turns);
+      std::int64_t attempt = 0;
+      for (; attempt < options.attempts && !found && !hopeless(attempt); ++attempt) {
+        if (++packing.work % 4096 == 0) stop_if_interrupted();
+        found = insert(radii[k], attempt);
       }
       if (found) continue;
       packing.complete = false;
       if (options.as_dense_as_possible) continue;
       computation_failed(
-          fmt::format("{} of {} {}s found a place, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
+          fmt::format("{} of {} {}s found a {}, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind), room,
                       area_of(options.shape, placed.bodies().radii) / options.box.area()),
-          fmt::format(
-              "{} attempts to place the next one failed; equal discs placed at random never cover more than 0.547",
-              options.attempts),
+          fmt::format("{} attempts to place the next one failed{}", attempt, limit),
           "Ask for less, for more attempts, or use growth");
     }
   });
   make_grains(options.shape, placed.bodies(), options.settling.density, packing);
+}
+
+}  // namespace
+
+/// Random sequential adsorption. Equal discs approach 0.5471 as attempts^(-1/2) (Feder 1980).
+void fill_by_rejection(const PackingOptions& options, GrainPacking& packing) {
+  Random random(options.seed);
+  PlacedBodies placed(options.box, unit_body_of(options.shape), options.radii);
+  const auto insert = [&](double radius, std::int64_t) {
+    const Placement there = placement_at_random(options, placed.shape(), radius, random);
+    if (!placed.has_room(there.place, radius, there.turns)) return false;
+    placed.add(there.place, radius, there.turns);
+    return true;
+  };
+  place_all(
+      options, packing, placed, insert, [](std::int64_t) { return false; }, "placing", "place",
+      "; equal discs placed at random never cover more than 0.547");
 }
 
 namespace {
@@ -214,31 +232,12 @@ class Inserter {
 }  // namespace
 
 void fill_by_insertion(const PackingOptions& options, GrainPacking& packing) {
-  std::vector<double> radii = options.radii;
-  if (!options.as_dense_as_possible) std::sort(radii.begin(), radii.end(), std::greater<>());
   Inserter inserter(options);
-  Progress progress("inserting");
-  keep_failure(packing, [&] {
-    for (std::size_t k = 0; k < radii.size(); ++k) {
-      if (k % 64 == 0) progress.update(static_cast<double>(k) / static_cast<double>(radii.size()));
-      bool found = false;
-      std::int64_t attempt = 0;
-      for (; attempt < options.attempts && !found && (attempt <= Inserter::anywhere_first || !inserter.hopeless());
-           ++attempt) {
-        ++packing.work;
-        found = inserter.insert(radii[k], attempt);
-      }
-      if (found) continue;
-      packing.complete = false;
-      if (options.as_dense_as_possible) continue;
-      computation_failed(
-          fmt::format("{} of {} {}s found a gap, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind),
-                      area_of(options.shape, inserter.placed().bodies().radii) / options.box.area()),
-          fmt::format("for the next one {} gaps were all too small", attempt),
-          "Ask for less, for more attempts, or use growth");
-    }
-  });
-  make_grains(options.shape, inserter.placed().bodies(), options.settling.density, packing);
+  place_all(
+      options, packing, inserter.placed(),
+      [&](double radius, std::int64_t attempt) { return inserter.insert(radius, attempt); },
+      [&](std::int64_t attempt) { return attempt > Inserter::anywhere_first && inserter.hopeless(); }, "inserting",
+      "gap", "");
 }
 
 }  // namespace equidem

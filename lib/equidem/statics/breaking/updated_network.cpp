@@ -20,6 +20,9 @@ namespace equidem {
 namespace {
 
 constexpr std::size_t contacts_at_once = 1 << 11, discs_at_once = 1 << 9, entries_at_once = 1 << 13;
+/// Of motions, |x| over |u| in the norm of energy: mean stresses are wrong by no more, forces of contacts that carry
+/// more than others by about as much; load factors and stresses are to have nine digits.
+constexpr double most_wrong = 5e-11;
 constexpr double left_of_reactions = 1e-8;  // over the size of the load: what round-off leaves of a reaction
 
 double product(std::span<const double> a, std::span<const double> b) {
@@ -158,23 +161,23 @@ std::vector<HeldMechanism> UpdatedNetwork::remove(std::size_t number) {
   std::vector<HeldMechanism> mechanisms;
   for (const std::int64_t component : path.held) {
     hold(component);
-    mechanisms.push_back(mechanism_at(holds_.back()));
+    mechanisms.push_back(mechanism_at(component));
   }
   constexpr double delicate = 1e-3;  // share of the determinant: digits that are lost
   const bool lost_digits = path.share < delicate || !path.held.empty();
-  constexpr double most_wrong = 1e-11;  // share of the energy, its root
   constexpr int most_unmeasured = 16;
   const bool too_much = lost_digits || !(residual() <= options_.claimed_residual);
-  const bool measure = residual_ * softness_ > most_wrong || ++unmeasured_ >= most_unmeasured;
+  // Where motions drive, the energy is in proportion to the stiffness that is left, and |x| over |u| to its inverse.
+  const double fallen = std::max(1.0, measured_energy_ / twice_energy_[0]);
+  const bool measure = residual_ * softness_ * fallen > most_wrong || ++unmeasured_ >= most_unmeasured;
   if (carried_ && (too_much || measure)) {
-    for (HeldMechanism& found : refine(too_much ? 1 : 0)) mechanisms.push_back(std::move(found));
+    for (const HeldMechanism& found : refine(too_much ? 1 : 0)) mechanisms.push_back(found);
   }
-  if (carried_) counters_.largest_residual = std::max(counters_.largest_residual, residual());
   return mechanisms;
 }
 
-/// The motions are right to round-off of the energy: a soft network answers a residual of 1e-13 by forces that are
-/// wrong by far more. An error x of a motion has the energy x.K x = |y|² with L y = r.
+/// A soft network answers a residual of 1e-13 by forces that are wrong by far more: an error x of the motions has the
+/// energy x.K x = |y|² with L y = r. Motions that are wrong by more than most_wrong are corrected to round-off.
 /// \return false where corrections end before that: round-off has spoiled the factor for what is soft
 bool UpdatedNetwork::improve(int least_steps) {
   constexpr double wrong = 1e-12, contracts = 0.5;
@@ -187,9 +190,12 @@ bool UpdatedNetwork::improve(int least_steps) {
       const double energy = product(column(change_, p), column(change_, p));
       if (energy > 0) error = std::max(error, std::sqrt(energy / twice_energy_[p]));
     }
-    if (step == 0 && residual_ > 0) softness_ = error / residual_;
+    if (step == 0 && residual_ > 0) {
+      softness_ = error / residual_;
+      measured_energy_ = twice_energy_[0];
+    }
     unmeasured_ = 0;
-    if (step >= least_steps && error < wrong) return true;
+    if (step >= least_steps && error < (step == 0 ? most_wrong : wrong)) return true;
     if (step == most_steps) return false;
     if (step == 0) ++counters_.refinements;
     const double before = residual_;
@@ -213,7 +219,7 @@ std::vector<HeldMechanism> UpdatedNetwork::refine(int least_steps) {
                        "Stop before the network falls apart");
   }
   improve(1);
-  for (std::size_t k = held; k < holds_.size(); ++k) found.push_back(mechanism_at(holds_[k]));
+  for (std::size_t k = held; k < holds_.size(); ++k) found.push_back(mechanism_at(holds_[k].component));
   return found;
 }
 
@@ -234,17 +240,16 @@ bool UpdatedNetwork::factorize() {
 
 void UpdatedNetwork::hold(std::int64_t component) {
   holds_.push_back({component, factor_.stiffness_of(component)});
-  ++counters_.held;
 }
 
 /// With K + s e e^T in the factor, what the force of the support takes of the loads is left by the contacts.
-HeldMechanism UpdatedNetwork::mechanism_at(const Held& held) {
-  HeldMechanism mechanism{held.component, held.stiffness, {}, {}};
+HeldMechanism UpdatedNetwork::mechanism_at(std::int64_t component) {
+  HeldMechanism mechanism{component};
   for (std::size_t p = 0; p < cases_.size(); ++p) {
-    mechanism.reaction.push_back(column(unbalanced_, p)[place_of(held.component)]);
-    mechanism.driven.push_back(std::abs(mechanism.reaction[p]) > left_of_reactions * scales_[p] ? 1 : 0);
-    if (mechanism.driven[p] != 0) carried_ = false;
+    const double reaction = column(unbalanced_, p)[place_of(component)];
+    if (std::abs(reaction) > left_of_reactions * scales_[p]) mechanism.driven = true;
   }
+  carried_ = carried_ && !mechanism.driven;
   return mechanism;
 }
 
@@ -487,14 +492,6 @@ PreciseMotion UpdatedNetwork::motion(std::size_t of_case) const {
     permute_from_elimination(*symbolic_, now.low, motion.low);
   }
   return motion;
-}
-
-double UpdatedNetwork::bytes() const {
-  const auto of = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-  double bytes = factor_.report().bytes + of(links_) + of(spared_) + of(unbalanced_) + of(change_);
-  for (std::size_t p = 0; p < cases_.size(); ++p)
-    bytes += of(affine_[p]) + of(exact_[p]) + of(forces_[p]) + of(motions_[p].high) + of(motions_[p].low);
-  return bytes;
 }
 
 }  // namespace equidem

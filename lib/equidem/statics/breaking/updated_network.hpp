@@ -30,7 +30,7 @@ struct EquilibriumSums {
   std::array<std::array<double, 2>, 2> load_work{};  ///< of the loads of one right-hand side on the motions of another
   /// Under each right-hand side, of what the prescribed motions and the mean strain of the first one need, on these.
   std::array<double, 2> imposed{};
-  std::array<Tensor2, 2> moment{};  ///< sum F_i l_j, per right-hand side; 0 where it is not told
+  std::array<Tensor2, 2> moment{};  ///< sum F_i l_j, per right-hand side; 0 where it is not computed
 };
 
 struct UpdateCounters {
@@ -38,18 +38,14 @@ struct UpdateCounters {
   std::int64_t factorizations = 0;  ///< of the whole matrix, the first included
   std::int64_t mended = 0;          ///< of these, because round-off of updates had grown
   std::int64_t refinements = 0;     ///< times that the motions were refined
-  std::int64_t held = 0;            ///< components held because a removal left a mechanism
-  double largest_residual = 0;      ///< relative, of the states behind removals
 };
 
-/// A mechanism that a removal left, and the component that is held instead.
+/// A mechanism that a removal left. A component is held instead.
 struct HeldMechanism {
   std::int64_t component = -1;  ///< disc * per_disc + k
-  double stiffness = 0;         ///< of its support, Pa
-  /// Per right-hand side, N/m: force of the support. Not zero beyond round-off where the load works on the mechanism:
-  /// the network does not carry it.
-  std::vector<double> reaction;
-  std::vector<std::uint8_t> driven;  ///< per right-hand side, 1: the reaction is more than round-off
+  /// Whether the support of the component takes a force beyond round-off: a load works on the mechanism, and the
+  /// network does not carry it.
+  bool driven = false;
 };
 
 /// At most two right-hand sides, the first in proportion to lambda, the second, where there is one, dead. A removal
@@ -69,10 +65,7 @@ class UpdatedNetwork {
 
   /// Takes a contact out. \return mechanisms that this leaves
   std::vector<HeldMechanism> remove(std::size_t contact);
-  /// Refines the motions by one step at least, and factorizes anew where that does not serve.
-  /// \return mechanisms that a new factorization came across
-  std::vector<HeldMechanism> refine() { return refine(1); }
-  /// Tells 0 for the forces of contacts from here on, as of those whose discs have left the network.
+  /// Forces of these contacts are 0 from here on, as of those whose discs have left the network.
   void spare(std::span<const std::size_t> contacts);
 
   /// Per contact, N/m.
@@ -85,15 +78,12 @@ class UpdatedNetwork {
   [[nodiscard]] double residual() const;
   /// A motion that deforms no contact, to round-off, and on which the loads of every right-hand side do work: the
   /// network carries none of them.
-  /// \param component held in place of a mechanism that is to be told; -1: the softest motion that the loads find
+  /// \param component held in place of a mechanism; -1: the softest motion that the loads find
   /// \return per disc; empty where there is no such motion
   [[nodiscard]] std::vector<DiscMotion> driven_mechanism(std::int64_t component) const;
 
   [[nodiscard]] const ContactSprings& springs() const { return springs_; }
   [[nodiscard]] const UpdateCounters& counters() const { return counters_; }
-  [[nodiscard]] double factor_bytes() const { return factor_.report().bytes; }
-  /// Bytes of everything that the object keeps, the factor included.
-  [[nodiscard]] double bytes() const;
 
  private:
   using Extended = long double;  // 64 bits of mantissa on x86, more elsewhere
@@ -121,7 +111,9 @@ class UpdatedNetwork {
   [[nodiscard]] std::size_t place_of(std::int64_t component) const;
   [[nodiscard]] PreciseMotion driving_motion(std::size_t of_case) const;
   [[nodiscard]] std::array<Extended, 3> pull_on(std::size_t disc, std::size_t of_case) const;
-  [[nodiscard]] HeldMechanism mechanism_at(const Held& held);
+  [[nodiscard]] HeldMechanism mechanism_at(std::int64_t component);
+  /// Refines the motions, and factorizes anew where that does not serve.
+  /// \return mechanisms that a new factorization came across
   std::vector<HeldMechanism> refine(int least_steps);
   bool improve(int least_steps);
   bool factorize();
@@ -154,10 +146,11 @@ class UpdatedNetwork {
   LargeVector<double> unbalanced_;                     // N/m, loads that forces leave, in the order of elimination
   LargeVector<double> change_;                         // right-hand sides and solutions
   double residual_ = 0;
-  bool carried_ = true;  // no load drives a mechanism
-  int altered_ = 0;      // contacts since the factor was made
-  double softness_ = 0;  // error in energy over the residual, as it was measured last
-  int unmeasured_ = 0;   // removals since then
+  bool carried_ = true;         // no load drives a mechanism
+  int altered_ = 0;             // contacts since the factor was made
+  double softness_ = 0;         // error in energy over the residual, as it was measured last
+  double measured_energy_ = 0;  // N, twice that under the first right-hand side, then
+  int unmeasured_ = 0;          // removals since then
 };
 
 }  // namespace equidem

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/grains/neighbours/neighbours.hpp"
+#include "equidem/geometry/neighbours.hpp"
 
 #include "loops.hpp"
 

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/case_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <span>
+#include <system_error>
+
+#include "equidem/casefile/engine/bind.hpp"
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
+
+namespace equidem {
+
+void erase_keys(TomlValue& table, std::initializer_list<std::string_view> names) {
+  std::erase_if(table.entries,
+                [&](const auto& entry) { return std::find(names.begin(), names.end(), entry.name) != names.end(); });
+}
+
+void add(Checksum& sum, const Schedule& schedule) {
+  for (const double number :
+       {static_cast<double>(schedule.kind), schedule.value, schedule.start, schedule.end, schedule.frequency})
+    sum.add(number);
+  for (const auto* numbers : {&schedule.times, &schedule.values}) sum.add(*numbers);
+}
+
+std::optional<StepInText> step_in(std::string_view text) {
+  const std::size_t at = text.rfind(step_line);
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + step_line.size());
+  StepInText found;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), found.step);
+  if (failed != std::errc()) return {};
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  found.rest = text.substr(0, text.find('\n'));
+  return found;
+}
+
+MissedEvent check_event(const Schedule& schedule, double step, double duration, const std::string& where) {
+  constexpr double most = 0.5;
+  const MissedEvent missed = missed_event(schedule, step, duration);
+  if (missed.share <= most) return missed;
+  bad_input_at(where,
+               fmt::format("its schedule has an event at {:.6g} s that steps of {:.6g} s miss", missed.time, step),
+               fmt::format("between two steps lie {:.0f} % of the range of its values", 100 * missed.share),
+               "Give a time_step well below its length, or let it last longer");
+}
+
+namespace {
+
+constexpr std::string_view stage_heading = "\n# stage ", schedule_heading = "\n# schedules\n",
+                           checksum_line = "\n# checksum of grains and schedules ",
+                           beginning_heading = "\n# begun behind stage ";
+
+void add_bodies(Checksum& sum, std::span<const Grain> grains, std::span<const double> densities) {
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const Grain& grain = grains[g];
+    for (const double value :
+         {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y, grain.spin, grain.angle,
+          densities[g], static_cast<double>(grain.kind), grain.short_half_axis, static_cast<double>(grain.clump)})
+      sum.add(value);
+  }
+}
+
+/// Motions of walls and of the cell.
+void add_motions(Checksum& sum, const GrainScene& scene) {
+  for (const Wall& wall : scene.walls) {
+    add(sum, wall.move_x), add(sum, wall.move_y);
+    if (wall.servo) add(sum, wall.servo->wanted);
+  }
+  if (!scene.cell) return;
+  for (const Schedule* rate : {&scene.cell->rate_xx, &scene.cell->rate_yy, &scene.cell->rate_xy}) add(sum, *rate);
+  if (scene.cell->servo)
+    for (const auto* stress : {&scene.cell->servo->stress_xx, &scene.cell->servo->stress_yy})
+      if (*stress) add(sum, **stress);
+}
+
+/// Tells whether files that a case names are still what they were.
+std::string checksum_of(const GrainCase& resolved) {
+  Checksum sum;
+  add_bodies(sum, resolved.scene.grains, resolved.densities);
+  for (const GrainBond& bond : resolved.scene.bonds)
+    for (const double value :
+         {static_cast<double>(bond.i), static_cast<double>(bond.j), bond.normal_dashpot, bond.tangential_dashpot,
+          bond.rolling_dashpot, bond.normal_spring, bond.tangential_spring, bond.bending_spring})
+      sum.add(value);
+  if (const auto& strengths = resolved.scene.strengths)
+    for (std::size_t b = 0; b < strengths->tension.size(); ++b)
+      sum.add(strengths->tension[b]), sum.add(strengths->shear[b]);
+  const auto shape_of = [&](const Grain& grain) {
+    for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
+      for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+  };
+  for (const Grain& grain : resolved.scene.grains)
+    if (grain.shape() == GrainShape::clump) shape_of(grain);
+  if (resolved.stages.empty()) add_motions(sum, resolved.scene);
+  return sum.text();
+}
+
+/// Likewise, of one stage. \param first_added number of the first body that it adds
+std::string checksum_of(const GrainCase& resolved, std::size_t stage, std::size_t first_added) {
+  Checksum sum;
+  const StageCase& of = resolved.stages[stage];
+  add_bodies(sum, of.bodies.added, std::span(resolved.densities).subspan(first_added));
+  for (const Grain& grain : of.bodies.added)
+    if (grain.shape() == GrainShape::clump)
+      for (const Clump::Disc& disc : resolved.scene.clumps[static_cast<std::size_t>(grain.clump)].discs)
+        for (const double value : {disc.offset.x, disc.offset.y, disc.radius}) sum.add(value);
+  add_motions(sum, of.scene);
+  return sum.text();
+}
+
+}  // namespace
+
+std::string case_text_of(const GrainCase& resolved, double step) {
+  TomlValue known = resolved.document, schedules;
+  erase_keys(*known.find("run"), {"duration", "time_step", "steps_per_contact"});  // the step is below
+  schedules.type = TomlValue::Type::table;
+  if (const TomlValue* given = known.find("schedule")) schedules.entries.push_back({"schedule", *given});
+  erase_keys(known, {"title", "output", "probe", "measures", "schedule", "stage"});
+  std::string text = to_toml(std::move(known), {}) +
+                     fmt::format("{}{} s{}{}\n", step_line, toml_number(step), checksum_line, checksum_of(resolved));
+  std::size_t bodies = resolved.scene.grains.size();
+  for (std::size_t k = 0; k < resolved.stages.size(); ++k) {
+    TomlValue stage = casefile::repeated(resolved.document, "stage")[k];
+    if (stage.find("until") != nullptr) erase_keys(stage, {"duration", "steps"});  // a limit alone
+    text += fmt::format("{}{}\n{}{}{}\n", stage_heading, resolved.stages[k].name, to_toml(std::move(stage), {}),
+                        checksum_line, checksum_of(resolved, k, bodies));
+    bodies += resolved.stages[k].bodies.added.size();
+  }
+  return text + std::string(schedule_heading) + to_toml(std::move(schedules), {});
+}
+
+std::string text_of(const Beginning& beginning) {
+  return fmt::format("{}{}\n{}", beginning_heading, beginning.stage, beginning.path);
+}
+
+std::optional<Beginning> beginning_in(std::string_view text) {
+  const std::size_t at = text.rfind(beginning_heading);
+  if (at == std::string_view::npos) return {};
+  text.remove_prefix(at + beginning_heading.size());
+  const std::size_t end = text.find('\n');
+  return Beginning{.path = std::string(text.substr(end + 1)), .stage = std::string(text.substr(0, end))};
+}
+
+std::size_t stages_in(std::string_view text) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(stage_heading); at != std::string_view::npos; at = text.find(stage_heading, at + 1))
+    ++count;
+  return count;
+}
+
+std::string until_stage(std::string_view text, std::size_t stages) {
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < stages; ++k) at = text.find(stage_heading, at) + 1;
+  return std::string(text.substr(0, std::min(text.find(stage_heading, at), text.find(schedule_heading, at))));
+}
+
+}  // namespace equidem
