@@ -43,7 +43,7 @@ PARTS = [
     ("umfpack.h", ["lib/equidem/linear/*", "tools/bench/*"], 1),
     ("cblas.h", ["lib/equidem/linear/*", "lib/python/*"], 1),
     ("Eigen/*", ["lib/equidem/breakage/*", "lib/equidem/homogenize/*", "lib/equidem/statics/*", "lib/equidem/waves/*",
-                 "tests/*"], 5),
+                 "tests/*"], 6),
     ("Spectra/*", ["lib/equidem/waves/*"], 1),
     ("boost/math/*", ["lib/equidem/core/*", "lib/equidem/homogenize/*", "lib/equidem/waves/*"], 4),
     ("cairo*", ["lib/equidem/output/*"], 1),

@@ -2,7 +2,6 @@
 #include "part_problem.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -179,15 +178,15 @@ void scatter_problem(const Ranks& ranks, PartProblem& p, bool homogenize) {
   // The gauges that rank 0 has placed.
   if (!p.problem.resolved.test || homogenize) return;
   std::vector<std::int64_t> gauges;
-  std::array<double, 2> heights{};
+  double height = 0;
   if (ranks.first()) {
     const TensionSetup& setup = *p.problem.tension;
     gauges = {setup.horizontal.first, setup.horizontal.second, setup.vertical.first, setup.vertical.second};
-    heights[0] = setup.height;
+    height = setup.height;
   }
   gauges = ranks.joined(gauges);
-  ranks.sum(heights);
-  TensionSetup setup = tension_loads(*p.problem.resolved.test, heights[0], heights[0]);
+  height = ranks.sum(height);
+  TensionSetup setup = tension_loads(*p.problem.resolved.test, height, height);
   const auto gauge = [&](std::size_t k) {
     return StrainGauge{static_cast<std::int32_t>(gauges[k]), static_cast<std::int32_t>(gauges[k + 1])};
   };

@@ -22,11 +22,6 @@
 namespace equidem {
 namespace {
 
-void check(const CriticalLoadOptions& options) {
-  if (options.largest > 0) return;
-  bad_input(fmt::format("largest = {}", options.largest), "the search ends at a factor above 0", "Correct it");
-}
-
 /// K + lambda K_g with the motions held that nothing resists.
 class LoadPencil final : public StiffnessPencil {
  public:
@@ -69,11 +64,12 @@ class LoadPencil final : public StiffnessPencil {
   [[nodiscard]] StiffnessMatrix stiffness(double factor) const override {
     return assemble_stiffness(assembly_, graph_, springs_.with_prestress(springs_.scaled_prestress(factor)), unknowns_);
   }
-  [[nodiscard]] StiffnessMatrix slope() const override {
+  [[nodiscard]] StiffnessMatrix slope(const StiffnessMatrix&) const override {
     return assemble_stiffness(assembly_, graph_, weightless_, unknowns_);
   }
   /// Energies are summed over contacts: in x.K x of a slender assembly the digits of its stretch would be lost.
-  [[nodiscard]] double quotient(const StiffnessMatrix&, const std::vector<double>& x) const override {
+  [[nodiscard]] double quotient(const StiffnessMatrix&, const StiffnessMatrix&,
+                                const std::vector<double>& x) const override {
     const std::vector<DiscMotion> motions = disc_motions(unknowns_, x);
     return -elastic_energy(assembly_, unstressed_, motions) / elastic_energy(assembly_, weightless_, motions);
   }
@@ -136,8 +132,9 @@ void search(LoadPencil& pencil, double largest, CriticalLoad& result) {
 
 CriticalLoad find_critical_load(const Assembly& assembly, const ContactSprings& springs,
                                 std::span<const Support> supports, const CriticalLoadOptions& options) {
-  check(options);
-  equidem::check(assembly);
+  if (!(options.largest > 0))
+    bad_input(fmt::format("largest = {}", options.largest), "the search ends at a factor above 0", "Correct it");
+  check(assembly);
   CriticalLoad result;
   const auto not_sought = [&](const char* why) {
     result.sought = false;

@@ -54,9 +54,14 @@ std::unique_ptr<Factorization> StiffnessPencil::factorize(double s) {
   return multifrontal_ldlt(symbolic_, MatrixOnGraph{matrix, assembly_, graph_}, {.threshold = threshold_});
 }
 
+double StiffnessPencil::quotient(const StiffnessMatrix& a, const StiffnessMatrix& b,
+                                 const std::vector<double>& x) const {
+  return -dot(x, product(a, x)) / dot(x, product(b, x));
+}
+
 double StiffnessPencil::nearest(double shift, std::vector<double>& x) {
   const auto factor = factorize(shift);
-  const StiffnessMatrix b = slope();
+  const StiffnessMatrix a = stiffness(0), b = slope(a);
   double before = std::numeric_limits<double>::quiet_NaN();
   constexpr int most = 60;
   for (int k = 0; k < most; ++k) {
@@ -66,7 +71,7 @@ double StiffnessPencil::nearest(double shift, std::vector<double>& x) {
     const double size = std::sqrt(dot(b_x, b_x));
     if (!is_positive(size)) break;
     for (std::size_t c = 0; c < x.size(); ++c) x[c] = b_x[c] / size;
-    const double value = quotient(b, x);
+    const double value = quotient(a, b, x);
     if (settled(value, before)) return value;
     before = value;
   }
@@ -121,15 +126,11 @@ class RatioPencil final : public StiffnessPencil {
     count_rotations();
   }
 
-  [[nodiscard]] StiffnessMatrix slope() const override {
+  [[nodiscard]] StiffnessMatrix slope(const StiffnessMatrix& normal) const override {
     StiffnessMatrix tangential = stiffness(1);
-    const StiffnessMatrix normal = stiffness(0);
     for (std::size_t k = 0; k < normal.diagonal.size(); ++k) tangential.diagonal[k] -= normal.diagonal[k];
     for (std::size_t k = 0; k < normal.coupling.size(); ++k) tangential.coupling[k] -= normal.coupling[k];
     return tangential;
-  }
-  [[nodiscard]] double quotient(const StiffnessMatrix& tangential, const std::vector<double>& x) const override {
-    return -dot(x, product(stiffness(0), x)) / dot(x, product(tangential, x));
   }
   [[nodiscard]] bool settled(double value, double before) const override {
     return std::abs(value - before) <= 0.01 * options_.tolerance;

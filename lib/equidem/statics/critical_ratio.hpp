@@ -39,9 +39,10 @@ class StiffnessPencil {
 
  protected:
   [[nodiscard]] virtual StiffnessMatrix stiffness(double s) const = 0;
-  [[nodiscard]] virtual StiffnessMatrix slope() const = 0;  // B
+  [[nodiscard]] virtual StiffnessMatrix slope(const StiffnessMatrix& a) const = 0;  // B
   /// v = -x.A x/x.B x (Rayleigh): it errs by the square of the error of x.
-  [[nodiscard]] virtual double quotient(const StiffnessMatrix& slope, const std::vector<double>& x) const = 0;
+  [[nodiscard]] virtual double quotient(const StiffnessMatrix& a, const StiffnessMatrix& b,
+                                        const std::vector<double>& x) const;
   /// Whether a value and the one before are alike.
   [[nodiscard]] virtual bool settled(double value, double before) const = 0;
   std::unique_ptr<Factorization> factorize(double s);
