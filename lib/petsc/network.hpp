@@ -10,7 +10,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/statics/internal_force.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 #include "petsc/part.hpp"
 

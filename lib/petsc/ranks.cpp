@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::petsc {

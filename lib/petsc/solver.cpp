@@ -9,7 +9,7 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem::petsc {

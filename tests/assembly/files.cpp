@@ -10,7 +10,7 @@
 
 #include <unistd.h>
 
-#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/assembly/touching.hpp"

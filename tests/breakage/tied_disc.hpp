@@ -9,7 +9,7 @@
 
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 #include "breakage/scenes.hpp"
 #include "support/assemblies.hpp"

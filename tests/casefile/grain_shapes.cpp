@@ -10,7 +10,7 @@
 
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 #include "example.hpp"
 #include "grain_example.hpp"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/casefile/engine/removed_keys.hpp"
-
 #include <algorithm>
 #include <string>
 

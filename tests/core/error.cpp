@@ -6,7 +6,6 @@
 #include <string>
 #include <thread>
 
-#include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 

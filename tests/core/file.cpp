@@ -17,7 +17,6 @@
 #include <unistd.h>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/folder_lock.hpp"
 #include "equidem/core/text.hpp"
 
 #include "support/catch.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/assembly/import/particle_rows.hpp"
+#include "equidem/assembly/import/particle_table.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"

@@ -11,7 +11,6 @@
 
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"

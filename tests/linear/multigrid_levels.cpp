@@ -12,7 +12,6 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multigrid/block_matrix.hpp"
-#include "equidem/linear/multigrid/cell_stiffness.hpp"
 #include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"

@@ -13,7 +13,6 @@
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/rigid_growth.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 

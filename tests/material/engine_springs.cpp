@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/material/engine_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 #include "support/catch.hpp"
 

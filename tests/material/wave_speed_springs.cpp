@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/material/wave_speed_springs.hpp"
-
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/material/inertia.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 #include "support/catch.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/motion/probe.hpp"
+#include "equidem/motion/saved_state.hpp"
 
 #include "support/catch.hpp"
 

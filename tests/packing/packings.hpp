@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/size_distribution.hpp"
 

@@ -141,7 +141,7 @@ class Page(RunTest):
     def test_keys_of_an_assembly_are_those_of_the_page(self):
         folder = SOURCE / "lib/equidem/assembly"
         known = re.search(r"> keys\{(.*?)\}", (folder / "files.cpp").read_text(), re.DOTALL)[1]
-        of_contacts = re.findall(r'\{"(\w+)", ', (folder / "contact_numbers.hpp").read_text())
+        of_contacts = re.findall(r'\{"(\w+)", ', (folder / "assembly.hpp").read_text())
         self.assertEqual(len(of_contacts), 4)
         self.assertEqual(set(re.findall(r'"(\w+)"', known)) | set(of_contacts),
                          names_in_tables(section("Assembly (JSON)")))

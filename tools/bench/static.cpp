@@ -23,8 +23,8 @@
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/statics/internal_force.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/number_unknowns.hpp"
-#include "equidem/statics/supports.hpp"
 
 #include "bench.hpp"
 #include "command.hpp"

@@ -21,7 +21,6 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/folder_lock.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/output/page/page.hpp"

@@ -17,12 +17,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "equidem/casefile/engine/removed_keys.hpp"
+#include "equidem/casefile/engine/keys.hpp"
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/results.hpp"
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/space_filling_curve.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/memory.hpp"

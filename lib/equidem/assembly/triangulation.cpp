@@ -8,7 +8,7 @@
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 namespace equidem {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "equidem/breakage/disjoint_ways.hpp"
-#include "equidem/breakage/network_response.hpp"
+#include "equidem/breakage/load_path.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"

@@ -19,9 +19,9 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/statics/breaking/updated_network.hpp"
 #include "equidem/statics/load_bearing.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
-#include "equidem/statics/supports.hpp"
 
 namespace equidem {
 

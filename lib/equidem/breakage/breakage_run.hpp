@@ -14,7 +14,7 @@
 #include "equidem/breakage/break_search.hpp"
 #include "equidem/breakage/breakable_system.hpp"
 #include "equidem/breakage/event_path.hpp"
-#include "equidem/breakage/network_response.hpp"
+#include "equidem/breakage/load_path.hpp"
 
 namespace equidem {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

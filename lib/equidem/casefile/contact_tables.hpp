@@ -16,7 +16,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

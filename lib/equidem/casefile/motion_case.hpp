@@ -12,7 +12,7 @@
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/motion/ledger.hpp"
-#include "equidem/motion/probe.hpp"
+#include "equidem/motion/saved_state.hpp"
 #include "equidem/motion/schedule.hpp"
 #include "equidem/motion/wall.hpp"
 

@@ -2,6 +2,7 @@
 /// \file
 /// The springs of every contact of an assembly, bending springs of bonds too, and all that a contact answers to the
 /// motion of its bodies.
+/// The springs with which an assembly represents a given continuum.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +13,13 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
+#include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/contact/prestress/prestress.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/inertia.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 
@@ -194,5 +197,30 @@ double bond_width(const Assembly& assembly, std::size_t contact, const BendingOp
 /// \throws Error (bad_input) where both are given, a number is negative or not finite, some kT < 0, or kM is more than
 ///         1e10 times kN r², r the radius of the smaller disc
 ContactSprings bending_springs(const Assembly& assembly, const ContactSprings& springs, const BendingOptions& options);
+
+/// A relation between springs and moduli (Abe 1996) with the measures that it needs.
+struct ChosenRelation {
+  SpringRelation relation;
+  IsotropicMeasures measures;
+};
+
+/// The relation that holds for an assembly: that of its lattice where springs are equal, else the isotropic one, (20)
+/// and (21), with the solid fraction and the coordination number; of springs weighted by contact_density or
+/// local_contact_density k psi = K/phi by (21); of springs weighted by voronoi K = kN/2, since the facets of Voronoi
+/// cells obey sum h l = 2 V and uniform strain then stores w = kN <(n e n)²>.
+/// \param lattice of the assembly; null: none
+ChosenRelation spring_relation(const Assembly& assembly, SpringWeighting weighting, const Lattice* lattice);
+
+/// The springs, before weighting, with which the assembly represents a continuum of these moduli.
+/// \throws Error (bad_input) as springs_for; weighted springs on a lattice whose relation is for equal springs
+SpringConstants springs_of_moduli(const ElasticModuli& moduli, const Assembly& assembly, SpringWeighting weighting,
+                                  const Lattice* lattice, NegativeTangential negative = NegativeTangential::refuse);
+
+/// The density rho of the discs themselves, kg/m³: the given one, else gamma/phi, gamma the density of the continuum
+/// and phi the solid fraction (Abe 1996, section 2). None where neither is given.
+/// \throws Error (bad_input): both are given and gamma differs from rho phi by more than 1e-6 of it; gamma alone is
+///         given for spheres, since a sheet of them has no mass per metre of depth
+std::optional<double> disc_density(std::optional<double> of_discs, std::optional<double> of_continuum, Body body,
+                                   const Assembly& assembly);
 
 }  // namespace equidem

@@ -42,7 +42,7 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

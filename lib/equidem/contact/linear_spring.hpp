@@ -15,7 +15,7 @@
 
 #include "equidem/contact/frame.hpp"
 #include "equidem/contact/prestress/prestress.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

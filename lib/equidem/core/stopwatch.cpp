@@ -2,6 +2,15 @@
 #include "equidem/core/stopwatch.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <utility>
+
+#include <unistd.h>
+
+#include "equidem/core/error.hpp"
+#include "equidem/core/text.hpp"
 
 namespace equidem {
 
@@ -29,6 +38,88 @@ double StageTimes::total() const {
   double sum = 0;
   for (const auto& [name, seconds] : stages_) sum += seconds;
   return sum;
+}
+
+namespace {
+
+std::atomic<bool> progress_shown{true};
+std::atomic<int> existing{0};
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int signal_number) {
+  stop_asked = 1;
+  // of a terminal that closes, SIGHUP comes from the system and from its shell
+  if (signal_number != SIGHUP) std::signal(signal_number, SIG_DFL);
+}
+
+/// s
+struct Rhythm {
+  double first_line_after, line_every;
+};
+constexpr Rhythm on_terminal{1, 0.2}, elsewhere{3, 60};
+
+std::function<void(const std::string&)> display;
+
+}  // namespace
+
+void set_progress_shown(bool shown) {
+  progress_shown = shown;
+}
+
+Progress::Progress(std::string task)
+    : task_(std::move(task)), outermost_(existing++ == 0), terminal_(display || isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  --existing;
+  if (!shown_ || !terminal_) return;
+  if (display) {
+    display("");
+  } else {
+    std::fputs("\r\033[K", stderr);
+  }
+}
+
+void Progress::update(double fraction) {
+  stop_if_interrupted();
+  if (!progress_shown || !outermost_) return;
+  const double elapsed = watch_.seconds();
+  const Rhythm& rhythm = terminal_ ? on_terminal : elsewhere;
+  if (elapsed < rhythm.first_line_after || (shown_ && elapsed - last_shown_ < rhythm.line_every)) return;
+  std::string line = fmt::format("{} {:.0f} %", task_, 100 * fraction);
+  if (fraction > 0) line += fmt::format(", {:.0f} s left", elapsed * (1 - fraction) / fraction);
+  if (display) {
+    display(line);
+  } else {
+    std::fputs((terminal_ ? "\r\033[K" + line : line + "\n").c_str(), stderr);
+  }
+  last_shown_ = elapsed;
+  shown_ = true;
+}
+
+void catch_interrupts() {
+  std::signal(SIGINT, ask_to_stop);
+  std::signal(SIGTERM, ask_to_stop);
+  if (std::signal(SIGHUP, ask_to_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
+  std::signal(SIGXFSZ, SIG_IGN);                                                  // writes fail instead
+}
+
+InterruptCatcher::InterruptCatcher() {
+  struct sigaction caught = {};
+  caught.sa_handler = [](int) { stop_asked = 1; };
+  sigaction(SIGINT, &caught, &before_);
+}
+
+InterruptCatcher::~InterruptCatcher() {
+  sigaction(SIGINT, &before_, nullptr);
+  stop_asked = 0;
+}
+
+void set_progress_display(std::function<void(const std::string&)> shown_by) {
+  display = std::move(shown_by);
+}
+
+void stop_if_interrupted() {
+  if (stop_asked != 0) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
 }
 
 }  // namespace equidem

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Wall-clock time per stage of a computation.
+/// Progress on stderr, and interruption by the user.
 #pragma once
 
 #include <chrono>
+#include <csignal>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,5 +44,51 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Whether progress may be shown; on by default.
+void set_progress_shown(bool shown);
+
+/// Progress of a long computation on stderr: "factorizing 42 %, 7 s left". On a terminal one line, from the second
+/// second on; elsewhere a line after three seconds, then one a minute. While one exists, others show nothing.
+class Progress {
+ public:
+  explicit Progress(std::string task);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// \param fraction of the work done, in [0, 1]
+  /// \throws Error of kind interrupted where the user asked to stop
+  void update(double fraction);
+
+ private:
+  std::string task_;
+  Stopwatch watch_;
+  double last_shown_ = 0;
+  bool outermost_, terminal_;
+  bool shown_ = false;
+};
+
+/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (not under nohup) ask the running computation to stop at its next
+/// safe point; a second SIGINT or SIGTERM ends the process at once. SIGXFSZ is ignored.
+void catch_interrupts();
+/// \throws Error of kind interrupted where the user asked to stop
+void stop_if_interrupted();
+
+/// For programs that handle SIGINT themselves: while one exists, Ctrl-C asks the running computation to stop;
+/// afterwards their handler is back, and nothing is asked any more. At most one exists.
+class InterruptCatcher {
+ public:
+  InterruptCatcher();
+  ~InterruptCatcher();
+  InterruptCatcher(const InterruptCatcher&) = delete;
+  InterruptCatcher& operator=(const InterruptCatcher&) = delete;
+
+ private:
+  struct sigaction before_ = {};
+};
+
+/// A function that shows a line of progress in place of stderr, on which an empty line clears it; none: stderr.
+void set_progress_display(std::function<void(const std::string& line)> shown_by);
 
 }  // namespace equidem

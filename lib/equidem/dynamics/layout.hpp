@@ -17,7 +17,7 @@
 #include "equidem/core/vector.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/simulation.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {

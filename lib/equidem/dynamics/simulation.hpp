@@ -19,7 +19,7 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/motion/schedule.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

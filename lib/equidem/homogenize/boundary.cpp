@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/assembly/power_cells.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/sample_solver.hpp"
 #include "equidem/homogenize/stress.hpp"

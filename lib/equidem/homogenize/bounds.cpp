@@ -10,7 +10,7 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"

@@ -7,7 +7,7 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/statistics.hpp"
 
 namespace equidem {
 namespace {

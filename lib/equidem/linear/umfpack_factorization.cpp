@@ -18,7 +18,7 @@
 #include <umfpack.h>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"

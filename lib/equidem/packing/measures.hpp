@@ -22,7 +22,7 @@
 #include "equidem/assembly/touching.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/fields/box_measures.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 #include "equidem/packing/packing.hpp"
 
 namespace equidem {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 namespace equidem {
 

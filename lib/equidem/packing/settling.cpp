@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/grains/grain_simulation.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

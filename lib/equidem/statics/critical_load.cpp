@@ -9,9 +9,9 @@
 
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/critical_ratio.hpp"
 #include "equidem/statics/mechanisms.hpp"

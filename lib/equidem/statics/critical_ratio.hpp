@@ -15,7 +15,7 @@
 #include "equidem/linear/factorization.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

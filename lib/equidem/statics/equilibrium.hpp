@@ -15,7 +15,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

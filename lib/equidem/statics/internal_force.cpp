@@ -2,7 +2,7 @@
 #include "equidem/statics/internal_force.hpp"
 
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/core/ordered_sums.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {

@@ -14,8 +14,8 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/stiffness_solver.hpp"
-#include "equidem/statics/supports.hpp"
 
 namespace equidem {
 

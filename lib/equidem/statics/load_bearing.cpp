@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/text.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "equidem/core/text.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
+#include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 #include "equidem/linear/rigid_growth.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/load_bearing.hpp"

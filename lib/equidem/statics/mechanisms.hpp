@@ -12,9 +12,9 @@
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/linear/contact_graph.hpp"
+#include "equidem/statics/loads.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 #include "equidem/statics/rigid_motions.hpp"
-#include "equidem/statics/supports.hpp"
 
 namespace equidem {
 

@@ -11,7 +11,7 @@
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/linear/contact_graph.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

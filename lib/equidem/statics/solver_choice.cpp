@@ -15,7 +15,6 @@
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
-#include "equidem/linear/multifrontal/multifrontal_ldlt.hpp"
 #include "equidem/linear/multigrid/multigrid_solver.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 #include "equidem/statics/motion_description.hpp"

@@ -12,8 +12,8 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/linear/large_buffer.hpp"
 #include "equidem/statics/motion_description.hpp"

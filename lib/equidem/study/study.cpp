@@ -9,7 +9,6 @@
 
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"

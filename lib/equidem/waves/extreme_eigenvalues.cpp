@@ -11,8 +11,8 @@
 #include <Spectra/SymEigsSolver.h>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {

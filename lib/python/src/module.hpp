@@ -10,7 +10,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 namespace equidem::python {
 

@@ -21,8 +21,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/material/engine_springs.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 #include "equidem/waves/vibration.hpp"
 
 #include "calibrate/calibrate_strengths.hpp"

@@ -13,7 +13,7 @@
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 #include "problem.hpp"

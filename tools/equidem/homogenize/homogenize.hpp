@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "equidem/contact/material_springs.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/output/results.hpp"
 

@@ -15,7 +15,7 @@
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 #include "equidem/statics/solver_choice.hpp"

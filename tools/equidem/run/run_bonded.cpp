@@ -16,7 +16,7 @@
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/output/files/body_tables.hpp"

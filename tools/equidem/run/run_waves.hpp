@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "equidem/core/matrix.hpp"
-#include "equidem/motion/probe.hpp"
+#include "equidem/motion/saved_state.hpp"
 #include "equidem/output/results.hpp"
 #include "equidem/output/run/run_loop.hpp"
 

@@ -27,7 +27,6 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/memory.hpp"
 #include "equidem/core/names.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "equidem/assembly/contact_numbers.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"

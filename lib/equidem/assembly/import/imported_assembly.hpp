@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "equidem/assembly/files.hpp"
-#include "equidem/assembly/import/particle_rows.hpp"
+#include "equidem/assembly/import/particle_table.hpp"
 
 namespace equidem {
 

@@ -1,16 +1,92 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "equidem/assembly/import/particle_table.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "equidem/assembly/import/particle_rows.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+namespace {
+
+std::string_view without_plus(std::string_view text) {
+  return text.size() > 1 && text.front() == '+' && text[1] != '-' ? text.substr(1) : text;
+}
+
+}  // namespace
+
+bool TextLines::next() {
+  if (rest_.empty()) return false;
+  const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+  line_ = trimmed(rest_.substr(0, end));
+  is_whole_ = end < rest_.size();
+  rest_.remove_prefix(end);
+  rest_.remove_prefix(rest_.starts_with("\r\n") ? 2 : std::min<std::size_t>(1, rest_.size()));
+  ++number_;
+  return true;
+}
+
+void TextLines::fail(std::string problem, std::string why, std::string remedy) const {
+  bad_input_at(fmt::format("line {}", number_), std::move(problem), std::move(why), std::move(remedy));
+}
+
+double finite_number(std::string_view text, std::string_view column, int line) {
+  const auto value = number_from<double>(without_plus(text));
+  if (value && std::isfinite(*value)) return *value;
+  bad_input_at(fmt::format("line {}", line), fmt::format("'{}' is no {}", text, column), "a finite number is needed",
+               "Correct it");
+}
+
+std::int64_t whole_number(std::string_view text, std::string_view column, int line) {
+  if (const auto value = number_from<std::int64_t>(without_plus(text))) return *value;
+  bad_input_at(fmt::format("line {}", line), fmt::format("'{}' is no {}", text, column), "a whole number is needed",
+               "Correct it");
+}
+
+namespace {
+
+/// "1000 atoms", a line of the header of a LAMMPS data file.
+bool counts_atoms(std::string_view line) {
+  const auto words = words_of(line.substr(0, line.find('#')));
+  return words.size() == 2 && words[1] == "atoms" && words[0].find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+struct LammpsUnits {
+  std::string_view name;
+  double metres;
+};
+constexpr LammpsUnits lammps_units[] = {{"si", 1}, {"cgs", 0.01}, {"micro", 1e-6}, {"nano", 1e-9}};
+
+}  // namespace
+
+std::optional<double> lammps_length_unit(std::string_view name) {
+  for (const LammpsUnits& units : lammps_units)
+    if (units.name == name) return units.metres;
+  return {};
+}
+
+ParticleFormat particle_format(std::string_view text) {
+  constexpr int lines_of_header = 30;
+  text = without_byte_order_mark(text);
+  TextLines lines(text);
+  std::string_view first;
+  for (int k = 0; k < lines_of_header && lines.next(); ++k) {
+    if (first.empty()) first = lines.line();
+    if (first.starts_with("ITEM:")) return ParticleFormat::lammps_dump;
+    if (counts_atoms(lines.line())) return ParticleFormat::lammps_data;
+  }
+  const bool other = first.empty() || first.front() == '{' || first.front() == '[' ||
+                     text.substr(0, first.size() + 1).find('\0') != std::string_view::npos;
+  return other ? ParticleFormat::none : ParticleFormat::table;
+}
+
 namespace {
 
 const std::vector<std::string> id_names = {"id", "grain", "disc", "particle"}, x_names = {"x"}, y_names = {"y"},

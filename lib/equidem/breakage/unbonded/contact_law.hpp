@@ -16,7 +16,7 @@
 
 #include "equidem/breakage/path_numbers.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

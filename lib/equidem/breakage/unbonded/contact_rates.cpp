@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "equidem/breakage/event_path.hpp"
-#include "equidem/core/ordered_sums.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/statistics.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 namespace equidem {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/core/ordered_sums.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/statistics.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 namespace equidem {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "equidem/breakage/network_response.hpp"
+#include "equidem/breakage/load_path.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {

@@ -10,7 +10,6 @@
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/contact/material_springs.hpp"
 #include "equidem/dynamics/simulation.hpp"
 
 namespace equidem {

@@ -34,11 +34,11 @@
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/material/elastic_moduli.hpp"
 #include "equidem/material/inertia.hpp"
-#include "equidem/material/spring_constants.hpp"
+#include "equidem/material/spring_relations.hpp"
 #include "equidem/material/viscoelasticity.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/size_distribution.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

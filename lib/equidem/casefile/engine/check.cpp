@@ -7,7 +7,6 @@
 
 #include "equidem/casefile/engine/bind.hpp"
 #include "equidem/casefile/engine/keys.hpp"
-#include "equidem/casefile/engine/removed_keys.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"

@@ -17,7 +17,7 @@
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/grains/scene/shaking.hpp"
 #include "equidem/grains/stages/staged_simulation.hpp"
-#include "equidem/motion/probe.hpp"
+#include "equidem/motion/saved_state.hpp"
 
 namespace equidem {
 

@@ -5,10 +5,10 @@
 #include "equidem/casefile/assembly/case.hpp"
 #include "equidem/casefile/contact_tables.hpp"
 #include "equidem/casefile/engine/bind.hpp"
-#include "equidem/contact/material_springs.hpp"
+#include "equidem/contact/contact_springs.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem::casefile {
 

@@ -27,7 +27,7 @@
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/contact/restitution.hpp"
 #include "equidem/core/square_root.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

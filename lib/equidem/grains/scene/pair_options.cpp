@@ -13,7 +13,7 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/material/wave_speed_springs.hpp"
+#include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
 

@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "equidem/contact/contact_springs.hpp"
-#include "equidem/contact/material_springs.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/calibrate/ratio_search.hpp"
 

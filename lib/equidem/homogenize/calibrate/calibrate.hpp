@@ -17,7 +17,6 @@
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/material/elastic_moduli.hpp"
-#include "equidem/material/spring_constants.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {

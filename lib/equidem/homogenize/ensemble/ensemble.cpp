@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"

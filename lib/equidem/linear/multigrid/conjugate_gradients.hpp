@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "equidem/core/progress.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/linear/linear_solver.hpp"
 
 namespace equidem::multigrid {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "equidem/core/threads.hpp"
-#include "equidem/linear/multigrid/cell_stiffness.hpp"
+#include "equidem/linear/multigrid/transfer.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem::multigrid {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/kernels/row_kernel.hpp"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/ordered_sums.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/statistics.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/conjugate_gradients.hpp"

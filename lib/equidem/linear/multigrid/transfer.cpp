@@ -4,9 +4,194 @@
 #include <algorithm>
 #include <array>
 
+#include "equidem/contact/frame.hpp"
+#include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/threads.hpp"
+#include "equidem/linear/multigrid/kernels/grid_kernel.hpp"
 
 namespace equidem::multigrid {
+namespace {
+
+constexpr std::size_t cells_at_once = 1 << 7;
+constexpr std::size_t contacts_at_once = 1 << 13;
+constexpr std::size_t nodes_at_once = 1 << 10;
+constexpr int cell_unknowns = 12;  // unknowns of a cell
+
+using CellVector = std::array<double, cell_unknowns>;
+
+/// The middle of a contact, over a.
+Vec2 midpoint(const Assembly& assembly, const Contact& contact, double a) {
+  return (1 / a) * (assembly.centres[contact.i] + 0.5 * assembly.branch(contact));
+}
+
+/// derivative += that of a deformation by the unknowns of the cell, from that by the motion of one disc.
+void add_derivative(const Shape& shape, const std::array<double, 3>& of_disc, bool rotations, CellVector& derivative) {
+  const auto [x, y, turn] = of_disc;
+  for (int k = 0; k < 4; ++k) {
+    const double weight = shape.weight[k];
+    const Vec2 arm = shape.arm[k];
+    derivative[3 * k] += weight * x;
+    derivative[3 * k + 1] += weight * y;
+    if (rotations) derivative[3 * k + 2] += weight * (turn + arm.x * y - arm.y * x);
+  }
+}
+
+/// \param kM over the square of a, Pa
+void add_contact(const Grid& grid, std::int32_t cell, const Assembly& assembly, std::size_t c, SpringConstants k,
+                 double kM, const DegreesOfFreedom& unknowns, double* matrix) {
+  const Contact& contact = assembly.contacts[c];
+  const double a = unknowns.rotation_scale;
+  const Place middle = grid.place_in(cell, midpoint(assembly, contact, a));
+  const Vec2 half = (0.5 / a) * assembly.branch(contact);
+  const double s = half.x / grid.spacing().x, t = half.y / grid.spacing().y;
+  DeformationGradient g = deformation_gradient(frame_of(assembly, c), a);
+  const auto b = static_cast<std::size_t>(unknowns.per_disc);
+  for (std::size_t e = 0; e < 3; ++e) {
+    if (e >= b || unknowns.held[contact.i * b + e] != 0) g.normal_i[e] = g.tangential_i[e] = 0;
+    if (e >= b || unknowns.held[contact.j * b + e] != 0) g.normal_j[e] = g.tangential_j[e] = 0;
+  }
+  CellVector normal{}, tangential{};
+  const Shape of_i = grid.shape({middle.cell, middle.s - s, middle.t - t});
+  add_derivative(of_i, g.normal_i, b == 3, normal);
+  add_derivative(of_i, g.tangential_i, b == 3, tangential);
+  const Shape of_j = grid.shape({middle.cell, middle.s + s, middle.t + t});
+  add_derivative(of_j, g.normal_j, b == 3, normal);
+  add_derivative(of_j, g.tangential_j, b == 3, tangential);
+  grid_functions().add_squares(k.kN, normal.data(), k.kT, tangential.data(), matrix);
+  if (kM == 0 || b < 3) return;
+  const auto turn = [&](std::int32_t disc, double sign) {
+    return std::array<double, 3>{0, 0, unknowns.held[disc * b + 2] != 0 ? 0 : sign};
+  };
+  CellVector bending{};
+  add_derivative(of_i, turn(contact.i, -1), true, bending);
+  add_derivative(of_j, turn(contact.j, 1), true, bending);
+  grid_functions().add_squares(kM, bending.data(), 0, bending.data(), matrix);
+}
+
+/// The motion of a node by the unknowns of a coarser cell, 3 x 12.
+void set_motion_of_node(const Shape& shape, double* motion) {
+  for (int k = 0; k < 4; ++k) {
+    for (int e = 0; e < 3; ++e) motion[e * cell_unknowns + 3 * k + e] = shape.weight[k];
+    motion[3 * k + 2] = -shape.weight[k] * shape.arm[k].y;
+    motion[cell_unknowns + 3 * k + 2] = shape.weight[k] * shape.arm[k].x;
+  }
+}
+
+/// The columns of a row, that of the diagonal first.
+class RowColumns {
+ public:
+  /// \param found(entry, place, corner) is called for every corner of the cells around the node
+  template <typename Found>
+  RowColumns(const Transfer& numbering, std::size_t node, const Found& found) {
+    columns_[entries_++] = static_cast<std::int32_t>(node);
+    for (const std::int32_t place : numbering.adjacent(node)) {
+      if (place < 0) continue;
+      const auto& corners = numbering.corners(static_cast<std::size_t>(place / 4));
+      for (int k = 0; k < 4; ++k) {
+        if (corners[k] >= 0) found(entry_of(corners[k]), place, k);
+      }
+    }
+  }
+  [[nodiscard]] std::span<const std::int32_t> get() const { return {columns_.data(), entries_}; }
+
+ private:
+  std::size_t entry_of(std::int32_t column) {
+    std::size_t e = 0;
+    while (e < entries_ && columns_[e] != column) ++e;
+    if (e == entries_) columns_[entries_++] = column;
+    return e;
+  }
+
+  std::array<std::int32_t, 16> columns_{};
+  std::size_t entries_ = 0;
+};
+
+}  // namespace
+
+CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
+                                    const DegreesOfFreedom& unknowns, double unit) {
+  std::vector<std::int32_t> cell(assembly.contacts.size());
+  parallel_ranges(cell.size(), contacts_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Vec2 middle = midpoint(assembly, assembly.contacts[c], unknowns.rotation_scale);
+      cell[c] = grid.host(grid.place(middle)).cell;
+    }
+  });
+  const Buckets contacts = sort_into_buckets(cell, grid.cells());
+  const double bending_unit = unit * unknowns.rotation_scale * unknowns.rotation_scale;
+  CellStiffness result(grid.cells() * cell_unknowns * cell_unknowns);
+  parallel_ranges(grid.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum[cell_unknowns * cell_unknowns] = {};
+      for (const std::int32_t c : contacts.of(k)) {
+        const SpringConstants spring = springs[c];
+        add_contact(grid, static_cast<std::int32_t>(k), assembly, c, {spring.kN / unit, spring.kT / unit},
+                    springs.bending(static_cast<std::size_t>(c)) / bending_unit, unknowns, sum);
+      }
+      std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
+    }
+  });
+  return result;
+}
+
+CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells) {
+  const auto middle_of = [&](std::size_t cell) {
+    return coarse.host(coarse.place(fine.position(fine.nodes_of(cell)[0]) + 0.5 * fine.spacing()));
+  };
+  std::vector<std::int32_t> parent(fine.cells());
+  for (std::size_t k = 0; k < parent.size(); ++k) parent[k] = middle_of(k).cell;
+  const Buckets children = sort_into_buckets(parent, coarse.cells());
+  CellStiffness result(coarse.cells() * cell_unknowns * cell_unknowns);
+  parallel_ranges(coarse.cells(), cells_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum[cell_unknowns * cell_unknowns] = {};
+      for (const std::int32_t child : children.of(k)) {
+        const Place middle = middle_of(child);
+        double motion[cell_unknowns * cell_unknowns] = {};  // of the four nodes of the child
+        for (int corner = 0; corner < 4; ++corner) {        // a quarter of the coarse spacing from the middle
+          set_motion_of_node(
+              coarse.shape({middle.cell, middle.s + 0.5 * (corner % 2) - 0.25, middle.t + 0.5 * (corner / 2) - 0.25}),
+              motion + 3 * corner * cell_unknowns);
+        }
+        grid_functions().add_projection(&cells[static_cast<std::size_t>(child) * cell_unknowns * cell_unknowns], motion,
+                                        sum);
+      }
+      std::copy(sum, sum + cell_unknowns * cell_unknowns, &result[k * cell_unknowns * cell_unknowns]);
+    }
+  });
+  return result;
+}
+
+BlockMatrix assemble_cells(const Transfer& numbering, const CellStiffness& cells) {
+  BlockMatrix matrix;
+  const std::size_t n = numbering.unknowns();
+  matrix.first.assign(n + 1, 0);
+  parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      const RowColumns columns(numbering, node, [](std::size_t, std::int32_t, int) {});
+      matrix.first[node + 1] = static_cast<std::int64_t>(columns.get().size());
+    }
+  });
+  for (std::size_t node = 0; node < n; ++node) matrix.first[node + 1] += matrix.first[node];
+  matrix.resize();
+  parallel_ranges(n, nodes_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      std::array<Block, 16> blocks{};
+      const RowColumns row(numbering, node, [&](std::size_t entry, std::int32_t place, int corner) {
+        const double* block = &cells[static_cast<std::size_t>(place / 4) * cell_unknowns * cell_unknowns +
+                                     static_cast<std::size_t>(place % 4 * 3 * cell_unknowns + 3 * corner)];
+        for (int k = 0; k < 9; ++k) blocks[entry][k] += block[k / 3 * cell_unknowns + k % 3];
+      });
+      const auto columns = row.get();
+      for (std::size_t e = 0; e < columns.size(); ++e) {
+        matrix.set(matrix.first[node] + static_cast<std::int64_t>(e), static_cast<std::size_t>(columns[e]), blocks[e]);
+      }
+      matrix.set_inverse(node, blocks[0]);
+    }
+  });
+  return matrix;
+}
+
 namespace {
 
 constexpr std::size_t points_per_task = 1 << 13;

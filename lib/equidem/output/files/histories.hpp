@@ -16,7 +16,7 @@
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_simulation.hpp"
 #include "equidem/motion/ledger.hpp"
-#include "equidem/motion/probe.hpp"
+#include "equidem/motion/saved_state.hpp"
 #include "equidem/motion/wall.hpp"
 #include "equidem/output/files/csv.hpp"
 #include "equidem/output/results.hpp"

@@ -17,7 +17,7 @@
 #include "equidem/core/vector.hpp"
 #include "equidem/output/files/body_tables.hpp"
 #include "equidem/output/pictures/canvas.hpp"
-#include "equidem/statics/supports.hpp"
+#include "equidem/statics/loads.hpp"
 
 namespace equidem {
 

@@ -22,7 +22,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"

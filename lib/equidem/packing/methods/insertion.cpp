@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/progress.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/placed_bodies.hpp"
