@@ -54,7 +54,6 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// \throws Error (bad_input) where the file cannot be written
 /// The main function of a benchmark: options, --markdown, errors on stderr.
 /// \param declare adds the options of this benchmark
 /// \return exit code
