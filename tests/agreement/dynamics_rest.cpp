@@ -2,7 +2,6 @@
 /// \file
 /// Motion that came to rest is the solution of the stiffness matrix.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "equidem/dynamics/relaxation.hpp"
@@ -13,25 +12,12 @@
 #include "support/assemblies.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
+#include "support/motions.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-/// 2-norms over all displacements and a theta.
-double relative_difference_of(const Assembly& assembly, const std::vector<DiscMotion>& found,
-                              const std::vector<DiscMotion>& expected) {
-  const double a = assembly.mean_radius();
-  double difference = 0, size = 0;
-  for (std::size_t d = 0; d < found.size(); ++d) {
-    const Vec2 u = found[d].u - expected[d].u;
-    const double turn = a * (found[d].theta - expected[d].theta);
-    difference += dot(u, u) + turn * turn;
-    size += dot(expected[d].u, expected[d].u) + std::pow(a * expected[d].theta, 2);
-  }
-  return std::sqrt(difference / size);
-}
 
 struct Tension {
   TensionSetup setup;
@@ -45,37 +31,6 @@ struct Tension {
 };
 
 }  // namespace
-
-TEST_CASE("the_block_of_101_rows_in_tension_relaxes_to_the_solution_of_its_matrix") {
-  const Assembly assembly = hexagonal_lattice({.columns = 101, .rows = 101, .radius = 0.005});
-  const ContactSprings springs(SpringConstants{1e9, 0.5e9});
-  const Tension tension(assembly, springs);
-  const Equilibrium exact = solve_equilibrium(assembly, springs, tension.setup.supports, tension.setup.loads);
-  const Relaxation rest = relax(tension.scene, {.tolerance = 1e-12});
-  const double difference = relative_difference_of(assembly, rest.motions, exact.motions);
-  CAPTURE(rest.report(), difference);
-  CHECK(difference < 1e-10);
-}
-
-TEST_CASE("blocks_of_every_kind_relax_to_the_solution_of_their_matrix") {
-  struct Springs {
-    double kT;
-    Rotation rotation;
-  };
-  const Springs given = GENERATE(Springs{0.5e9, Rotation::from_scene}, Springs{0, Rotation::from_scene},
-                                 Springs{0.5e9, Rotation::restrained}, Springs{2e9, Rotation::from_scene});
-  const bool hexagonal = GENERATE(true, false);
-  const Assembly assembly = hexagonal ? hexagonal_block(25) : delaunay_block(600, 3);
-  const ContactSprings springs = contact_springs(assembly, {1e9, given.kT}, SpringWeighting::voronoi);
-  const Tension tension(assembly, springs);
-  EquilibriumOptions options;
-  options.rotation = given.rotation;
-  const Equilibrium exact = solve_equilibrium(assembly, springs, tension.setup.supports, tension.setup.loads, options);
-  const Relaxation rest = relax(tension.scene, {.rotation = given.rotation, .tolerance = 1e-12});
-  const double difference = relative_difference_of(assembly, rest.motions, exact.motions);
-  CAPTURE(given.kT, static_cast<int>(given.rotation), hexagonal, rest.report(), difference);
-  CHECK(difference < 1e-10);
-}
 
 TEST_CASE("every_held_scene_relaxes_under_prescribed_motions_and_loads") {
   for (const HeldScene& held : held_scenes()) {
@@ -93,7 +48,7 @@ TEST_CASE("every_held_scene_relaxes_under_prescribed_motions_and_loads") {
     // Displacements of a slender strip are so large beside stretches that their rounding alone leaves more.
     if (held.name.find("strip") != std::string::npos) options.tolerance = 2e-11;
     const Relaxation rest = relax(scene, options);
-    const double difference = relative_difference_of(assembly, rest.motions, exact.motions);
+    const double difference = relative_difference(assembly, rest.motions, exact.motions);
     CAPTURE(rest.report(), difference);
     CHECK(difference < 1e-10);
   }
@@ -117,7 +72,7 @@ TEST_CASE("damped_motion_comes_to_the_same_rest_in_many_more_steps") {
     const std::vector<DiscMotion> u = run.motions();
     unbalanced = relative_unbalanced_force(tension.scene, options.motion, run.unbalanced_forces(u), u);
   }
-  const double difference = relative_difference_of(assembly, run.motions(), rest.motions);
+  const double difference = relative_difference(assembly, run.motions(), rest.motions);
   CAPTURE(damping.local, damping.mass, unbalanced, run.step(), watch.seconds(), rest.report(), difference);
   CHECK(unbalanced <= 1e-9);
   CHECK(difference < 1e-5);
@@ -138,9 +93,9 @@ TEST_CASE("a_bent_strip_relaxes_to_where_damped_motion_ends") {
   Simulation run(scene, options);
   const ThreadsFor one(1);
   run.advance(30000);
-  const double difference = relative_difference_of(strip, run.motions(), rest.motions);
+  const double difference = relative_difference(strip, run.motions(), rest.motions);
   const Relaxation small = relax(scene, {});
-  const double of_small = relative_difference_of(strip, small.motions, rest.motions);
+  const double of_small = relative_difference(strip, small.motions, rest.motions);
   CAPTURE(rest.report(), rest.motions.back().u.x, rest.motions.back().u.y, difference, of_small);
   CHECK(difference < 1e-8);
   CHECK(of_small > 0.05);  // the motion is far from small

@@ -78,23 +78,6 @@ PointProcess any_process() {
 
 }  // namespace
 
-TEST_CASE("triangulations_have_the_edges_that_euler_counts") {
-  const bool weighted = GENERATE(false, true);
-  const std::int64_t count = GENERATE(3, 10, 500);
-  Random random(7);
-  const std::vector<Vec2> points = uniform_points({.count = count}, random).points;
-  // Weights far below the squared distances hide no point.
-  std::vector<double> weights(weighted ? points.size() : 0);
-  for (double& w : weights) w = 1e-9 * random.uniform();
-
-  const auto edges = triangulation_edges(points, weights, hilbert_order(points));
-
-  std::int64_t hull = 0;
-  for (const TriangulationEdge& e : edges) hull += e.left < 0 || e.right < 0 ? 1 : 0;
-  CAPTURE(weighted, count, hull);
-  CHECK(static_cast<std::int64_t>(edges.size()) == 3 * count - 3 - hull);
-}
-
 TEST_CASE("delaunay_triangles_have_empty_circles") {
   Random random(3);
   const std::vector<Vec2> points = uniform_points({.count = 60}, random).points;
@@ -176,26 +159,6 @@ TEST_CASE("cells_fill_the_rectangle") {
   std::vector<int> contacts(a.size(), 0);
   for (const Contact& c : a.contacts) ++contacts[c.i], ++contacts[c.j];
   CHECK(std::count(contacts.begin(), contacts.end(), 0) == 0);
-}
-
-TEST_CASE("facets_of_a_periodic_cell_close_around_every_disc") {
-  const PointProcess process = any_process();
-  const auto radii = GENERATE(equal_radii, unequal_radii);
-  const Assembly a =
-      delaunay_assembly({.discs = 800, .points = process, .disorder = 0.3, .radii = radii, .periodic = true});
-
-  std::vector<Vec2> sums(a.size());
-  for (std::size_t k = 0; k < a.contacts.size(); ++k) {
-    const Contact& c = a.contacts[k];
-    const Vec2 l = a.branch(c);
-    sums[c.i] += (a.facet_lengths[k] / norm(l)) * l;
-    sums[c.j] -= (a.facet_lengths[k] / norm(l)) * l;
-  }
-
-  double worst = 0;
-  for (const Vec2 s : sums) worst = std::max(worst, norm(s) / a.mean_radius());
-  CAPTURE(to_string(process), radii.largest, worst);
-  CHECK(worst < 1e-12);
 }
 
 TEST_CASE("levers_reach_from_centre_to_centre") {

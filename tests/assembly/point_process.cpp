@@ -109,25 +109,6 @@ TEST_CASE("points_lie_in_their_rectangle") {
   CHECK(uniform_points(options, random).points.size() == static_cast<std::size_t>(count));
 }
 
-TEST_CASE("hilberts_curve_steps_from_neighbour_to_neighbour") {
-  const int side = GENERATE(2, 16, 64);
-  std::vector<Vec2> points;
-  for (int k = 0; k < side * side; ++k) points.push_back({1.0 * (k % side), 1.0 * (k / side)});
-  // Points in the middle of the cells of a grid: the square of the curve reaches from corner to corner.
-  points.push_back({-0.5, -0.5});
-  points.push_back({side - 0.5, side - 0.5});
-
-  std::vector<std::int32_t> order = hilbert_order(points);
-
-  std::erase_if(order, [&](std::int32_t k) { return k >= side * side; });
-  CAPTURE(side);
-  REQUIRE(order.size() == static_cast<std::size_t>(side * side));
-  for (std::size_t k = 1; k < order.size(); ++k) {
-    const Vec2 step = points[order[k]] - points[order[k - 1]];
-    CHECK(dot(step, step) == 1);
-  }
-}
-
 TEST_CASE("an_order_names_every_point_once_and_equal_points_in_turn") {
   Random random(1);
   std::vector<Vec2> points(1000);

@@ -224,25 +224,6 @@ TEST_CASE("the_void_between_three_touching_discs_is_that_of_soddy") {
   CHECK(found->radius == Approx(0.5 * (2 / std::sqrt(3.0) - 1)).epsilon(1e-9));
 }
 
-TEST_CASE("a_disc_that_is_taken_out_leaves_a_void_of_its_size") {
-  Assembly cell = hexagonal_lattice({.columns = 8, .rows = 8, .radius = 0.5, .periodic = true});
-  for (const std::size_t disc : {std::size_t{0}, std::size_t{27}}) {  // at a corner of the cell, and inside it
-    Assembly holed = cell;
-    const Vec2 place = holed.centres[disc];
-    holed.centres.erase(holed.centres.begin() + static_cast<std::ptrdiff_t>(disc));
-    holed.radii.erase(holed.radii.begin() + static_cast<std::ptrdiff_t>(disc));
-    holed.contacts.clear();
-    const auto found = largest_void(holed);
-    REQUIRE(found);
-    CAPTURE(disc, found->centre.x, found->centre.y, place.x, place.y);
-    CHECK(found->radius == Approx(0.5).epsilon(1e-9));
-    const Vec2 off = found->centre - place;
-    const Vec2 period = *cell.period;
-    CHECK(std::hypot(off.x - period.x * std::round(off.x / period.x), off.y - period.y * std::round(off.y / period.y)) <
-          1e-9);
-  }
-}
-
 TEST_CASE("no_place_on_a_grid_has_more_room_than_the_largest_void") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Random random(seed);

@@ -41,30 +41,7 @@ Assembly scattered(bool periodic, double hole = 0) {
   return assembly;
 }
 
-bool same(const TriangulationEdge& p, const TriangulationEdge& q) {
-  return p.a == q.a && p.b == q.b && p.left == q.left && p.right == q.right;
-}
-
 }  // namespace
-
-TEST_CASE("strips_give_the_edges_of_one_triangulation") {
-  const Sites sites(scattered(true));
-  Strips strips(sites);
-  REQUIRE(strips.count() > 1);
-  const std::vector<TriangulationEdge> parts = strips.edges();
-  strips.join();
-  const std::vector<TriangulationEdge> whole = strips.edges();
-
-  // Edges that start at an image may lie at the edge of all images, where strips differ.
-  std::size_t compared = 0, different = 0;
-  for (std::size_t p = 0, w = 0; p < parts.size() && w < whole.size(); ++p, ++w) {
-    if (!sites.in_cell(parts[p].a) || !sites.in_cell(whole[w].a)) break;
-    ++compared;
-    different += same(parts[p], whole[w]) ? 0 : 1;
-  }
-  CHECK(compared > 2 * many);
-  CHECK(different == 0);
-}
 
 TEST_CASE("cells_fill_the_rectangle_also_around_a_hole_that_is_wider_than_the_margin_of_a_strip") {
   for (const double hole : {0.0, 30.0}) {
@@ -147,22 +124,4 @@ TEST_CASE("the_strips_of_a_periodic_cell_have_its_contacts_and_cells_once") {
       CHECK(std::abs(lengths[order[k]] - whole.facet_lengths[k]) <= 1e-12 * 0.005);
     }
   }
-}
-
-TEST_CASE("one_strip_is_the_whole_assembly") {
-  const DelaunayOptions options{.discs = 500, .points = PointProcess::uniform, .seed = 5};
-  const StripShare share{.strip = 0,
-                         .count = 1,
-                         .any = [](bool holds) { return holds; },
-                         .joined = [](const std::vector<std::int32_t>& numbers) { return numbers; }};
-  const Assembly whole = delaunay_assembly(options);
-  const Assembly one = delaunay_strip(options, share).assembly;
-  REQUIRE(one.size() == whole.size());
-  REQUIRE(one.contacts.size() == whole.contacts.size());
-  for (std::size_t c = 0; c < whole.contacts.size(); ++c) {
-    CHECK(std::tuple(one.contacts[c].i, one.contacts[c].j) == std::tuple(whole.contacts[c].i, whole.contacts[c].j));
-  }
-  for (std::size_t d = 0; d < whole.size(); ++d)
-    CHECK(std::abs(one.cell_areas[d] - whole.cell_areas[d]) <= 1e-12 * whole.cell_areas[d]);
-  for (const auto& [name, group] : whole.groups) CHECK(one.groups.at(name).discs == group.discs);
 }

@@ -11,6 +11,7 @@
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "wrong.hpp"
 
 using namespace equidem;
@@ -290,12 +291,7 @@ TEST_CASE("groups_that_do_not_fit_the_assembly_are_refused_with_their_line") {
       load_case.substr(load_case.find("[material]"));
   const auto sentence = [](const std::string& text) -> std::string {
     const Case c = parsed(text);
-    try {
-      static_cast<void>(build_assembly(c));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return test::refusal_of([&] { static_cast<void>(build_assembly(c)); }).message;
   };
   REQUIRE(sentence(block).empty());
 
@@ -333,12 +329,8 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
                                   {"1e8 Pa", {"without its unit, here Pa", "Write 1e8"}},
                                   {"1e8 N/m", {"without its unit, here N/m", "Write 1e8"}}};
   const auto refusal = [](const std::string& file, const std::vector<std::string>& set) -> std::string {
-    try {
-      parse_case(file, "case.toml", ".", set);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "(accepted)";
+    const test::Refusal refused = test::refusal_of([&] { parse_case(file, "case.toml", ".", set); });
+    return refused.message.empty() ? "(accepted)" : refused.message;
   };
   const std::string head = "schema = \"equidem/1\"\n[assembly]\nkind = \"hexagonal\"\n[springs]\nkN = 1e8\n";
   for (const Typed& typed : all) {
@@ -357,4 +349,16 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
                 "2\n[springs]\nkN = 1e8\nks = 1e8\n",
                 {})
             .find("kT") != std::string::npos);
+}
+
+TEST_CASE("deep_and_long_documents_are_refused") {
+  const std::string head = "schema = \"equidem/1\"\n";
+  for (const std::string& text : {head + "x = " + std::string(100000, '['), head + std::string(100000, 'a') + " = 1\n",
+                                  head + "[assembly]\nkind = \"" + std::string(100000, 'h') + "\"\n",
+                                  std::string(1000, '\0'), std::string("\xff\xfe")}) {
+    const std::string sentence = error_of(text);
+    CHECK(sentence.starts_with("a.toml"));
+    CHECK(sentence.find('\n') == std::string::npos);
+  }
+  CHECK(error_of("\xef\xbb\xbf" + tension_case).empty());
 }

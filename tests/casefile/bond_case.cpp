@@ -7,10 +7,10 @@
 
 #include "equidem/casefile/contact_tables.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace equidem;
@@ -161,10 +161,5 @@ TEST_CASE("the_strength_file_of_a_calibration_gives_bonds_the_strengths_of_its_t
              "schema = \"equidem-strength/1\"\n[strength]\ntension = 1.0\nshear = 1.0\n"
              "after_breaking = \"gone\"\n",
              true);
-  try {
-    read(discs + bonds, "strength = \"cs.toml\"\n");
-    FAIL("accepted");
-  } catch (const Error& error) {
-    CHECK_THAT(error.what(), Catch::Contains("cs.toml:5") && Catch::Contains("after_breaking"));
-  }
+  test::check_refused([&] { read(discs + bonds, "strength = \"cs.toml\"\n"); }, {"cs.toml:5", "after_breaking"});
 }

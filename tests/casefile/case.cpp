@@ -79,22 +79,6 @@ TEST_CASE("homogenization_and_ensembles_say_what_their_file_says") {
   CHECK(c.ensemble->accuracy == 0.02);
 }
 
-TEST_CASE("homogenization_has_defaults_and_an_ensemble_only_where_it_is_asked_for") {
-  const Case c = parsed(tension_case);
-
-  CHECK_FALSE(c.homogenize.boundary);
-  CHECK(c.homogenize.bounds == BoundsWanted::automatic);
-  CHECK_FALSE(c.ensemble);
-  CHECK_FALSE(c.assembly.density);
-  CHECK(c.assembly.body == Body::disc);
-
-  const Case asked = parsed(load_case + "[ensemble]\n");
-  REQUIRE(asked.ensemble);
-  CHECK(asked.ensemble->plan.discs == std::vector<std::int64_t>{100, 400, 1600});
-  CHECK(asked.ensemble->plan.samples == 10);
-  CHECK_FALSE(asked.ensemble->accuracy);
-}
-
 TEST_CASE("a_load_without_a_case_acts_in_every_case") {
   const Case c = parsed(load_case + "[[load]]\ngroup = \"left\"\nforce = [5.0, 0.0]\n");
 

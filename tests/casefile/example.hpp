@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "equidem/casefile/assembly/case.hpp"
-#include "equidem/core/error.hpp"
+
+#include "support/refusal.hpp"
 
 namespace equidem::test {
 
@@ -181,12 +182,8 @@ inline Case parsed(const std::string& text, const std::vector<std::string>& over
 
 /// The sentence of the error of a case; empty where it is accepted.
 inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    static_cast<void>(parsed(text, overrides));
-  } catch (const Error& error) {
-    return error.kind() == ErrorKind::bad_input ? error.what() : std::string("wrong kind: ") + error.what();
-  }
-  return {};
+  const Refusal refused = refusal_of([&] { static_cast<void>(parsed(text, overrides)); });
+  return (refused.kind == ErrorKind::bad_input ? "" : "wrong kind: ") + refused.message;
 }
 
 /// The text with the first `what` replaced.

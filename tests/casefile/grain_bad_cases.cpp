@@ -8,6 +8,7 @@
 #include "example.hpp"
 #include "grain_example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "wrong.hpp"
 
 using namespace equidem;
@@ -143,12 +144,7 @@ TEST_CASE("a_file_of_grains_is_read_line_by_line") {
                          Bad{"x,y,radius,short_half_axis\n1,2,3,1\n", {":2:", "among spheres"}},
                          Bad{"x,y,discs\n1,2,0 0\n", {":2:", "no discs of a clump"}}, Bad{"", {"x, y and radius"}}}) {
     CAPTURE(bad.rows);
-    std::string sentence;
-    try {
-      read(bad.rows);
-    } catch (const Error& error) {
-      sentence = error.what();
-    }
+    const std::string sentence = test::refusal_of([&] { read(bad.rows); }).message;
     CAPTURE(sentence);
     CHECK(sentence.find("g.csv") != std::string::npos);
     for (const std::string& word : bad.words) CHECK(sentence.find(word) != std::string::npos);

@@ -85,45 +85,6 @@ TEST_CASE("later_tables_of_collisions_say_what_differs") {
   CHECK_NOTHROW(check(build_grain_scene(c, 1e-5), grain_options(c, 1e-5)));
 }
 
-TEST_CASE("a_duration_and_an_overlap_are_those_of_the_contact") {
-  const double e = GENERATE(1.0, 0.8, 0.3);
-  const std::string law = GENERATE("linear_dashpot", "energy_map");
-  CAPTURE(e, law);
-  const std::vector<std::string> common{"collisions.law=" + law, fmt::format("collisions.restitution={}", e),
-                                        "collisions.friction=0"};
-  std::string text = grain_case;
-  text.erase(text.find("stiffness = 1.0e5\n"), 18);
-  text.erase(text.find("integrator"), text.find("gravity") - text.find("integrator"));
-
-  SECTION("duration") {
-    auto overrides = common;
-    overrides.emplace_back("collisions.contact_duration=2e-4");
-    const GrainCase c = grains(text, overrides);
-    const GrainScene scene = build_grain_scene(c, 1e-5);
-    const PairProperties& pair = scene.between(0, 1);
-    // The half period of the damped oscillator, whatever the masses: a = (w dt)².
-    const double zeta = damping_ratio(c.options.law, pair);
-    CHECK(std::numbers::pi / (std::sqrt(pair.dimensionless) / 1e-5 * std::sqrt(1 - zeta * zeta)) == Approx(2e-4));
-    CHECK(choose_grain_step(c).contact == Approx(2e-4));
-    CHECK(choose_grain_step(c).steps_in_contact() == Approx(20));
-  }
-  SECTION("overlap") {
-    auto overrides = common;
-    overrides.emplace_back("collisions.largest_overlap=1e-4");
-    overrides.emplace_back("collisions.closing_speed=2.0");
-    const GrainCase c = grains(text, overrides);
-    const double k = c.contacts.between(0, 1).properties.stiffness;
-    const double m = 1 / (1 / c.scene.grains[1].inertia.mass + 1 / c.scene.grains[2].inertia.mass);  // the heaviest two
-    const double undamped = m * 2.0 * 2.0 / (1e-4 * 1e-4);
-    CAPTURE(k, undamped);
-    if (e == 1 || law == "energy_map") {
-      CHECK(k == Approx(undamped));
-    } else {
-      CHECK(k < undamped);
-    }
-  }
-}
-
 TEST_CASE("an_automatic_step_gives_the_shortest_contact_the_steps_asked_for") {
   const std::string law = GENERATE("linear_dashpot", "five_case_map", "energy_map", "exact_flow", "hertz_dashpot");
   CAPTURE(law);
@@ -172,15 +133,6 @@ TEST_CASE("examples_of_grains_are_read_and_written_back") {
     const GrainCase again = parse_grain_case(echo, "echo.toml", file.parent_path());
     CHECK(to_toml(again.document, file.parent_path()) == echo);
     CHECK(again.scene.grains.size() == c.scene.grains.size());
-  }
-}
-
-TEST_CASE("every_key_of_grains_is_described") {
-  const std::string help = describe_case_file();
-  for (const char* word : {"[grains]", "[[grain]]", "[collisions]", "[collisions.walls]", "[[collisions.pair]]",
-                           "contact_duration", "exact_flow", "segment", "steps_per_contact"}) {
-    CAPTURE(word);
-    CHECK(help.find(word) != std::string::npos);
   }
 }
 

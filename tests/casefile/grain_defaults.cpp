@@ -4,7 +4,6 @@
 #include <string>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/core/text.hpp"
 
 #include "support/catch.hpp"
@@ -55,44 +54,4 @@ TEST_CASE("defaults_of_cases_of_grains_are_those_of_the_options") {
   CHECK(given.scene.grains[1].inertia.mass == scene.grains[1].inertia.mass);
   CHECK(choose_grain_step(given).step == step.step);
   CHECK(choose_grain_step(given).limit == step.limit);
-}
-
-TEST_CASE("defaults_of_shaking_and_measures_are_those_of_the_options") {
-  const GrainCase given =
-      parse_grain_case(shortest_case("linear_dashpot") + "[shaking]\nacceleration = 2.0\nfrequency = 5.0\n[measures]\n",
-                       "case.toml", {});
-  REQUIRE(given.shaking);
-  const Shaking shaking = shaking_of({.acceleration = 2, .frequency = 5}, 1);
-  CHECK(given.shaking->direction == shaking.direction);
-  CHECK(given.shaking->cycles == shaking.cycles);
-  CHECK(given.shaking->displacement == shaking.displacement);
-  CHECK(given.shaking->peak_velocity == shaking.peak_velocity);
-  REQUIRE(given.measures);
-  CHECK_FALSE(given.measures->region);
-  CHECK_FALSE(given.measures->cell);
-}
-
-TEST_CASE("defaults_of_packings_are_those_of_the_options") {
-  const PackCase given = parse_pack_case(
-      "schema = \"equidem/1\"\n[packing]\ngrains = 5\nbox = [0.2, 0.1]\n[packing.radii]\nsmallest = 0.01\n"
-      "largest = 0.01\n[springs]\nkN = 1e8\nkT = 5e7\n",
-      "case.toml", {});
-  const PackingOptions options;
-  CHECK(given.packing.method == options.method);
-  CHECK(given.packing.box.sides == options.box.sides);
-  CHECK(given.packing.shape.kind == options.shape.kind);
-  CHECK(given.packing.seed == options.seed);
-  CHECK(given.packing.overlap == options.overlap);
-  CHECK(given.packing.attempts == options.attempts);
-  CHECK(given.packing.as_dense_as_possible == options.as_dense_as_possible);
-  const SettlingOptions &settling = given.packing.settling, &usual = options.settling;
-  CHECK(settling.density == usual.density);
-  CHECK(settling.damping == usual.damping);
-  CHECK(settling.gravity == usual.gravity);
-  CHECK(settling.friction == usual.friction);
-  CHECK(settling.wall_friction == usual.wall_friction);
-  CHECK(settling.time_step == usual.time_step);
-  CHECK(settling.rest == usual.rest);
-  CHECK(settling.longest == usual.longest);
-  CHECK(settling.bond_share == usual.bond_share);
 }

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "equidem/casefile/grains/grain_case.hpp"
-#include "equidem/core/error.hpp"
+
+#include "support/refusal.hpp"
 
 namespace equidem::test {
 
@@ -81,13 +82,11 @@ inline GrainCase grains(const std::string& text, const std::vector<std::string>&
 
 /// The sentence of the error of a case, or of its automatic step; empty where it is accepted.
 inline std::string sentence_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    const GrainCase resolved = grains(text, overrides);
-    choose_grain_step(resolved);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return test::refusal_of([&] {
+           const GrainCase resolved = grains(text, overrides);
+           choose_grain_step(resolved);
+         })
+      .message;
 }
 
 }  // namespace equidem::test

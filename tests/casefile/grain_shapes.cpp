@@ -15,6 +15,7 @@
 #include "example.hpp"
 #include "grain_example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "wrong.hpp"
 
 using namespace equidem;
@@ -53,12 +54,7 @@ integrator = "velocity_verlet"
 )";
 
 std::string refused(const std::string& text) {
-  try {
-    parse_grain_case(text, "soil.toml", {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return test::refusal_of([&] { parse_grain_case(text, "soil.toml", {}); }).message;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
@@ -23,12 +24,7 @@ std::string block_of(const std::string& material) {
 
 std::string building_error_of(const Case& c) {
   const Assembly assembly = build_assembly(c);
-  try {
-    static_cast<void>(disc_density(c, assembly));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return test::refusal_of([&] { static_cast<void>(disc_density(c, assembly)); }).message;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "equidem/packing/measures.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace equidem;
@@ -124,14 +125,7 @@ TEST_CASE("contradictions_of_a_packing_are_told_with_their_line") {
   };
   for (const Wrong& wrong : all) {
     CAPTURE(wrong.overrides);
-    try {
-      parsed_packing(wrong.overrides);
-      FAIL_CHECK("accepted");
-    } catch (const Error& error) {
-      CHECK(error.kind() == ErrorKind::bad_input);
-      CHECK_THAT(error.what(), Catch::Contains(wrong.word));
-      CHECK_FALSE(error.where().empty());
-    }
+    CHECK_FALSE(test::check_refused([&] { parsed_packing(wrong.overrides); }, {wrong.word}).where.empty());
   }
 }
 
@@ -157,12 +151,7 @@ Assembly assembly_of(const std::vector<std::string>& overrides) {
 }
 
 std::string refusal(const std::vector<std::string>& overrides) {
-  try {
-    static_cast<void>(assembly_of(overrides));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_of([&] { static_cast<void>(assembly_of(overrides)); }).message;
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include "equidem/casefile/grains/grain_tables.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
 #include "equidem/casefile/study/study_case.hpp"
-#include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using casefile::RemovedKey;
@@ -38,12 +38,9 @@ std::string sentence_on(const RemovedKey& row) {
   const std::string text =
       "schema = \"equidem/1\"\n" + heading(table) + name + " = " + (value.empty() ? "1" : "\"" + value + "\"") + "\n";
   TomlValue root = casefile::parse_document(text, "a.toml", {});
-  try {
-    check_and_complete(root, spec, {.table = [](const auto&) {}, .key = [](const auto&, auto&) {}});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing is refused";
+  const test::Refusal refused = test::refusal_of(
+      [&] { check_and_complete(root, spec, {.table = [](const auto&) {}, .key = [](const auto&, auto&) {}}); });
+  return refused.message.empty() ? "nothing is refused" : refused.message;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "wrong.hpp"
 
 using namespace equidem;
@@ -128,12 +129,7 @@ TEST_CASE("a_table_may_lie_in_a_file_beside_the_case") {
     return parse_case(text, "a.toml", folder, {}).schedules[2].schedule;
   };
   const auto sentence_of = [&](const std::string& content) -> std::string {
-    try {
-      static_cast<void>(table_of(content));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return test::refusal_of([&] { static_cast<void>(table_of(content)); }).message;
   };
   const Schedule expected = parsed(motion_case).schedules[2].schedule;
 

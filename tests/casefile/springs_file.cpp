@@ -3,15 +3,16 @@
 /// Springs and their density in a file of their own, for every kind of case.
 #include "equidem/casefile/assembly/build.hpp"
 #include "equidem/casefile/assembly/case.hpp"
+#include "equidem/casefile/contact_tables.hpp"
 #include "equidem/casefile/grains/grain_case.hpp"
 #include "equidem/casefile/packing/pack_case.hpp"
-#include "equidem/casefile/contact_tables.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 
 #include "example.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace equidem;
@@ -29,12 +30,8 @@ struct SpringsFolder {
   /// Reads a case and returns the sentence of its error.
   template <class Read>
   std::string refusal(const Read& read) const {
-    try {
-      static_cast<void>(read());
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "accepted";
+    const test::Refusal refused = test::refusal_of([&] { static_cast<void>(read()); });
+    return refused.message.empty() ? "accepted" : refused.message;
   }
 };
 
@@ -56,12 +53,7 @@ TEST_CASE("a_springs_file_stands_in_for_the_springs") {
   const std::string text = changed(tension_case, "[springs]\nkN = 1.0e9\nkT = 0.5e9\n", "");
   const std::string with_file = changed(text, "title ", "springs = \"springs.toml\"\ntitle ");
   const auto sentence = [&]() -> std::string {
-    try {
-      static_cast<void>(parse_case(with_file, "a.toml", folder.path()));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return test::refusal_of([&] { static_cast<void>(parse_case(with_file, "a.toml", folder.path())); }).message;
   };
 
   write_file(folder / "springs.toml",

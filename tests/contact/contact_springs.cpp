@@ -11,7 +11,6 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/random.hpp"
 
 #include "support/catch.hpp"
 
@@ -99,28 +98,6 @@ TEST_CASE("contact_density_weighting_makes_fabric_isotropic_to_fourth_order") {
   CAPTURE(unweighted, weighted);
   CHECK(unweighted > 0.1);
   CHECK(weighted < 1e-5);
-}
-
-TEST_CASE("contact_density_of_random_angles_is_isotropic_within_their_scatter") {
-  Random random(11);
-  const std::vector<double> angles = anisotropic_angles(1000, 0.4, 0.3, 0.3, 1.1);
-  const int count = 20000;
-
-  std::vector<double> drawn(count);
-  for (double& angle : drawn) angle = angles[random.below(angles.size())];
-  const Assembly assembly = pairs_of_discs(drawn);
-  const double weighted = anisotropy(assembly, contact_springs(assembly, {1, 0}, SpringWeighting::contact_density));
-  CAPTURE(weighted);
-  CHECK(weighted < 3 / std::sqrt(count));
-}
-
-TEST_CASE("contact_density_integrates_to_the_coordination_number") {
-  const Assembly assembly = pairs_of_discs(anisotropic_angles(500, 0.5, 0.2, 0.2, 0.4));
-  const std::vector<double> psi = contact_density(assembly);
-  // The mean of 1/psi over contacts drawn with density psi/z is 2 pi/z.
-  double mean_inverse = 0;
-  for (const double p : psi) mean_inverse += 1 / p / static_cast<double>(psi.size());
-  CHECK(mean_inverse == Approx(2 * std::numbers::pi / assembly.coordination_number()).epsilon(1e-4));
 }
 
 TEST_CASE("contact_density_of_an_isotropic_assembly_is_z_over_2_pi_at_every_contact") {
@@ -283,11 +260,4 @@ TEST_CASE("a_contact_given_three_times_has_no_local_density") {
   const std::string message = message_of(assembly, {1, 1}, SpringWeighting::local_contact_density);
   CAPTURE(message);
   CHECK(contains(message, "three contacts in one direction at contact 0 (discs 0 and 1)"));
-}
-
-TEST_CASE("weightings_have_the_names_of_the_case_file") {
-  for (const std::string name : {"uniform", "contact_density", "local_contact_density", "voronoi"}) {
-    CHECK(to_string(enum_from<SpringWeighting>(name)) == name);
-  }
-  CHECK_THROWS_WITH(enum_from<SpringWeighting>("Voronoi"), Catch::Contains("\"local_contact_density\" or \"voronoi\""));
 }

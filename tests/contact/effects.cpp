@@ -44,10 +44,3 @@ TEST_CASE("every_inactive_effect_says_why") {
   const Effects all = derive_effects(ContactSprings({1.0, 0.5}), Rotation::from_scene);
   CHECK(all.report() == "active: normal springs, tangential springs, rotation.");
 }
-
-TEST_CASE("rotation_has_the_names_of_the_case_file") {
-  CHECK(enum_from<Rotation>("from_scene") == Rotation::from_scene);
-  CHECK(enum_from<Rotation>("free") == Rotation::free);
-  CHECK(enum_from<Rotation>("restrained") == Rotation::restrained);
-  CHECK_THROWS_WITH(enum_from<Rotation>("fixed"), Catch::Contains("'fixed'") && Catch::Contains("\"restrained\""));
-}

@@ -118,48 +118,6 @@ TEST_CASE("a_normal_handed_on_for_long_stays_a_unit_vector") {
   CHECK(worst < 2e-15);
 }
 
-TEST_CASE("nearly_round_ellipses_meet_like_discs") {
-  Random random(4);
-  for (const double excess : {0.0, 1e-12, 1e-6, 1e-3}) {
-    for (int k = 0; k < 200; ++k) {
-      const double r_i = random.uniform(0.5, 2), r_j = random.uniform(0.5, 2);
-      const Ellipse i{r_i * (1 + excess), r_i, random_direction(random)},
-          j{r_j * (1 + excess), r_j, random_direction(random)};
-      const Vec2 n = random_direction(random);
-      const double distance = random.uniform(0.5, 1.5) * (r_i + r_j);
-      const EllipseContact contact = contact_of_ellipses(i, j, distance * n);
-      const double tolerance = 1e-14 + 10 * excess;
-      CAPTURE(excess, contact.gap, distance, r_i, r_j);
-      CHECK(std::abs(contact.gap - (distance - r_i - r_j)) < tolerance);
-      CHECK(norm(contact.normal - n) < tolerance);
-      CHECK(norm(contact.arm_i - r_i * n) < tolerance);
-      CHECK(norm(contact.arm_j + r_j * n) < tolerance);
-    }
-  }
-}
-
-TEST_CASE("contact_of_ellipses_is_mirrored_and_moves_with_them") {
-  Random random(5);
-  for (int k = 0; k < 5000; ++k) {
-    const TwoEllipses pair = random_pair(random, 20);
-    const EllipseContact contact = pair.contact();
-    CAPTURE(k, contact.gap);
-    if (!same_bits(mirrored(contact), contact_of_ellipses(pair.j, pair.i, -pair.branch))) FAIL_CHECK("cold");
-    const Vec2 last = 0.8 * contact.normal + 0.6 * perpendicular(contact.normal);
-    if (!same_bits(mirrored(pair.contact(last)), contact_of_ellipses(pair.j, pair.i, -pair.branch, -last)))
-      FAIL_CHECK("warm");
-
-    const Vec2 turn = random_direction(random);
-    const auto turned = [&](Vec2 x) { return x.x * turn + x.y * perpendicular(turn); };
-    const EllipseContact moved = contact_of_ellipses({pair.i.a, pair.i.b, turned(pair.i.axis)},
-                                                     {pair.j.a, pair.j.b, turned(pair.j.axis)}, turned(pair.branch));
-    if (!(std::abs(moved.gap - contact.gap) < 1e-13 * pair.size())) FAIL_CHECK(moved.gap);
-    if (!(norm(moved.arm_i - moved.arm_j - turned(pair.branch) + moved.gap * moved.normal) < 1e-13 * pair.size())) {
-      FAIL_CHECK("arms, branch and gap do not close");
-    }
-  }
-}
-
 TEST_CASE("needles_of_any_size_and_aspect_are_found") {
   Random random(6);
   double worst = 0;

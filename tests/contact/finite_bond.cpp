@@ -127,21 +127,6 @@ TEST_CASE("discs_that_roll_on_one_another_cost_nothing") {
   }
 }
 
-TEST_CASE("forces_and_moments_on_two_bodies_balance") {
-  Random random(4);
-  for (const Levers& levers : all_levers) {
-    for (int k = 0; k < 20; ++k) {
-      const FiniteBond bond = bond_with(levers, random);
-      const Motion motion = plus(turned(bond, random.uniform(-9, 9)), random_motion(0.5, random));
-      const BondForces<Real> f = bond_forces(bond, motion);
-      const Real lx = bond.branch.x + motion.x, ly = bond.branch.y + motion.y;
-      CAPTURE(levers.name, k);
-      // About the centre of i: j, at l, feels the negative of the force.
-      CHECK(static_cast<double>(std::abs(f.moment_i + f.moment_j - (lx * f.y - ly * f.x))) < 1e-17);
-    }
-  }
-}
-
 TEST_CASE("small_motions_follow_the_linear_law_to_first_order") {
   Random random(5);
   for (const Levers& levers : all_levers) {

@@ -105,10 +105,3 @@ TEST_CASE("a_restitution_that_no_dashpot_gives_is_refused") {
   }
   CHECK_THROWS_WITH(damping_ratio_of(0, ContactEnd::at_zero_force), Catch::Contains("infinite dashpot"));
 }
-
-TEST_CASE("ends_of_contact_have_names") {
-  for (const ContactEnd end : {ContactEnd::at_zero_overlap, ContactEnd::at_zero_force}) {
-    CHECK(enum_from<ContactEnd>(to_string(end)) == end);
-  }
-  CHECK_THROWS_WITH(enum_from<ContactEnd>("never"), Catch::Contains("\"zero_overlap\" or \"zero_force\""));
-}

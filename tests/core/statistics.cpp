@@ -16,17 +16,6 @@ using namespace equidem;
 
 namespace {
 
-/// Simpson's rule for the integral of cos^power from 0 to `angle`.
-double integrate_cosine(double power, double angle) {
-  constexpr int pieces = 20000;
-  double sum = 0;
-  for (int k = 0; k <= pieces; ++k) {
-    const double weight = k == 0 || k == pieces ? 1 : k % 2 == 1 ? 4 : 2;
-    sum += weight * std::pow(std::cos(angle * k / pieces), power);
-  }
-  return sum * angle / (3 * pieces);
-}
-
 /// Box & Muller (1958).
 double draw_normal(Random& random) {
   const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
@@ -42,19 +31,6 @@ void check_share(std::int64_t successes, std::int64_t trials, double expected) {
 }
 
 }  // namespace
-
-TEST_CASE("students_t_stays_below_its_critical_value_with_the_confidence_asked_for") {
-  // The density of t = sqrt(nu) tan(angle) is proportional to cos^(nu-1)(angle): integrated without any series.
-  const std::int64_t nu = GENERATE(1, 2, 3, 4, 5, 9, 10, 29, 100, 1001);
-  for (const double confidence : {0.1, 0.5, 0.9, 0.95, 0.99, 0.999}) {
-    const double t = student_critical_value(confidence, nu);
-    const double angle = std::atan(t / std::sqrt(static_cast<double>(nu)));
-    const auto power = static_cast<double>(nu - 1);
-    const double share = integrate_cosine(power, angle) / integrate_cosine(power, std::numbers::pi / 2);
-    CAPTURE(nu, confidence, t, share);
-    CHECK(share == Approx(confidence).margin(1e-9));
-  }
-}
 
 TEST_CASE("critical_values_of_students_t_are_those_of_the_tables") {
   // Abramowitz & Stegun (1964), table 26.10.

@@ -10,6 +10,7 @@
 #include "equidem/core/text.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace equidem;
@@ -52,12 +53,8 @@ std::vector<std::vector<double>> numbers(const std::string& text) {
 }
 
 std::string refusal_of_numbers(const std::string& text) {
-  try {
-    numbers(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "(accepted)";
+  const test::Refusal refused = test::refusal_of([&] { numbers(text); });
+  return refused.message.empty() ? "(accepted)" : refused.message;
 }
 
 }  // namespace

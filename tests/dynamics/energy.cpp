@@ -54,11 +54,6 @@ double elastic_energy(const Scene& scene, const std::vector<DiscMotion>& u, Loop
   return energy;
 }
 
-/// Energy of the linear springs and of the synchronous velocities.
-double energy_now(const Scene& scene, const Simulation& run) {
-  return elastic_energy(scene, run.motions(), LoopKind::Motion::small) + kinetic_energy(scene, run.velocities());
-}
-
 }  // namespace
 
 TEST_CASE("the_balance_of_leapfrog_closes_to_rounding") {
@@ -169,40 +164,4 @@ TEST_CASE("the_balance_of_finite_motions_closes_to_the_order_of_the_integrator")
   CAPTURE(to_string(given.integrator), errors, order);
   CHECK(order > given.order - 0.35);
   CHECK(errors[0] < 0.02);
-}
-
-// A symplectic scheme: the energy sways by (omega h)² and does not drift; what rounding adds is a random walk.
-TEST_CASE("a_million_steps_of_leapfrog_at_half_the_critical_step_do_not_drift") {
-  const Assembly assembly = hexagonal_block(4);
-  const ContactSprings springs(SpringConstants{1, 0.4});
-  Scene scene(assembly, springs, inertia_of(assembly.radii, 1, Body::disc));
-  scene.supports = held_still(assembly, std::vector<Support>{{"bottom", 0.0, 0.0, {}}});
-  start_with(scene, random_motions(assembly.size(), 8, 0.1, 0.1));
-  const ThreadsFor one(1);
-  SimulationOptions options;
-  options.time_step = choose_time_step(scene, options, {.fraction = 0.5}).step;
-  Simulation run(scene, options);
-  constexpr int looks = 1000;
-  constexpr std::int64_t steps = 1000;
-  const double first = energy_now(scene, run);
-  std::vector<double> error;
-  double ledger = 0;
-  for (int k = 0; k < looks; ++k) {
-    run.advance(steps);
-    error.push_back(energy_now(scene, run) / first - 1);
-    ledger = std::max(ledger, std::abs(run.energy().error()) / first);
-  }
-  double mean = 0, sxx = 0, sxy = 0, left = 0, largest_error = 0;
-  for (const double e : error) mean += e / looks, largest_error = std::max(largest_error, std::abs(e));
-  const auto x = [&](int k) { return (k - 0.5 * (looks - 1)) / looks; };  // share of the run
-  for (int k = 0; k < looks; ++k) sxx += x(k) * x(k), sxy += x(k) * (error[k] - mean);
-  const double slope = sxy / sxx;
-  for (int k = 0; k < looks; ++k) left += std::pow(error[k] - mean - slope * x(k), 2);
-  const double uncertainty = std::sqrt(left / (looks - 2) / sxx);
-  INFO("relative drift over 1e6 steps " << slope << " +- " << uncertainty << ", largest error " << largest_error
-                                        << ", balance of the ledger " << ledger);
-  CHECK(std::abs(slope) < 4 * uncertainty);
-  CHECK(uncertainty < 0.01);
-  CHECK(largest_error < 0.25);
-  CHECK(ledger < 1e-11);
 }

@@ -178,27 +178,6 @@ TEST_CASE("the_loop_for_finite_motions_sums_the_forces_of_the_plain_law") {
   }
 }
 
-TEST_CASE("a_turn_of_the_whole_assembly_loads_no_contact") {
-  Random random(5);
-  for (const LoopScene& scene : loop_scenes()) {
-    if (scene.assembly.periodic() || scene.kind.springs == Springs::tangential) continue;
-    const bool rotation = scene.kind.springs == Springs::rotation;
-    LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants);
-    for (const double angle : {0.1, -3.0, 1000.0}) {
-      loop.set_motions(turned_motions(scene.assembly, angle, 0, rotation, random));
-      // Positions are known to 1e-16 of their size, whole turns to 1e-16 of theirs.
-      double reach = 0;
-      for (const Vec2 x : scene.assembly.centres) reach = std::max(reach, norm(x));
-      const double scale = 3e3 * (1 + std::abs(angle)) * reach * 70;
-      for (const DiscMotion& force : loop.forces()) {
-        CAPTURE(scene.name, angle, norm(force.u) / scale, force.theta / scale);
-        REQUIRE(norm(force.u) < 1e-15 * scale);
-        REQUIRE(std::abs(force.theta) < 1e-15 * scale * reach);
-      }
-    }
-  }
-}
-
 TEST_CASE("finite_motions_differ_from_small_ones_by_the_square_of_their_size") {
   Random random(23);
   for (const LoopScene& scene : loop_scenes()) {
@@ -227,38 +206,6 @@ TEST_CASE("finite_motions_differ_from_small_ones_by_the_square_of_their_size") {
       CAPTURE(scene.name, coarse, fine);
       // Where opposite bonds of a disc move alike their squares cancel, and the cube is left.
       CHECK(std::log2(coarse / fine) > 1.98);
-    }
-  }
-}
-
-TEST_CASE("contact_forces_of_finite_motions_keep_momentum_and_angular_momentum") {
-  Random random(29);
-  for (const LoopScene& scene : loop_scenes()) {
-    // Where rotation is restrained moments are taken up from outside.
-    if (scene.assembly.periodic() || scene.kind.springs == Springs::tangential) continue;
-    const bool rotation = scene.kind.springs == Springs::rotation;
-    LoopByHand loop(scene.assembly, scene.springs, {1, 1}, scene.kind, dashpot_constants);
-    for (const double size : {1e-3, 0.3}) {
-      const std::vector<DiscMotion> motions = turned_motions(scene.assembly, 1.2, size, rotation, random);
-      loop.set_motions(motions);
-      if (scene.kind.resistance == Resistance::dashpot) {
-        loop.set_dashpot_velocities(turned_motions(scene.assembly, 0, 1, rotation, random));
-      }
-      const std::vector<DiscMotion> forces = loop.forces();
-      Vec2 sum;
-      double moment = 0, size_of_sum = 0, size_of_moment = 0;
-      for (std::size_t d = 0; d < forces.size(); ++d) {
-        const Vec2 x = scene.assembly.centres[d] + motions[d].u;
-        sum += forces[d].u;
-        moment += cross(x, forces[d].u) + forces[d].theta;
-        size_of_sum += norm(forces[d].u);
-        size_of_moment += norm(x) * norm(forces[d].u) + std::abs(forces[d].theta);
-      }
-      // Forces on a disc are the differences of larger ones.
-      const double rounding = 1e-14 / std::min(1.0, size);
-      CAPTURE(scene.name, size, norm(sum) / size_of_sum, moment / size_of_moment);
-      CHECK(norm(sum) <= rounding * size_of_sum);
-      CHECK(std::abs(moment) <= rounding * size_of_moment);
     }
   }
 }

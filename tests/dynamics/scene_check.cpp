@@ -4,9 +4,9 @@
 #include "equidem/dynamics/scene_check.hpp"
 
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/core/error.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -17,12 +17,8 @@ TEST_CASE("contradictions_of_a_scene_are_refused_with_their_place") {
   good.supports = {{.group = "left", .ux = Schedule{.value = 0}, .uy = {}, .rotation = {}}};
   good.velocities = {{.group = "right", .velocity = {1, 0}, .spin = 1}};
   const auto refusal = [](const Scene& scene, Rotation rotation = Rotation::from_scene) -> std::string {
-    try {
-      check(scene, rotation, [](const std::string& path) { return "scene: " + path; });
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return {};
+    return test::refusal_of([&] { check(scene, rotation, [](const std::string& path) { return "scene: " + path; }); })
+        .message;
   };
   CHECK(refusal(good).empty());
   const auto changed = [&](auto&& change) {

@@ -78,19 +78,6 @@ TEST_CASE("instability_begins_at_the_predicted_critical_step") {
         chosen.critical * (1 + 1e-9));
 }
 
-TEST_CASE("stiffness_damping_has_the_closed_limit_of_the_highest_mode") {
-  const Assembly assembly = delaunay_block(60, 4);
-  const ContactSprings springs(SpringConstants{3, 1});
-  const Scene scene(assembly, springs, inertia_of(assembly.radii, 2, Body::disc));
-  const double beta = GENERATE(0.01, 0.3, 5.0);
-  const TimeStep chosen = choose_time_step(scene, {.damping = {.stiffness = beta}});
-  const double zeta = 0.5 * beta * chosen.omega_max;
-  CAPTURE(beta, zeta, chosen.critical);
-  CHECK(chosen.critical * chosen.omega_max ==
-        Approx(scheme_of(Integrator::leapfrog).stability_limit(zeta)).epsilon(1e-9));
-  CHECK(chosen.ratio() == Approx(0.8).epsilon(1e-14));
-}
-
 TEST_CASE("held_discs_and_walls_change_the_critical_step") {
   const Assembly assembly = hexagonal_lattice({.columns = 2, .rows = 2, .radius = 0.5});
   const ContactSprings springs(SpringConstants{1, 0});

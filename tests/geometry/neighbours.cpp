@@ -11,6 +11,7 @@
 #include "equidem/core/threads.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -114,31 +115,6 @@ TEST_CASE("the_rows_find_the_pairs_that_comparing_all_finds") {
   }
 }
 
-TEST_CASE("a_list_has_each_near_pair_once_in_order_and_no_other") {
-  Random random(8);
-  const std::vector<Circle> circles = scattered(random, 3000, 10, {}, {200, 200});
-  const double margin = 0.5;
-  const NeighbourList list = neighbours_within(circles, margin);
-  REQUIRE(list.begin.size() == circles.size() + 1);
-  REQUIRE(list.begin.front() == 0);
-  REQUIRE(list.begin.back() == static_cast<std::int64_t>(list.partner.size()));
-  std::size_t near = 0;
-  for (std::size_t i = 0; i < circles.size(); ++i) {
-    for (std::size_t j = i + 1; j < circles.size(); ++j) {
-      const double gap = norm(circles[j].centre - circles[i].centre) - circles[i].radius - circles[j].radius;
-      if (gap < margin) ++near;
-    }
-    for (auto k = list.begin[i]; k < list.begin[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(list.partner[static_cast<std::size_t>(k)]);
-      const double gap = norm(circles[j].centre - circles[i].centre) - circles[i].radius - circles[j].radius;
-      CAPTURE(i, j, gap);
-      CHECK(j > (k == list.begin[i] ? i : static_cast<std::size_t>(list.partner[static_cast<std::size_t>(k - 1)])));
-      CHECK(gap < margin);
-    }
-  }
-  CHECK(list.partner.size() == near);
-}
-
 TEST_CASE("touching_is_not_near_and_the_next_number_is") {
   const double above = std::nextafter(2.0, 3.0);
   const double below = std::nextafter(2.0, 1.0);
@@ -193,13 +169,7 @@ TEST_CASE("bodies_that_are_nowhere_are_refused") {
       std::vector<Circle> circles = lattice(4, 1, {});
       (what == 0 ? circles[7].centre.x : what == 1 ? circles[7].centre.y : circles[7].radius) = bad;
       CAPTURE(bad, what);
-      try {
-        (void)neighbours_within(circles, 0.1);
-        FAIL("not refused");
-      } catch (const Error& error) {
-        CHECK(error.kind() == ErrorKind::computation_failed);
-        CHECK_THAT(error.what(), Catch::Contains("body 7 "));
-      }
+      test::check_refused([&] { (void)neighbours_within(circles, 0.1); }, {"body 7 "}, ErrorKind::computation_failed);
     }
   }
 }

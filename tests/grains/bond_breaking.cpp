@@ -24,10 +24,6 @@ namespace {
 
 constexpr double never = 1e90;  // N/m
 constexpr double bond_kN = 400, bond_kT = 150, bond_kM = 12;
-const std::vector<Stepping> breaking_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
-                                               {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                               {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler}};
-
 /// Two equal discs of mass 1 that just touch, tied by springs of these strengths.
 GrainScene breaking_pair(NormalLaw law, double tension, double shear, double friction = 0) {
   constexpr double r = 0.5;
@@ -67,7 +63,7 @@ TEST_CASE("a_bond_breaks_by_tension_with_bending_or_by_shear_with_friction") {
 }
 
 TEST_CASE("a_pair_that_parts_breaks_at_its_strength_and_flies_on_with_the_rest_of_its_energy") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double speed = 0.2, strength = 2, omega = std::sqrt(2 * bond_kN);  // of the reduced mass 1/2
   GrainScene scene = breaking_pair(stepping.law, strength, never);
   scene.grains[0].velocity = {-speed / 2, 0};
@@ -92,7 +88,7 @@ TEST_CASE("a_pair_that_parts_breaks_at_its_strength_and_flies_on_with_the_rest_o
 }
 
 TEST_CASE("opposite_spins_break_a_bond_in_bending_and_equal_ones_in_shear") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double spin = 0.3, width = std::sqrt(12 * bond_kM / bond_kN), step = 1e-5;
   for (const bool bends : {true, false}) {
     const double strength = 0.5;
@@ -116,7 +112,7 @@ TEST_CASE("opposite_spins_break_a_bond_in_bending_and_equal_ones_in_shear") {
 }
 
 TEST_CASE("opposite_spins_of_an_unbreakable_bond_swing_with_its_bending_frequency") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   GrainScene scene = breaking_pair(stepping.law, never, never);
   scene.grains[0].spin = -1e-3;
   scene.grains[1].spin = 1e-3;
@@ -131,7 +127,7 @@ TEST_CASE("opposite_spins_of_an_unbreakable_bond_swing_with_its_bending_frequenc
 }
 
 TEST_CASE("discs_whose_bond_broke_under_compression_rebound_and_rub") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   std::vector<double> errors;
   for (const double step : {4e-5, 1e-5}) {
     GrainScene scene = breaking_pair(stepping.law, never, 0.4);
@@ -159,90 +155,56 @@ TEST_CASE("discs_whose_bond_broke_under_compression_rebound_and_rub") {
   CHECK(errors[1] < 0.5 * errors[0] + 1e-12);
 }
 
-TEST_CASE("a_run_with_breaks_goes_on_from_a_saved_state_with_the_same_bits") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
-  GrainBond like = all_of_a_bond;
-  like.bending_spring = 0.4;
-  GrainScene scene = chain_scene(stepping.law, 12, like);
-  scene.strengths = bond_strengths(scene, {.tension = 0.9, .shear = 0.7, .friction = 0.2, .weibull_modulus = 3.0});
-  GrainSimulation whole(scene, options_of(stepping, 1e-3)), half(scene, options_of(stepping, 1e-3));
-  whole.advance(3000);
-  half.advance(400);
-  const std::size_t broken = half.breaks().size();
-  GrainSimulation resumed(scene, options_of(stepping, 1e-3));
-  resumed.restore(half.save());
-  resumed.advance(2600);
-  CAPTURE(stepping.name(), broken, whole.breaks().size());
-  CHECK(broken > 0);
-  CHECK(whole.breaks().size() > broken);
-  REQUIRE(resumed.breaks().size() == whole.breaks().size());
-  for (std::size_t b = 0; b < whole.breaks().size(); ++b) {
-    CHECK(resumed.breaks()[b].step == whole.breaks()[b].step);
-    CHECK(resumed.breaks()[b].bond == whole.breaks()[b].bond);
-    CHECK(resumed.breaks()[b].energy == whole.breaks()[b].energy);
-  }
-  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-    CHECK(resumed.grains()[g].position == whole.grains()[g].position);
-    CHECK(resumed.grains()[g].velocity == whole.grains()[g].velocity);
-    CHECK(resumed.grains()[g].spin == whole.grains()[g].spin);
-  }
-  CHECK(resumed.energy().lost_breaking == whole.energy().lost_breaking);
-}
-
 TEST_CASE("the_energy_of_a_chain_that_breaks_and_collides_balances_to_the_error_of_the_step") {
   GrainBond like;
   like.normal_spring = 60;
   like.tangential_spring = 40;
   like.bending_spring = 1;
-  for (const Stepping stepping : {Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                  Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}}) {
-    std::vector<double> errors;
-    for (const double step : {1e-3, 2.5e-4}) {
-      GrainScene scene = chain_scene(stepping.law, 20, like);
-      scene.pairs[0].stiffness *= 5;
-      scene.pairs[0].friction = 0.4;
-      scene.pairs[0].tangential_ratio = 0.5;
-      scene.strengths = bond_strengths(scene, {.tension = 3.0, .shear = 2.0, .weibull_modulus = 4.0});
-      GrainSimulation simulation(scene, options_of(stepping, step));
-      simulation.advance(static_cast<std::int64_t>(std::llround(2 / step)));
-      const EnergyLedger ledger = simulation.energy();
-      CAPTURE(stepping.name(), step, simulation.breaks().size(), ledger.lost_breaking, ledger.error(), ledger.initial);
-      CHECK(simulation.breaks().size() > 4);
-      errors.push_back(std::abs(ledger.error()) / ledger.initial);
-    }
-    CAPTURE(errors);
-    CHECK(errors[0] < 5e-3);
-    CHECK(errors[1] < 0.6 * errors[0]);
+  const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+  std::vector<double> errors;
+  for (const double step : {1e-3, 2.5e-4}) {
+    GrainScene scene = chain_scene(stepping.law, 20, like);
+    scene.pairs[0].stiffness *= 5;
+    scene.pairs[0].friction = 0.4;
+    scene.pairs[0].tangential_ratio = 0.5;
+    scene.strengths = bond_strengths(scene, {.tension = 3.0, .shear = 2.0, .weibull_modulus = 4.0});
+    GrainSimulation simulation(scene, options_of(stepping, step));
+    simulation.advance(static_cast<std::int64_t>(std::llround(2 / step)));
+    const EnergyLedger ledger = simulation.energy();
+    CAPTURE(stepping.name(), step, simulation.breaks().size(), ledger.lost_breaking, ledger.error(), ledger.initial);
+    CHECK(simulation.breaks().size() > 4);
+    errors.push_back(std::abs(ledger.error()) / ledger.initial);
   }
+  CAPTURE(errors);
+  CHECK(errors[0] < 5e-3);
+  CHECK(errors[1] < 0.6 * errors[0]);
 }
 
 TEST_CASE("what_a_break_takes_from_the_balance_is_of_the_second_order_of_a_verlet_step") {
   // Whatever the step, the bond breaks in it under the same pull, at an offset of the same phase.
-  for (const Stepping stepping : {Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                  Stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}}) {
-    for (const bool dashpots : {false, true}) {
-      for (const bool sheared : {false, true}) {
-        std::vector<double> errors;
-        for (const double step : {1.6e-3, 4e-4, 1e-4}) {
-          GrainScene scene = breaking_pair(stepping.law, sheared ? never : 1.0, sheared ? 0.4 : never);
-          if (dashpots) {
-            scene.bonds[0].normal_dashpot = 0.3;
-            scene.bonds[0].tangential_dashpot = 0.2;
-            scene.bonds[0].rolling_dashpot = 0.01;
-          }
-          scene.grains[0].velocity = {sheared ? 0.3 : -0.1, 0};
-          scene.grains[1].velocity = {sheared ? -0.3 : 0.1, 0};
-          scene.grains[0].spin = scene.grains[1].spin = 0.3;
-          GrainSimulation simulation(scene, options_of(stepping, step));
-          REQUIRE(run_to_break(simulation, 100000).size() == 1);
-          simulation.advance(1);
-          const EnergyLedger ledger = simulation.energy();
-          errors.push_back(std::abs(ledger.error()) / ledger.initial);
+  const Stepping stepping{NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet};
+  for (const bool dashpots : {false, true}) {
+    for (const bool sheared : {false, true}) {
+      std::vector<double> errors;
+      for (const double step : {1.6e-3, 4e-4, 1e-4}) {
+        GrainScene scene = breaking_pair(stepping.law, sheared ? never : 1.0, sheared ? 0.4 : never);
+        if (dashpots) {
+          scene.bonds[0].normal_dashpot = 0.3;
+          scene.bonds[0].tangential_dashpot = 0.2;
+          scene.bonds[0].rolling_dashpot = 0.01;
         }
-        CAPTURE(stepping.name(), dashpots, sheared, errors);
-        CHECK(errors[0] < 1e-4);
-        CHECK(errors[2] < errors[0] / 100);  // 256 for the second order, 16 for the first
+        scene.grains[0].velocity = {sheared ? 0.3 : -0.1, 0};
+        scene.grains[1].velocity = {sheared ? -0.3 : 0.1, 0};
+        scene.grains[0].spin = scene.grains[1].spin = 0.3;
+        GrainSimulation simulation(scene, options_of(stepping, step));
+        REQUIRE(run_to_break(simulation, 100000).size() == 1);
+        simulation.advance(1);
+        const EnergyLedger ledger = simulation.energy();
+        errors.push_back(std::abs(ledger.error()) / ledger.initial);
       }
+      CAPTURE(stepping.name(), dashpots, sheared, errors);
+      CHECK(errors[0] < 1e-4);
+      CHECK(errors[2] < errors[0] / 100);  // 256 for the second order, 16 for the first
     }
   }
 }
@@ -328,7 +290,7 @@ TEST_CASE("slow_loading_breaks_the_bond_that_statics_names_at_its_load") {
 }
 
 TEST_CASE("discs_that_overlap_under_a_bond_part_with_the_energy_of_the_overlap_when_it_breaks") {
-  const Stepping stepping = GENERATE(from_range(breaking_steppings));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   GrainScene scene = breaking_pair(stepping.law, 1e-9, never);
   const double overlap = 1e-3;
   scene.grains[0].position.x += overlap / 2;

@@ -24,21 +24,6 @@ double energy_of(const GrainSimulation& simulation) {
   return ledger.kinetic + ledger.elastic();
 }
 
-/// Discs thrown about in a box, every column of it tied into a chain by all that bonds have.
-GrainScene busy_chains(NormalLaw law) {
-  constexpr int columns = 3, rows = 3;
-  GrainScene scene = busy_box(law, columns, rows, 31);
-  for (int i = 0; i < columns; ++i) {
-    for (int j = 0; j + 1 < rows; ++j) {
-      GrainBond bond = all_of_a_bond;
-      bond.i = static_cast<std::size_t>(i * rows + j);
-      bond.j = bond.i + 1;
-      scene.bonds.push_back(bond);
-    }
-  }
-  return scene;
-}
-
 }  // namespace
 
 TEST_CASE("just_below_the_limit_of_its_bonds_a_chain_is_stable_and_above_it_is_refused") {
@@ -123,77 +108,6 @@ TEST_CASE("the_ledger_of_bonds_closes_with_the_step") {
   CAPTURE(stepping.name(), errors, order);
   CHECK(errors.back() < 0.01);
   CHECK(order > (stepping.integrator == GrainIntegrator::semi_implicit_euler ? 0.85 : 1.9));
-}
-
-TEST_CASE("a_spinning_pair_drifts_apart_at_centrifugal_force_over_dashpot") {
-  const double spin = 0.5, dashpot = 50, time = 0.2;
-  GrainScene scene =
-      pair_scene(NormalLaw::linear_dashpot, {.j = 1, .normal_dashpot = dashpot, .tangential_dashpot = 50});
-  const double mass = 1 / (1 + 1 / 0.36), distance = 0.8;
-  scene.grains[0].velocity = {0, -spin * distance * mass};  // about the centre of mass
-  scene.grains[1].velocity = {0, spin * distance * mass / 0.36};
-  scene.grains[0].spin = scene.grains[1].spin = spin;
-  GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 1e-4));
-  simulation.advance(1000);
-  const double before = drifts_of(scene, simulation).distance.largest;
-  simulation.advance(2000);
-  const double rate = (drifts_of(scene, simulation).distance.largest - before) * distance / time;
-  const double expected = mass * spin * spin * distance / dashpot;
-  CAPTURE(rate, expected);
-  CHECK(rate == Approx(expected).epsilon(0.02));
-}
-
-TEST_CASE("the_order_of_bodies_and_of_bonds_changes_no_bit") {
-  const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  const GrainScene scene = busy_chains(stepping.law);
-  GrainScene other = scene;
-  const std::size_t last = scene.grains.size() - 1;
-  std::reverse(other.grains.begin(), other.grains.end());
-  std::reverse(other.bonds.begin(), other.bonds.end());
-  for (std::size_t b = 0; b < other.bonds.size(); ++b) {
-    GrainBond& bond = other.bonds[b];
-    bond.i = last - bond.i;
-    bond.j = last - bond.j;
-    if (b % 2 == 0) std::swap(bond.i, bond.j);
-  }
-  GrainSimulation one(scene, options_of(stepping, 0.005)), two(other, options_of(stepping, 0.005));
-  for (int k = 0; k < 30; ++k) {
-    one.advance(10);
-    two.advance(10);
-    const auto a = one.grains(), b = two.grains();
-    for (std::size_t g = 0; g <= last; ++g) {
-      CAPTURE(stepping.name(), k, g);
-      REQUIRE(a[g].position == b[last - g].position);
-      REQUIRE(a[g].velocity == b[last - g].velocity);
-      REQUIRE(a[g].spin == b[last - g].spin);
-    }
-    REQUIRE(one.energy().lost_bond == two.energy().lost_bond);
-    REQUIRE(one.energy().elastic_bond == two.energy().elastic_bond);
-  }
-  CHECK(one.counters().contacts > 5);
-}
-
-TEST_CASE("a_run_with_bonds_goes_on_with_the_same_bits") {
-  const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  const GrainScene scene = busy_chains(stepping.law);
-  const GrainOptions options = options_of(stepping, 0.01);
-  constexpr int last = 100;
-  GrainSimulation whole(scene, options);
-  std::vector<SavedState> states;
-  for (int k = 0; k < last; ++k) {
-    if (k % 7 == 0) states.push_back(whole.save());
-    whole.advance(1);
-  }
-  const Bits end = bits_of(whole);
-  for (std::size_t s = 0; s < states.size(); ++s) {
-    GrainSimulation resumed(scene, options);
-    resumed.restore(states[s]);
-    resumed.advance(last - 7 * static_cast<int>(s));
-    CAPTURE(stepping.name(), s);
-    REQUIRE(bits_of(resumed) == end);
-    CHECK(resumed.energy().lost_bond == whole.energy().lost_bond);
-    CHECK(resumed.energy().elastic_bond == whole.energy().elastic_bond);
-  }
 }
 
 TEST_CASE("bonds_that_make_no_sense_are_refused") {

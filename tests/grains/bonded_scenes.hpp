@@ -43,10 +43,8 @@ inline BondDrifts drifts_of(const GrainScene& scene, const GrainSimulation& simu
 }
 
 /// Those that know bonds.
-inline const std::vector<Stepping> bonding_steppings{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                     {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                     {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                     {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler}};
+inline const std::vector<Stepping> bonding_steppings{all_steppings[0], all_steppings[1], all_steppings[2],
+                                                     all_steppings[5]};
 
 /// Every dashpot and spring.
 inline constexpr GrainBond all_of_a_bond{

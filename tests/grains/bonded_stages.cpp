@@ -8,26 +8,14 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "grains/bonded_scenes.hpp"
+#include "grains/resuming.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-const std::vector<Stepping> steppings_of_bonded_stages{
-    {NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
-    {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-    {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler}};
-
-/// A chain whose bonds break one after the other.
-GrainScene breaking_chain(NormalLaw law) {
-  GrainBond like = all_of_a_bond;
-  like.bending_spring = 0.4;
-  GrainScene scene = chain_scene(law, 12, like);
-  scene.strengths = bond_strengths(scene, {.tension = 0.9, .shear = 0.7, .friction = 0.2, .weibull_modulus = 3.0});
-  return scene;
-}
 
 /// Columns of discs between a floor, two walls and a lid that presses them with 20 N.
 /// \param aside weight of a disc to the right: contacts then carry tangential forces
@@ -53,39 +41,7 @@ StageBonds stiff_bonds() {
           .like = {.normal_dashpot = 5, .normal_spring = 3000, .tangential_spring = 1500, .bending_spring = 100}};
 }
 
-void go_to(StagedSimulation& simulation, std::int64_t step) {
-  while (simulation.step() < step && !simulation.over()) simulation.advance(step - simulation.step());
-}
-
 }  // namespace
-
-TEST_CASE("bonds_keep_their_stretch_their_strength_and_their_breaks_over_a_stage_to_the_last_bit") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
-  const GrainScene scene = breaking_chain(stepping.law);
-  const GrainOptions options = options_of(stepping, 1e-3);
-  GrainSimulation whole(scene, options);
-  StagedSimulation staged({{.name = "a", .scene = scene, .steps = 400}, {.name = "b", .scene = scene, .steps = 2600}},
-                          options);
-  go_to(staged, 400);
-  const std::size_t early = staged.present().breaks().size();
-  go_to(staged, 3000);
-  whole.advance(3000);
-  CAPTURE(stepping.name(), early, whole.breaks().size());
-  CHECK(early > 0);
-  CHECK(whole.breaks().size() > early);
-  REQUIRE(staged.present().breaks().size() == whole.breaks().size());
-  for (std::size_t b = 0; b < whole.breaks().size(); ++b) {
-    CHECK(staged.present().breaks()[b].bond == whole.breaks()[b].bond);
-    CHECK(staged.present().breaks()[b].step == whole.breaks()[b].step);
-  }
-  CHECK(bits_of(staged.present()).words.size() == bits_of(whole).words.size());
-  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-    CHECK(staged.present().grains()[g].position == whole.grains()[g].position);
-    CHECK(staged.present().grains()[g].velocity == whole.grains()[g].velocity);
-    CHECK(staged.present().grains()[g].spin == whole.grains()[g].spin);
-  }
-  CHECK(staged.energy().work_of_stages == 0);
-}
 
 /// Force of i on j in each pair of discs, and moment of all contacts and bonds on each disc.
 struct LoadsOnDiscs {
@@ -110,7 +66,7 @@ struct LoadsOnDiscs {
 };
 
 TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_and_moments") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const GrainScene scene = pressed_columns(stepping.law, 0.8);
   GrainStage press{.name = "press", .scene = scene, .steps = 150000};
   GrainStage bond = press;
@@ -118,10 +74,10 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
   bond.steps = 400;
   bond.bonds = stiff_bonds();
   StagedSimulation staged({press, bond}, options_of(stepping, 2e-4));
-  go_to(staged, press.steps);
+  run_to(staged, press.steps);
   const LoadsOnDiscs before(staged.present());
   const double kinetic = staged.energy().kinetic;
-  go_to(staged, press.steps + 1);
+  run_to(staged, press.steps + 1);
   const LoadsOnDiscs after(staged.present());
   double off = 0, off_moment = 0;
   for (const auto& [pair, force] : after.forces)
@@ -137,7 +93,7 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
   CHECK(off < 1e-5 * before.largest_normal);
   CHECK(off < 1e-4 * before.largest_tangential);
   CHECK(off_moment < 1e-4 * before.largest_moment);
-  go_to(staged, press.steps + 400);
+  run_to(staged, press.steps + 400);
   const EnergyLedger ledger = staged.energy();
   CAPTURE(kinetic, ledger.kinetic, ledger.elastic(), ledger.error());
   CHECK(ledger.kinetic < 1e-9 * ledger.elastic());
@@ -146,7 +102,7 @@ TEST_CASE("discs_that_are_bonded_under_load_stay_at_rest_and_keep_their_forces_a
 }
 
 TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   CAPTURE(stepping.name());
   GrainScene scene = busy_box(stepping.law, 4, 3, 5);
   for (Wall& wall : scene.walls) wall.move_x = wall.move_y = {};
@@ -162,36 +118,11 @@ TEST_CASE("stages_with_bonds_go_on_from_any_saved_state_with_the_same_bits") {
   tied.bonds->like.normal_dashpot = 1;
   open.name = "open";
   open.scene.walls.pop_back();
-  const std::vector<GrainStage> stages{first, tied, open};
-  const GrainOptions options = options_of(stepping, 4e-3);
-  StagedSimulation whole(stages, options);
-  std::vector<SavedState> states;
-  std::vector<Bits> seen;
-  while (!whole.over()) {
-    if (whole.step() % 7 == 0 || whole.milestone() >= 0) {
-      states.push_back(whole.save());
-      seen.push_back(bits_and_loads_of(whole.present()));
-    }
-    whole.advance(1);
-  }
-  const Bits end = bits_and_loads_of(whole.present());
+  const StagedSimulation whole = check_resuming({first, tied, open}, options_of(stepping, 4e-3), 7);
   CAPTURE(whole.bonds().size(), whole.present().breaks().size());
   CHECK(whole.bonds().size() > 5);
   CHECK(whole.present().breaks().size() > 0);
   CHECK(whole.present().breaks().size() < whole.bonds().size());
-  states.push_back(whole.save());
-  seen.push_back(end);
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    CAPTURE(states[k].step);
-    StagedSimulation resumed(stages, options);
-    resumed.restore(states[k]);
-    CHECK(bits_and_loads_of(resumed.present()) == seen[k]);
-    go_to(resumed, 180);
-    CHECK(bits_and_loads_of(resumed.present()) == end);
-    CHECK(resumed.energy().error() == whole.energy().error());
-    CHECK(resumed.reports()[1].bonds_made == whole.reports()[1].bonds_made);
-    CHECK(resumed.strengths()->tension == whole.strengths()->tension);
-  }
 }
 
 TEST_CASE("grains_tied_by_dashpots_are_as_many_bodies_as_groups_of_bonds_that_are_left") {
@@ -215,7 +146,7 @@ TEST_CASE("grains_tied_by_dashpots_are_as_many_bodies_as_groups_of_bonds_that_ar
 
 TEST_CASE("a_disc_that_only_spins_between_plates_that_rub_is_not_at_rest") {
   // The forces of the plates cancel; their moments do not.
-  const Stepping stepping = GENERATE(from_range(steppings_of_bonded_stages));
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double friction = 0.3, pressed = 1e-3;
   PairProperties pair = one_second(stepping.law, 1);
   pair.stiffness *= 1000;
@@ -247,16 +178,10 @@ TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shap
   bond.bonds = stiff_bonds();
   bond.bonds->like.normal_spring = 1;
   StagedSimulation soft({press, bond}, options);
-  go_to(soft, press.steps);
+  run_to(soft, press.steps);
   const Bits then = bits_of(soft.present());
   for (int k = 0; k < 2; ++k) {
-    try {
-      soft.advance(1);
-      FAIL("it went on");
-    } catch (const Error& error) {
-      CHECK(error.where() == "stage 'bond'");
-      CHECK_THAT(error.what(), Catch::Contains("too soft"));
-    }
+    CHECK(check_refused([&] { soft.advance(1); }, {"too soft"}).where == "stage 'bond'");
     CHECK(bits_of(soft.present()) == then);  // the state is that before the stage
     CHECK(soft.reports().size() == 1);
     CHECK(soft.milestone() == press.steps);
@@ -265,12 +190,7 @@ TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shap
     std::vector<GrainStage> stages{press, bond};
     stages[1].bonds = stiff_bonds();
     change(stages);
-    try {
-      StagedSimulation(stages, options_of(law, 2e-4));
-      FAIL_CHECK("it was accepted: " << word);
-    } catch (const Error& error) {
-      CHECK_THAT(error.what(), Catch::Contains(word));
-    }
+    check_refused([&] { StagedSimulation(stages, options_of(law, 2e-4)); }, {word});
   };
   refused([](std::vector<GrainStage>& s) { s[0].scene.grains[0].short_half_axis = 0.4; }, "no disc");
   refused([](std::vector<GrainStage>& s) { s[1].bonds->like = {}; }, "bond");
@@ -293,14 +213,8 @@ TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
   bond.bonds = stiff_bonds();
   bond.bonds->like.normal_spring = 1e7;
   StagedSimulation staged({press, bond}, options);
-  go_to(staged, press.steps);
-  try {
-    staged.advance(1);
-    FAIL("it went on");
-  } catch (const Error& error) {
-    CHECK(error.where() == "stage 'bond'");
-    CHECK_THAT(error.what(), Catch::Contains("limit"));
-  }
+  run_to(staged, press.steps);
+  CHECK(check_refused([&] { staged.advance(1); }, {"limit"}).where == "stage 'bond'");
   const double likely = likely_step_limit(press.scene.grains, *bond.bonds, GrainOptions::BondStep::exact);
   CAPTURE(likely);
   CHECK(likely < options.time_step);

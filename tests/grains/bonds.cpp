@@ -71,28 +71,6 @@ TEST_CASE("explicit_dashpots_decay_with_an_error_of_first_order") {
   CHECK(order == Approx(1).margin(0.1));
 }
 
-TEST_CASE("a_pair_that_shears_stops_as_the_exponential_of_its_tangential_mass") {
-  const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  const double c = 3, speed = 1e-7;  // so slow that the line of centres does not turn
-  GrainScene scene = pair_scene(stepping.law, {.j = 1, .normal_dashpot = 1, .tangential_dashpot = c});
-  scene.grains[0].velocity = {0, speed};
-  scene.grains[1].spin = speed;
-  const auto slip = [](const GrainSimulation& simulation) {
-    const auto g = simulation.grains();
-    return g[1].velocity.y - g[0].velocity.y - g[0].radius * g[0].spin - g[1].radius * g[1].spin;
-  };
-  const Grain &i = scene.grains[0], &j = scene.grains[1];
-  const double inverse = bond_inverse_masses({{1, 0}, i.radius, j.radius}, {1 / i.inertia.mass, 1 / i.inertia.moment},
-                                             {1 / j.inertia.mass, 1 / j.inertia.moment})
-                             .tangential;
-  const double time = 1.5 / (c * inverse);
-  GrainSimulation simulation(scene, options_of(stepping, time / 100));
-  const double before = slip(simulation);
-  simulation.advance(100);
-  CAPTURE(stepping.name(), before, slip(simulation));
-  CHECK(slip(simulation) / before == Approx(std::exp(-1.5)).epsilon(2e-4));
-}
-
 namespace {
 
 /// Discs that move at random, each bonded at random to some of the others by springs and dashpots of any size.
@@ -341,23 +319,6 @@ TEST_CASE("bonded_discs_do_not_collide_with_each_other_but_with_all_others") {
   CAPTURE(stepping.name(), hit.grains()[0].velocity.x);
   CHECK(hit.counters().contacts > 0);
   CHECK(hit.grains()[0].velocity.x < 0);  // what hit its partner moves it
-}
-
-TEST_CASE("springs_bring_a_bond_back_to_its_start") {
-  const Stepping stepping = GENERATE(from_range(bonding_steppings));
-  GrainScene scene = parting_pair(stepping.law, 2, 0.1);
-  scene.bonds[0].normal_spring = scene.bonds[0].tangential_spring = 20;
-  scene.grains[0].spin = 0.2;
-  GrainSimulation simulation(scene, options_of(stepping, 0.005));
-  simulation.advance(40);
-  const BondDrifts stretched = drifts_of(scene, simulation);
-  simulation.advance(2000);
-  const BondDrifts report = drifts_of(scene, simulation);
-  CAPTURE(stepping.name(), stretched.distance.largest, report.distance.largest, report.slip.largest);
-  CHECK(stretched.distance.largest > 5e-3);
-  CHECK(stretched.slip.largest > 1e-3);
-  CHECK(report.distance.largest < 1e-4);  // what is left carries the turning pair
-  CHECK(report.slip.largest < 1e-8);
 }
 
 TEST_CASE("bonds_of_a_scene_are_among_its_effects") {

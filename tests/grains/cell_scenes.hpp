@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bodies in periodic cells, and the plain search over all images.
+/// Bodies in periodic cells.
 #pragma once
 
-#include <set>
-#include <tuple>
 #include <utility>
-#include <vector>
 
 #include "grains/scenes.hpp"
 
@@ -41,23 +38,6 @@ inline Vec2 momentum_in_cell(const GrainSimulation& simulation) {
   Vec2 sum;
   for (const Grain& grain : simulation.grains()) sum += grain.inertia.mass * grain.velocity;
   return sum;
-}
-
-/// Pairs of discs that overlap, and by how much, by comparison of all discs with all images.
-using Overlaps = std::vector<std::tuple<std::int32_t, std::int32_t, double>>;
-inline Overlaps overlaps_by_brute_force(const std::vector<Grain>& grains, const CellState& cell, double least) {
-  constexpr int images = 4;  // shear and places outside the cell move the nearest image by some periods
-  Overlaps found;
-  for (std::size_t i = 0; i < grains.size(); ++i)
-    for (std::size_t j = i + 1; j < grains.size(); ++j)
-      for (int a = -images; a <= images; ++a)
-        for (int b = -images; b <= images; ++b) {
-          const Vec2 shift{a * cell.width + b * cell.shift, b * cell.height};
-          const double distance = norm(grains[j].position + shift - grains[i].position);
-          const double overlap = grains[i].radius + grains[j].radius - distance;
-          if (overlap > least) found.emplace_back(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j), overlap);
-        }
-  return found;
 }
 
 /// The least distance of two places over all images.

@@ -170,34 +170,6 @@ TEST_CASE("unions_of_discs_that_touch_nest_coincide_or_cross_in_one_point_have_t
   }
 }
 
-TEST_CASE("discs_in_a_row_that_touch_have_the_sum_of_their_areas_wherever_they_lie") {
-  for (const double angle : {0.0, 0.3, 1.1, 2.0}) {
-    std::vector<Clump::Disc> discs;
-    for (const double x : {-0.04, 0.0, 0.04}) discs.push_back({turned({x, 0}, angle) + Vec2{angle, -angle}, 0.02});
-    const DiscUnion whole = union_of(discs);
-    const double area = 3 * std::numbers::pi * 0.02 * 0.02;
-    CAPTURE(angle);
-    CHECK(whole.area == Approx(area).epsilon(1e-14));
-    CHECK(norm(whole.centre - Vec2{angle, -angle}) < 1e-15);
-    CHECK(whole.polar_moment == Approx(area * (0.5 * 0.02 * 0.02 + 2.0 / 3 * 0.04 * 0.04)).epsilon(1e-13));
-  }
-}
-
-TEST_CASE("unions_of_discs_apart_have_centre_and_moment_by_the_theorem_of_parallel_axes") {
-  const std::vector<Clump::Disc> discs = {{{100, 50}, 0.5}, {{101.5, 50.3}, 1}};
-  const double pi = std::numbers::pi, a = pi * 0.25, b = pi;
-  const DiscUnion whole = union_of(discs);
-  CHECK(whole.area == Approx(a + b).epsilon(1e-13));
-  const Vec2 centre = (a * discs[0].offset + b * discs[1].offset) / (a + b);
-  CHECK(norm(whole.centre - centre) < 1e-12);
-  double polar = 0;
-  for (const Clump::Disc& disc : discs) {
-    const Vec2 way = disc.offset - centre;
-    polar += pi * disc.radius * disc.radius * (0.5 * disc.radius * disc.radius + dot(way, way));
-  }
-  CHECK(whole.polar_moment == Approx(polar).epsilon(1e-11));
-}
-
 TEST_CASE("regions_that_tile_the_plane_share_every_body_between_them") {
   const std::vector<Clump> clumps = {{{{{-0.2, 0}, 0.3}, {{0.3, 0.1}, 0.25}}}};
   Random random(8);

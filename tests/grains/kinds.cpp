@@ -12,8 +12,10 @@
 #include "equidem/grains/scene/pair_options.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
+using namespace equidem::test;
 
 namespace {
 
@@ -44,12 +46,8 @@ PairOptions contact(StiffnessOptions stiffness, double restitution = 0.8) {
 
 std::string option_at_fault(const CollisionOptions& options, NormalLaw law = NormalLaw::linear_dashpot) {
   GrainScene scene = three_balls();
-  try {
-    set_kinds(scene, {}, options, law);
-  } catch (const Error& error) {
-    return error.where();
-  }
-  return "none";
+  const Refusal refusal = refusal_of([&] { set_kinds(scene, {}, options, law); });
+  return refusal.message.empty() ? "none" : refusal.where;
 }
 
 }  // namespace
@@ -116,12 +114,8 @@ TEST_CASE("a_step_that_cannot_be_chosen_is_asked_for") {
   const auto place_of_error = [](StiffnessOptions stiffness, NormalLaw law, const GrainStepOptions& wanted = {}) {
     GrainScene scene = three_balls();
     const ContactTable contacts = set_kinds(scene, {}, {.body = Body::sphere, .bodies = contact(stiffness)}, law);
-    try {
-      choose_time_step(scene, contacts, {.law = law}, wanted);
-    } catch (const Error& error) {
-      return error.where();
-    }
-    return std::string("none");
+    const Refusal refusal = refusal_of([&] { choose_time_step(scene, contacts, {.law = law}, wanted); });
+    return refusal.message.empty() ? "none" : refusal.where;
   };
   CHECK(place_of_error(SpringStiffness{1e5}, NormalLaw::linear_dashpot) == "none");
   CHECK(place_of_error(SpringStiffness{1e5}, NormalLaw::linear_dashpot, {.time_step = 1}) == "time_step");

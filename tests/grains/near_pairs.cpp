@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The packed loop over pairs of discs.
+/// The packed loops over pairs of discs and of parts.
 #include "grains/resuming.hpp"
 #include "grains/scenes.hpp"
+#include "grains/shapes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
-TEST_CASE("steps_made_together_are_steps_made_one_at_a_time") {
-  const Stepping stepping = GENERATE(from_range(all_steppings));
-  const GrainScene scene = busy_box(stepping.law, 4, 4, 32);
-  GrainSimulation together(scene, options_of(stepping, 0.005)), single(scene, options_of(stepping, 0.005));
-  for (const int steps : {1, 7, 100, 300}) {
-    together.advance(steps);
-    for (int k = 0; k < steps; ++k) single.advance(1);
-    CAPTURE(stepping.name(), steps);
-    CHECK(bits_of(together) == bits_of(single));
-  }
-  CHECK(together.counters().contacts > 20);
-}
-
 // Any number beside zero grows there: a column is as unstable as a rod on its tip.
 TEST_CASE("discs_above_one_another_stay_so_to_the_last_bit") {
-  const Stepping stepping =
-      GENERATE(from_range(std::vector<Stepping>(all_steppings.begin(), all_steppings.begin() + 4)));
+  const Stepping stepping = GENERATE(from_range(force_steppings));
   const double friction = GENERATE(0.0, 0.4);
   std::vector<Grain> column;
   for (int k = 0; k < 20; ++k) column.push_back(ball({0, 1.0 + 1.99 * k}, 1));
@@ -43,4 +30,37 @@ TEST_CASE("discs_above_one_another_stay_so_to_the_last_bit") {
     CHECK(grain.velocity.x == 0);
     CHECK(grain.spin == 0);
   }
+}
+
+TEST_CASE("contacts_of_needles_are_those_that_brute_force_finds") {
+  const double margin = GENERATE(0.0, 1e-6, 2.0);
+  GrainOptions options = options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, 3e-4);
+  options.margin = margin;
+  GrainSimulation simulation(flying_needles(24, 31), options);
+  std::size_t found = 0;
+  for (int k = 0; k < 400; ++k) {
+    simulation.advance(20);
+    std::vector<std::pair<int, int>> expected, listed;
+    const std::vector<Grain> grains = simulation.grains();
+    const auto shape = [](const Grain& grain) {
+      return Ellipse{grain.radius, grain.short_half_axis, axis_at(grain.angle)};
+    };
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      for (std::size_t j = i + 1; j < grains.size(); ++j) {
+        const Vec2 branch = grains[j].position - grains[i].position;
+        if (contact_of_ellipses(shape(grains[i]), shape(grains[j]), branch).gap < 0) expected.emplace_back(i, j);
+      }
+    }
+    for (const GrainContact& contact : simulation.contacts()) {
+      if (contact.j >= 0) listed.emplace_back(std::minmax(contact.i, contact.j));
+    }
+    std::sort(listed.begin(), listed.end());
+    CAPTURE(margin, k, expected.size(), listed.size());
+    REQUIRE(listed == expected);
+    found += expected.size();
+  }
+  CAPTURE(margin, simulation.counters().contacts, simulation.counters().rebuilds);
+  CHECK(found > 20);
+  CHECK(simulation.counters().contacts > 50);
+  CHECK(simulation.counters().rebuilds > 2);
 }

@@ -41,6 +41,15 @@ inline const std::vector<Stepping> all_steppings{{NormalLaw::linear_dashpot, Gra
                                                  {NormalLaw::five_case_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::energy_map, GrainIntegrator::semi_implicit_euler},
                                                  {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
+/// Laws that give forces, with both integrators: of shapes, cells and vectors.
+inline const std::vector<Stepping> force_steppings(all_steppings.begin(), all_steppings.begin() + 4);
+/// Of bonds that break.
+inline const std::vector<Stepping> spring_bond_steppings(all_steppings.begin(), all_steppings.begin() + 3);
+/// Of walls that follow a force.
+inline const std::vector<Stepping> servo_steppings{all_steppings[0], all_steppings[1], all_steppings[2],
+                                                   all_steppings[6]};
+inline const std::vector<Stepping> stage_steppings{all_steppings[0], all_steppings[1], all_steppings[3],
+                                                   all_steppings[5], all_steppings[6]};
 /// Those that keep the balance of one contact to round-off.
 inline const std::vector<NormalLaw> exact_laws{NormalLaw::five_case_map, NormalLaw::energy_map, NormalLaw::exact_flow};
 
@@ -59,6 +68,13 @@ inline Wall line(std::string name, Vec2 point, Vec2 normal) {
   wall.name = std::move(name);
   wall.point = point;
   wall.normal = normal;
+  return wall;
+}
+
+inline Wall segment(std::string name, Vec2 from, Vec2 to) {
+  Wall wall = line(std::move(name), from, {0, 1});
+  wall.shape = Wall::Shape::segment;
+  wall.end = to;
   return wall;
 }
 

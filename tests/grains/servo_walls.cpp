@@ -3,33 +3,14 @@
 /// Walls that follow a force or a stress.
 #include "equidem/grains/stages/staged_simulation.hpp"
 
-#include "grains/resuming.hpp"
 #include "grains/scenes.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-const std::vector<Stepping> steppings_of_servos{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
-
-/// Run what throws an Error whose text has all the words.
-template <class Action>
-void check_servo_error(const Action& action, const std::vector<std::string>& words) {
-  try {
-    action();
-    FAIL("nothing was refused");
-  } catch (const Error& error) {
-    for (const std::string& word : words) {
-      CAPTURE(error.what(), word);
-      CHECK(std::string(error.what()).find(word) != std::string::npos);
-    }
-  }
-}
 
 Wall pushing(Wall wall, double force, double max_speed = 0.1) {
   wall.servo = Servo{.direction = wall.normal, .wanted = {.value = force}, .max_speed = max_speed};
@@ -54,7 +35,7 @@ GrainScene pressed_box(NormalLaw law, double force, double friction = 0) {
 }  // namespace
 
 TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
   const GrainScene scene = pressed_box(stepping.law, 20, 0.3);
   GrainSimulation simulation(scene, options_of(stepping, 2e-4));
@@ -76,7 +57,7 @@ TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
 }
 
 TEST_CASE("walls_tied_as_mirrors_move_alike_and_the_mean_of_their_forces_is_held") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
   GrainScene scene = pressed_box(stepping.law, 20);
   scene.walls[0].servo = Servo{.direction = {0, 1}, .wanted = {.value = 10}, .max_speed = 0.1, .mirror = "lid"};
@@ -96,7 +77,7 @@ TEST_CASE("a_stress_acts_on_the_present_length_between_neighbours") {
   servo.is_stress = true;
   servo.between = {"left", "right"};
   scene.walls[2].move_x = {Schedule::Kind::ramp, 2.0, 10, 20};
-  GrainSimulation simulation(scene, options_of(steppings_of_servos[1], 2e-4));
+  GrainSimulation simulation(scene, options_of(servo_steppings[1], 2e-4));
   simulation.advance(10000);
   CHECK(simulation.servos().front().wanted == 80);
   simulation.advance(100000);
@@ -141,7 +122,7 @@ TEST_CASE("a_servo_wall_runs_past_its_force_by_less_than_the_push_of_a_disc_at_i
   const double push = speed * std::sqrt(scene.pairs[0].stiffness * column[0].inertia.mass);
   scene.walls[1] = pushing(scene.walls[1], force, speed);
   scene.walls[1].servo->relaxation = relaxation;
-  GrainSimulation simulation(scene, options_of(steppings_of_servos[1], 1.5e-3));
+  GrainSimulation simulation(scene, options_of(servo_steppings[1], 1.5e-3));
   simulation.advance(100000);
   const ServoReport report = simulation.servos().front();
   CAPTURE(relaxation, discs, report.overshoot, report.peak, push / force, report.mean_error, report.force);
@@ -152,7 +133,7 @@ TEST_CASE("a_servo_wall_runs_past_its_force_by_less_than_the_push_of_a_disc_at_i
 }
 
 TEST_CASE("a_wall_that_chooses_its_speed_is_pushed_by_the_heaviest_disc_by_a_twentieth_of_its_force") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   const double force = GENERATE(20.0, 5.0);
   GrainScene scene = scene_of({ball({0.5, 0.55}, 0.5, {}, 2), ball({3, 0.55}, 0.5)},
                               {pushing(line("lid", {0, 1.3}, {0, -1}), force)}, one_second(stepping.law, 1));
@@ -184,7 +165,7 @@ TEST_CASE("a_servo_wall_follows_bodies_that_give_way_without_a_lasting_error") {
   scene.walls[0].move_y = {Schedule::Kind::table, 0, 0, 0, 0, {0, 20, 220}, {0, 0, -200 * away}};
   scene.walls[1] = pushing(scene.walls[1], force, 0.1);
   scene.walls[1].servo->relaxation = relaxation;
-  GrainSimulation simulation(scene, options_of(steppings_of_servos[1], step));
+  GrainSimulation simulation(scene, options_of(servo_steppings[1], step));
   simulation.advance(100000);
   // by the force alone a wall would lag behind by k dt v/relaxation
   const double lag = scene.pairs[0].stiffness * step * away / relaxation;
@@ -192,21 +173,12 @@ TEST_CASE("a_servo_wall_follows_bodies_that_give_way_without_a_lasting_error") {
   CHECK(std::abs(simulation.servos().front().force - force) < 0.01 * lag);
 }
 
-TEST_CASE("servo_walls_go_on_from_a_saved_state_with_the_same_bits") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
-  CAPTURE(stepping.name());
-  GrainScene scene = busy_box(stepping.law, 3, 3, 11);
-  scene.walls[3] = pushing(scene.walls[3], 10, 1);
-  scene.walls[1].servo = Servo{.direction = {1, 0}, .wanted = {.value = 5}, .max_speed = 0.3, .mirror = "right"};
-  check_resuming(scene, options_of(stepping, 5e-3), 150);
-}
-
 TEST_CASE("a_servo_wall_that_meets_no_body_is_an_error_and_no_endless_way") {
   GrainScene scene = pressed_box(NormalLaw::linear_dashpot, 20);
   scene.walls[3].normal = {0, -1};
   scene.walls[3].servo->direction = {0, 1};
   GrainSimulation simulation(scene, options_of(NormalLaw::linear_dashpot, 2e-3));
-  check_servo_error([&] { simulation.advance(1000000); }, {"'lid'", "met no body"});
+  check_refused([&] { simulation.advance(1000000); }, {"'lid'", "met no body"}, ErrorKind::computation_failed);
   CHECK_FALSE(simulation.servos().front().touched);
 }
 
@@ -216,7 +188,7 @@ TEST_CASE("servos_that_contradict_each_other_are_refused") {
                            NormalLaw law = NormalLaw::linear_dashpot) {
     GrainScene scene = sound;
     change(scene, *scene.walls[3].servo);
-    check_servo_error([&] { check(scene, options_of(law, 2e-4)); }, words);
+    check_refused([&] { check(scene, options_of(law, 2e-4)); }, words);
   };
   check(sound, options_of(NormalLaw::linear_dashpot, 2e-4));
   refused([](GrainScene&, Servo& s) { s.wanted.value = -1; }, {"'lid'", "-1", "pull"});
@@ -238,7 +210,7 @@ TEST_CASE("servos_that_contradict_each_other_are_refused") {
 }
 
 TEST_CASE("a_servo_wall_on_bodies_at_rest_begins_with_the_force_that_they_carry") {
-  const Stepping stepping = GENERATE(from_range(steppings_of_servos));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   GrainScene scene = pressed_box(stepping.law, 20);
   GrainSimulation settled(scene, options_of(stepping, 2e-4));
   settled.advance(200000);

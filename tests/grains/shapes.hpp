@@ -13,9 +13,6 @@
 
 namespace equidem::test {
 
-/// Laws and schemes that ellipses and clumps can have.
-inline const std::vector<Stepping> force_steppings(all_steppings.begin(), all_steppings.begin() + 4);
-
 /// Of mass 1.
 inline Grain oval(Vec2 position, double a, double b, double angle = 0, Vec2 velocity = {}) {
   Grain grain = ball(position, a, velocity);

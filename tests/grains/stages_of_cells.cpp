@@ -6,16 +6,14 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include "grains/cell_scenes.hpp"
+#include "grains/resuming.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 using namespace equidem::test;
 
 namespace {
-
-void run_to(StagedSimulation& simulation, std::int64_t step) {
-  while (simulation.step() < step && !simulation.over()) simulation.advance(step - simulation.step());
-}
 
 /// Consolidate, shear at constant height pressure, and stand.
 std::vector<GrainStage> shear_test(std::int64_t length, std::uint64_t seed = 26) {
@@ -51,32 +49,6 @@ Vec2 emptiest_place(const StagedSimulation& simulation) {
 }
 
 }  // namespace
-
-TEST_CASE("a_stage_of_a_cell_that_changes_nothing_leaves_the_motion_as_it_is_to_the_last_bit") {
-  GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 5, 31);
-  const bool deforms = GENERATE(false, true);
-  if (deforms) {
-    scene.cell->rate_xy = {.value = 2};
-    scene.cell->servo = CellServo{.stress_yy = Schedule{.value = -5}, .max_rate = 0.2};
-  }
-  const GrainOptions options = verlet_options(0.002);
-  StagedSimulation staged({{.name = "a", .scene = scene, .steps = 437}, {.name = "b", .scene = scene, .steps = 700}},
-                          options);
-  GrainSimulation whole(scene, options);
-  run_to(staged, 1100);
-  whole.advance(1100);
-  CAPTURE(deforms);
-  CHECK(bits_of(staged.present()).words.size() == bits_of(whole).words.size());
-  for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-    CHECK(staged.present().grains()[g].position == whole.grains()[g].position);
-    CHECK(staged.present().grains()[g].velocity == whole.grains()[g].velocity);
-  }
-  CHECK(staged.cell()->height == whole.cell()->height);
-  CHECK(staged.cell()->shift == whole.cell()->shift);
-  CHECK(staged.cell()->strain.xy == whole.cell()->strain.xy);
-  CHECK(staged.energy().work_of_stages == 0);
-  CHECK(staged.energy().work_of_cell == whole.energy().work_of_cell);
-}
 
 TEST_CASE("the_ledger_counts_the_fall_of_bodies_that_have_left_the_cell_over_stages") {
   GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 5, 31);
@@ -150,27 +122,11 @@ TEST_CASE("stages_of_a_cell_go_on_from_any_saved_state_with_the_same_bits") {
   StagedSimulation trial(stages, options);
   run_to(trial, 520);
   stages[2].bodies.added = {ball(emptiest_place(trial), 0.2, {1, 0})};
-  StagedSimulation whole(stages, options);
-  std::vector<SavedState> states;
-  while (!whole.over()) {
-    if (whole.step() % 37 == 0 || whole.milestone() >= 0) states.push_back(whole.save());
-    whole.advance(1);
-  }
-  const Bits end = bits_of(whole.present());
+  const StagedSimulation whole = check_resuming(stages, options, 37);
   CAPTURE(whole.reports()[1].removed, whole.reports()[1].bonds_made, whole.numbers().size());
   CHECK(whole.reports()[1].removed > 0);
   CHECK(whole.reports()[1].bonds_made > 2);
   CHECK(whole.numbers().size() + whole.reports()[1].removed == 37);
-  for (const SavedState& state : states) {
-    CAPTURE(state.step);
-    StagedSimulation resumed(stages, options);
-    resumed.restore(state);
-    run_to(resumed, 780);
-    CHECK(bits_of(resumed.present()) == end);
-    CHECK(resumed.cell()->height == whole.cell()->height);
-    CHECK(resumed.energy().work_of_cell == whole.energy().work_of_cell);
-    CHECK(resumed.energy().error() == whole.energy().error());
-  }
 }
 
 TEST_CASE("a_stage_ends_by_the_strain_of_its_cell") {
@@ -220,12 +176,7 @@ TEST_CASE("discs_of_a_cell_are_bonded_across_its_sides") {
 TEST_CASE("stages_of_which_some_have_a_cell_are_refused") {
   std::vector<GrainStage> stages = shear_test(10);
   const auto refused = [&](const std::vector<GrainStage>& wrong, const std::string& word) {
-    try {
-      StagedSimulation(wrong, verlet_options(0.001));
-      FAIL_CHECK("it was accepted: " << word);
-    } catch (const Error& error) {
-      CHECK_THAT(error.what(), Catch::Contains(word));
-    }
+    check_refused([&] { StagedSimulation(wrong, verlet_options(0.001)); }, {word});
   };
   std::vector<GrainStage> without = stages;
   without[1].scene.cell.reset();

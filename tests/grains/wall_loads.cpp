@@ -9,11 +9,6 @@ using namespace equidem::test;
 
 namespace {
 
-const std::vector<Stepping> steppings_with_forces{{NormalLaw::linear_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                  {NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet},
-                                                  {NormalLaw::hertz_dashpot, GrainIntegrator::semi_implicit_euler},
-                                                  {NormalLaw::exact_flow, GrainIntegrator::semi_implicit_euler}};
-
 /// Impulse of all walls and works of them, added up.
 std::pair<Vec2, double> sums_over_walls(const GrainSimulation& simulation) {
   Vec2 impulse;
@@ -34,7 +29,7 @@ Vec2 momentum_of(const GrainSimulation& simulation) {
 }  // namespace
 
 TEST_CASE("a_disc_at_rest_presses_the_floor_with_its_weight_at_the_arm_where_it_lies") {
-  const Stepping stepping = GENERATE(from_range(steppings_with_forces));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
   Wall floor = line("floor", {0.25, 0}, {0, 1});
   PairProperties pair = one_second(stepping.law, 0.2);
@@ -73,7 +68,7 @@ TEST_CASE("what_walls_get_is_what_bodies_lose_and_their_works_are_that_of_the_le
 }
 
 TEST_CASE("a_piston_works_by_its_force_times_its_way") {
-  const Stepping stepping = GENERATE(from_range(steppings_with_forces));
+  const Stepping stepping = GENERATE(from_range(servo_steppings));
   CAPTURE(stepping.name());
   std::vector<Wall> walls{line("floor", {0, 0}, {0, 1}), line("lid", {0, 1}, {0, -1})};
   walls[1].move_y = {Schedule::Kind::ramp, -0.01, 0, 4};
@@ -93,23 +88,4 @@ TEST_CASE("a_piston_works_by_its_force_times_its_way") {
   CHECK(std::abs(work - lid.work) <= 1e-12 * lid.work);
   CHECK(lid.place.y == 1 - 0.01);
   CHECK(simulation.walls()[0].work == 0);
-}
-
-TEST_CASE("wall_loads_go_on_from_a_saved_state") {
-  const Stepping stepping = GENERATE(from_range(all_steppings));
-  CAPTURE(stepping.name());
-  const GrainScene scene = busy_box(stepping.law, 3, 3, 5);
-  GrainSimulation whole(scene, options_of(stepping, 2e-3));
-  whole.advance(300);
-  GrainSimulation resumed(scene, options_of(stepping, 2e-3));
-  resumed.restore(whole.save());
-  for (GrainSimulation* simulation : {&whole, &resumed}) simulation->advance(300);
-  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-    const WallState a = whole.walls()[w], b = resumed.walls()[w];
-    CHECK(a.impulse == b.impulse);
-    CHECK(a.force == b.force);
-    CHECK(a.moment == b.moment);
-    CHECK(a.work == b.work);
-    CHECK(norm(a.impulse) > 0);
-  }
 }

@@ -12,6 +12,7 @@
 #include "equidem/motion/wall.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -75,12 +76,8 @@ Wall changed(Wall wall, double share) {
 }
 
 std::string refusal(const Wall& wall) {
-  try {
-    check(wall);
-  } catch (const Error& error) {
-    return error.kind() == ErrorKind::bad_input ? error.what() : "wrong kind";
-  }
-  return {};
+  const test::Refusal refused = test::refusal_of([&] { check(wall); });
+  return refused.kind == ErrorKind::bad_input ? refused.message : "wrong kind";
 }
 
 }  // namespace
@@ -168,35 +165,6 @@ TEST_CASE("a_way_passes_through_where_it_crosses_the_samples_of_the_wall") {
   CHECK(passed > 500);
   CHECK(not_passed > 500);
   CHECK(near_an_end < 20);
-}
-
-TEST_CASE("nothing_leaves_a_closed_wall_unseen") {
-  Random random(5);
-  std::vector<Vec2> corners;
-  for (int k = 0; k < 7; ++k) {
-    const double radius = random.uniform(0.5, 2);
-    corners.push_back({radius * std::cos(0.9 * k), radius * std::sin(0.9 * k)});
-  }
-  std::vector<Wall> polygon;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    polygon.push_back(segment(corners[k], corners[(k + 1) % corners.size()]));
-  }
-  for (int k = 0; k < 3000; ++k) {
-    const Vec2 inside = at_random(random, 0.1);
-    Vec2 outside = at_random(random, 1);
-    outside *= 5 / norm(outside);
-    if (k % 3 == 0) {
-      const Vec2 corner = corners[random.below(corners.size())];
-      outside = inside + 7 * (corner - inside) / norm(corner - inside);
-    }
-    const auto seen = [&](Vec2 before, Vec2 after) {
-      return std::any_of(polygon.begin(), polygon.end(),
-                         [&](const Wall& wall) { return passes_through(wall, before, after); });
-    };
-    CAPTURE(k, inside.x, inside.y, outside.x, outside.y);
-    CHECK(seen(inside, outside));
-    CHECK(seen(outside, inside));
-  }
 }
 
 TEST_CASE("of_two_ways_that_meet_on_the_wall_one_passes") {

@@ -104,13 +104,6 @@ inline GrainOptions verlet(double step) {
   return options_of({NormalLaw::linear_dashpot, GrainIntegrator::velocity_verlet}, step);
 }
 
-inline Wall wall_between(std::string name, Vec2 from, Vec2 to) {
-  Wall wall = line(std::move(name), from, {0, 1});
-  wall.shape = Wall::Shape::segment;
-  wall.end = to;
-  return wall;
-}
-
 /// Floor, left, right and lid.
 inline std::vector<Wall> closed_box(double width, double height) {
   return {line("floor", {0, 0}, {0, 1}), line("left", {0, 0}, {1, 0}), line("right", {width, 0}, {-1, 0}),

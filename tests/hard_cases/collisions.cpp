@@ -209,45 +209,6 @@ TEST_CASE("steps_that_close_a_radius_and_contacts_within_a_step_are_exact") {
   table.note("exact_flow, contacts of 1e-1 to 1e-3 of a step", "restitution to 1e-12", shown(worst));
 }
 
-TEST_CASE("gravity_that_moves_a_diameter_in_a_step_is_refused") {
-  HardCase table({.name = "gravity that moves a diameter in a step", .why = "nothing is near before the step"});
-  for (const NormalLaw law : all_laws) {
-    PairProperties pair{.dimensionless = 0.5};
-    GrainSimulation simulation(scene_of({ball({0, 1.5}, 1), ball({5, 1.5}, 1)}, {line("floor", {0, 0}, {0, 1})}, pair,
-                                        {0, law == NormalLaw::exact_flow ? -8.0 : -2.0}),
-                               options_of(law, 1));
-    const Bits before = bits_of(simulation);
-    const Answer answer = attempt([&] { simulation.advance(1); });
-    CAPTURE(to_string(law), simulation.grains()[0].position.y, simulation.grains()[0].velocity.y);
-    CHECK(bits_of(simulation) == before);
-    table.refused("run, the state is that before", answer, {"step 0", "floor", "Use a step below"});
-  }
-}
-
-TEST_CASE("the_order_of_a_crowd_changes_no_bit") {
-  HardCase table({.name = "bodies and walls in opposite order",
-                  .why = "sums of forces depend on their order in the last digit, and collisions amplify it"});
-  for (const Stepping& stepping : all_steppings) {
-    const GrainScene scene = busy_box(stepping.law, 4, 3, 5);
-    GrainScene other = scene;
-    std::reverse(other.grains.begin(), other.grains.end());
-    std::reverse(other.walls.begin(), other.walls.end());
-    GrainSimulation one(scene, options_of(stepping, 0.005)), two(other, options_of(stepping, 0.005));
-    one.advance(400);
-    two.advance(400);
-    std::vector<Grain> back = two.grains();
-    std::reverse(back.begin(), back.end());
-    bool same = one.counters().contacts > 20;
-    for (std::size_t k = 0; k < back.size(); ++k) {
-      const Grain a = one.grains()[k];
-      same = same && a.position == back[k].position && a.velocity == back[k].velocity && a.spin == back[k].spin;
-    }
-    CAPTURE(stepping.name());
-    CHECK(same);
-  }
-  table.note("run, all laws, 12 discs, friction, a floor that shakes", "the same bits", "the same bits");
-}
-
 namespace {
 
 /// Discs of several sizes thrown about in a box, e = 1, no gravity.

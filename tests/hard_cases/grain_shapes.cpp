@@ -70,13 +70,7 @@ TEST_CASE("needles_keep_momentum_and_energy") {
 
 TEST_CASE("a_needle_rests_on_two_pegs_by_its_tip_and_its_side") {
   HardCase table(needles);
-  const auto peg = [](std::string name, double x) {
-    Wall wall = line(std::move(name), {x, 0}, {0, 1});
-    wall.shape = Wall::Shape::segment;
-    wall.point = {x, -1};
-    wall.end = {x, 0.05};
-    return wall;
-  };
+  const auto peg = [](std::string name, double x) { return segment(std::move(name), {x, -1}, {x, 0.05}); };
   const double stiffness = 1e4;
   PairProperties pair{.stiffness = stiffness, .restitution = 0.1, .friction = 0.5, .tangential_ratio = 0.5};
   pair.tangential_damping = 0.5;

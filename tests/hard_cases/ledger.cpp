@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -18,15 +17,6 @@
 
 namespace equidem::test {
 namespace {
-
-void answer_or_refuse(Answer& answer, const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    answer.refusal = {error.what(), error.kind()};
-    answer.remedy = error.remedy();
-  }
-}
 
 DegreesOfFreedom unknowns_of(const Problem& problem) {
   return number_unknowns(problem.assembly, problem.springs, derive_effects(problem.springs, problem.rotation),
@@ -83,13 +73,13 @@ std::string rounded(double x) {
 
 Answer attempt(const std::function<void()>& call) {
   Answer answer;
-  answer_or_refuse(answer, call);
+  answer.refusal = refusal_of(call);
   return answer;
 }
 
 Answer solve(const Problem& problem) {
   Answer answer;
-  answer_or_refuse(answer, [&] {
+  answer.refusal = refusal_of([&] {
     const Equilibrium state = state_of(problem, answer);
     const DegreesOfFreedom unknowns = unknowns_of(problem);
     answer.error = error_of(state, unknowns,
@@ -100,7 +90,7 @@ Answer solve(const Problem& problem) {
 
 Answer solve(const Problem& problem, const std::vector<double>& exact) {
   Answer answer;
-  answer_or_refuse(answer, [&] { answer.error = error_of(state_of(problem, answer), unknowns_of(problem), exact); });
+  answer.refusal = refusal_of([&] { answer.error = error_of(state_of(problem, answer), unknowns_of(problem), exact); });
   return answer;
 }
 
@@ -108,7 +98,7 @@ Answer solve_by_multigrid(Problem problem) {
   Answer eliminated, answer;
   std::vector<double> motions;
   problem.method = SolverMethod::multifrontal;
-  answer_or_refuse(eliminated, [&] {
+  eliminated.refusal = refusal_of([&] {
     const Equilibrium state = state_of(problem, eliminated);
     const DegreesOfFreedom unknowns = unknowns_of(problem);
     for (const DiscMotion& m : state.motions) {
@@ -125,7 +115,7 @@ Answer solve_by_multigrid(Problem problem) {
 Answer homogenize(const Assembly& cell, const ContactSprings& springs, Rotation rotation, const Matrix3& exact,
                   SolverMethod method) {
   Answer answer;
-  answer_or_refuse(answer, [&] {
+  answer.refusal = refusal_of([&] {
     const EffectiveStiffness result =
         effective_stiffness(cell, springs, {.rotation = rotation, .solver = {.method = method}});
     const double size = largest_entry(exact);
@@ -165,7 +155,7 @@ void HardCase::right(const std::string& task, const Answer& answer, double promi
 
 void HardCase::refused(const std::string& task, const Answer& answer, const std::vector<std::string>& words) {
   CAPTURE(words_.name, task, answer.error, answer.bound, answer.refusal.message);
-  CHECK_FALSE(answer.remedy.empty());
+  CHECK_FALSE(answer.refusal.remedy.empty());
   for (const std::string& part : words) {
     CAPTURE(part);
     CHECK(answer.refusal.says(part));

@@ -28,8 +28,7 @@ struct Answer {
   double condition = 0;
   double residual = 0;
   std::int64_t unstable_modes = 0;
-  std::string remedy;  ///< where refused
-  Refusal refusal;     ///< empty where it answered
+  Refusal refusal;  ///< empty where it answered
 };
 
 /// Its refusal, if it is refused.

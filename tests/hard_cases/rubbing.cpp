@@ -3,19 +3,15 @@
 /// Contacts that rub, forces at rest and viscoelastic springs at the ends of what they can be.
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <vector>
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/breakage/strengths.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/homogenize/viscoelastic_stiffness.hpp"
-#include "equidem/statics/critical_load.hpp"
 
 #include "breakage/unbonded_scenes.hpp"
 #include "hard_cases/ledger.hpp"
-#include "support/assemblies.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -29,14 +25,6 @@ std::string told(const UnbondedRun& run) {
 
 Assembly rubbing_cell() {
   return hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
-}
-
-/// A column of discs pressed by 1 N/m along x.
-Assembly pressed_chain(int discs) {
-  Assembly chain = chain_of_discs(discs, 0.5);
-  chain.contact_normal_force.assign(chain.contacts.size(), -1.0);
-  chain.contact_tangential_force.assign(chain.contacts.size(), 0.0);
-  return chain;
 }
 
 }  // namespace
@@ -87,53 +75,4 @@ TEST_CASE("discs_without_a_bond_and_without_a_force_open_or_close_at_once") {
     table.note(strain > 0 ? "quasistatic, rubs, pulled from all sides" : "quasistatic, rubs, pressed from all sides",
                strain > 0 ? "all open, no load" : "no contact opens", told(scene.run()));
   }
-}
-
-TEST_CASE("forces_at_rest_of_what_rolls_or_does_not_balance_are_not_taken") {
-  HardCase table({.name = "forces at rest",
-                  .why = "what holds by them alone has no critical load, and what they do not balance moves"});
-  const std::vector<Support> held{{"first", 0, 0, 0}};
-  const ContactSprings springs = usual_springs;
-  const Assembly soft = pressed_chain(4);
-  const CriticalLoad none = find_critical_load(soft, springs_of(0).with_prestress(prestress_of(soft)), held);
-  CHECK_FALSE(none.sought);
-  table.note("stability, a chain of discs, kT = 0", "not sought, and why", none.why);
-  Assembly cell = rubbing_cell();
-  cell.contact_normal_force.assign(cell.contacts.size(), 0.0);
-  cell.contact_tangential_force.assign(cell.contacts.size(), 0.0);
-  cell.contact_normal_force[0] = -1;
-  table.refused("homogenize, forces at rest that do not balance",
-                attempt([&] { choose_prestress(cell, springs, PrestressChoice::on); }), {"do not balance"});
-}
-
-TEST_CASE("dashpots_of_one_time_give_complex_moduli_at_any_frequency") {
-  HardCase table({.name = "viscoelastic springs",
-                  .why = "springs of one frequency may differ by any power of ten, and stand for nothing at rest"});
-  const Assembly cell = rubbing_cell();
-  constexpr double tau = 0.01;
-  const ViscoelasticSpring dashpot{.model = SpringModel::kelvin_voigt, .time = tau};
-  const Viscoelasticity both{dashpot, dashpot};
-  HomogenizeOptions options;
-  options.boundary = Boundary::periodic;
-  const Matrix3 elastic = effective_stiffness(cell, usual_springs, options).stiffness;
-  for (const double frequency : {1e-30, 1.0, 1e30}) {
-    const HarmonicStiffness found =
-        viscoelastic_stiffness(cell, usual_springs, both, std::vector{frequency}, options).harmonic.front();
-    const std::complex<double> factor = dashpot.factor(frequency);
-    const double error = (largest_entry(found.storage + (-factor.real()) * elastic) +
-                          largest_entry(found.loss + (-factor.imag()) * elastic)) /
-                         (std::abs(factor) * largest_entry(elastic));
-    CAPTURE(frequency, error);
-    CHECK(error < 1e-12);
-    table.note(fmt::format("homogenize, Kelvin-Voigt, {:g} Hz", frequency), "(1 + i omega tau) C, to 1e-12",
-               error < 1e-12 ? "to 1e-12" : "not");
-  }
-  const auto at = [&](const ContactSprings& springs, const Viscoelasticity& law, double frequency) {
-    return attempt([&] { viscoelastic_stiffness(cell, springs, law, std::vector{frequency}, options); });
-  };
-  table.refused("homogenize, viscoelastic, 0 Hz", at(usual_springs, both, 0), {"a frequency is 0 Hz"});
-  table.refused("homogenize, viscoelastic, -1 Hz", at(usual_springs, both, -1), {"a frequency is -1 Hz"});
-  table.refused("homogenize, viscoelastic, kT < 0", at(springs_of(-0.1), both, 1), {"kT is negative"});
-  const Viscoelasticity endless{{.model = SpringModel::maxwell, .time = 0}, dashpot};
-  table.refused("homogenize, Maxwell, tau = 0", at(usual_springs, endless, 1), {});
 }

@@ -56,16 +56,6 @@ TEST_CASE("cells_of_one_two_and_three_discs_are_right") {
   }
 }
 
-TEST_CASE("a_disc_that_touches_its_images_along_one_direction_only_is_refused") {
-  HardCase table({.name = "one disc that touches its images along x only",
-                  .why = "the cell is held together one way; across it a strain costs nothing"});
-  Assembly cell = square_lattice({.columns = 1, .rows = 1, .periodic = true});
-  std::erase_if(cell.contacts, [](const Contact& c) { return c.shift_y != 0; });
-  cell.facet_lengths.clear();
-  REQUIRE(cell.contacts.size() == 1);
-  table.refused("homogenize", homogenize(cell, usual_springs), {"one direction only", "Add contacts"});
-}
-
 TEST_CASE("two_discs_that_touch_twice_are_right_or_named") {
   HardCase table(
       {.name = "two discs touching twice",

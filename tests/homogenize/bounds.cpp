@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "equidem/contact/linear_spring.hpp"
-#include "equidem/core/statistics.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/homogenize/stress.hpp"
 
@@ -71,60 +70,6 @@ TEST_CASE("voigt_stiffness_is_the_stress_of_affine_motion") {
   }
 }
 
-TEST_CASE("voigt_moduli_of_equal_springs_depend_on_fabric_through_S_alone") {
-  // Averaged over directions, (n n)(n n) and (n s)(n s) are isotropic for any n: K = S kN/4, G = S (kN + kT)/8.
-  for (const bool periodic : {false, true}) {
-    for (const auto& [name, assembly] : assemblies(periodic)) {
-      const Tensor2 branch = fabric(assembly).branch;
-      const double S = branch.xx + branch.yy;
-      const EffectiveModuli moduli = effective_moduli(voigt_stiffness(assembly, uniform(2, 0.6)));
-      CAPTURE(name, periodic, S, moduli.bulk_modulus_2d, moduli.shear_modulus, moduli.anisotropy);
-      CHECK(moduli.bulk_modulus_2d == Approx(S * 2 / 4).epsilon(1e-13));
-      CHECK(moduli.shear_modulus == Approx(S * (2 + 0.6) / 8).epsilon(1e-13));
-      CHECK(moduli.poisson_strain == Approx((1 - 0.3) / 4).epsilon(1e-13));
-    }
-  }
-}
-
-TEST_CASE("affine_stiffness_of_poisson_delaunay_assemblies_is_isotropic_with_S_15_over_pi") {
-  // E[l²] = 5/(pi n) and z = 6 give S = 15/pi: K = 15/(4 pi) kN, G = 15/(8 pi) (kN + kT).
-  constexpr double kN = 2, kT = 0.5;
-  const Matrix3 expected = isotropic_stiffness(15 / (4 * pi) * kN, 15 / (8 * pi) * (kN + kT));
-  std::vector<double> bulk, shear, bulk_of_other_points;
-  std::vector<double> entries[3][3];
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const auto stiffness = [&](PointProcess points) {
-      return voigt_stiffness(delaunay_assembly({.discs = 1500, .points = points, .seed = seed, .periodic = true}),
-                             uniform(kN, kT));
-    };
-    const Matrix3 found = stiffness(PointProcess::uniform);
-    const EffectiveModuli moduli = effective_moduli(found);
-    bulk.push_back(moduli.bulk_modulus_2d);
-    shear.push_back(moduli.shear_modulus);
-    bulk_of_other_points.push_back(effective_moduli(stiffness(PointProcess::poisson_disc)).bulk_modulus_2d);
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t s = r; s < 3; ++s) entries[r][s].push_back(found[r][s]);
-    }
-  }
-  const double K = 15 / (4 * pi) * kN;
-  const auto check = [&](const std::string& what, const std::vector<double>& values, double wanted) {
-    const MeanEstimate found = estimate_mean(values, 0.95);
-    CAPTURE(what, found.mean, found.standard_error, wanted);
-    CHECK(found.standard_error < 0.005 * largest(expected));  // or three of them would allow anything
-    CHECK(std::abs(found.mean - wanted) < 3 * found.standard_error);
-  };
-  check("K", bulk, K);
-  check("G", shear, 15 / (8 * pi) * (kN + kT));
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t s = r; s < 3; ++s) {
-      check("C" + std::to_string(r) + std::to_string(s), entries[r][s], expected[r][s]);
-    }
-  }
-  const MeanEstimate other = estimate_mean(bulk_of_other_points, 0.95);
-  CAPTURE(other.mean, other.standard_error);
-  CHECK(std::abs(other.mean - K) > 10 * other.standard_error);  // points that keep their distance have another S
-}
-
 TEST_CASE("uniform_stress_estimate_of_the_hexagonal_lattice_has_its_closed_form") {
   // However soft the tangential springs, K and C66 keep all their digits; C11 - C12 can but keep those of K.
   const double kN = GENERATE(1.0, 3e9), ratio = GENERATE(1e-12, 1e-8, 0.1, 0.25, 0.5, 1.0, 1e8), kT = ratio * kN;
@@ -142,22 +87,6 @@ TEST_CASE("uniform_stress_estimate_of_the_hexagonal_lattice_has_its_closed_form"
   CHECK(moduli.poisson_strain == Approx((1 - ratio) / (2 * (1 + ratio))).margin(1e-13));
   CHECK(moduli.poisson_stress == Approx((1 - ratio) / (1 + 3 * ratio)).margin(1e-13));
   CHECK(moduli.anisotropy < 1e-13);
-}
-
-TEST_CASE("poisson_ratios_of_both_estimates_bracket_as_tabulated") {
-  // nu in plane strain to the digits printed: (1 - r)/4 and (1 - r)/(2 (1 + r)), r = kT/kN.
-  struct Row {
-    double ratio, affine, uniform_stress;
-  };
-  const Row row = GENERATE(Row{0, 0.250, 0.500}, Row{0.1, 0.225, 0.409}, Row{0.25, 0.1875, 0.300},
-                           Row{0.5, 0.125, 0.1667}, Row{1, 0, 0});
-  const Assembly assembly = lattice("hexagonal");
-  const double affine = effective_moduli(voigt_stiffness(assembly, uniform(1, row.ratio))).poisson_strain;
-  const double other = effective_moduli(uniform_stress_estimate(assembly, uniform(1, row.ratio))).poisson_strain;
-  CAPTURE(row.ratio, affine, other);
-  CHECK(affine == Approx(row.affine).margin(5e-4));
-  CHECK(other == Approx(row.uniform_stress).margin(5e-4));
-  CHECK(affine <= other + 1e-15);
 }
 
 TEST_CASE("uniform_stress_estimate_stores_the_energy_of_forces_that_carry_the_stress") {

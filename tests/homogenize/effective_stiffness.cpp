@@ -150,52 +150,6 @@ TEST_CASE("macroscopic_power_is_microscopic_power") {  // Hill & Mandel
   }
 }
 
-TEST_CASE("bounds_stand_in_their_order") {  // F7 and the Voigt bound
-  int opened = 0;
-  constexpr int seeds = 200;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const PointProcess points = seed % 3 == 0   ? PointProcess::uniform
-                                : seed % 3 == 1 ? PointProcess::perturbed_hexagonal
-                                                : PointProcess::poisson_disc;
-    const Assembly assembly = delaunay_assembly({.discs = 20 + static_cast<std::int64_t>(seed % 60),
-                                                 .points = points,
-                                                 .disorder = 0.3,
-                                                 .seed = seed,
-                                                 .periodic = true});
-    const double ratio = std::pow(10.0, static_cast<double>(seed % 7) / 2 - 2.5);
-    const ContactSprings springs(SpringConstants{1, ratio});
-    CAPTURE(seed, assembly.size(), ratio);
-    const auto stiffness = [&](Boundary boundary) {
-      return effective_stiffness(assembly, springs, {.boundary = boundary, .rotation = {}, .solver = {}}).stiffness;
-    };
-    const Matrix3 periodic = stiffness(Boundary::periodic), displacement = stiffness(Boundary::displacement);
-    constexpr double rounding = -1e-13;
-    CHECK(margin(periodic, displacement) > rounding);
-    CHECK(margin(displacement, voigt_stiffness(assembly, springs)) > rounding);
-    Matrix3 traction{};  // nothing, where a disc at the cut hangs by a single contact
-    const std::string refusal = message_of([&] { traction = stiffness(Boundary::traction); });
-    CAPTURE(refusal);
-    CHECK(margin(traction, periodic) > rounding);
-    if (refusal.empty()) ++opened;
-  }
-  CAPTURE(opened);
-  CHECK(opened >= 0.95 * seeds);
-}
-
-TEST_CASE("a_free_sample_lies_between_its_tractions_and_its_displacements") {
-  for (const Sample& sample : assemblies(false)) {
-    CAPTURE(sample.name);
-    const ContactSprings springs(SpringConstants{1e9, 0.3e9});
-    const auto stiffness = [&](Boundary boundary) {
-      return effective_stiffness(sample.assembly, springs, {.boundary = boundary, .rotation = {}, .solver = {}});
-    };
-    const EffectiveStiffness traction = stiffness(Boundary::traction), displacement = stiffness(Boundary::displacement);
-    CHECK(margin(traction.stiffness, displacement.stiffness) > -1e-13);
-    CHECK(margin(displacement.stiffness, voigt_stiffness(sample.assembly, springs)) > -1e-13);
-    CHECK(displacement.gear_modes == (sample.name == "square" ? 1 : 0));
-  }
-}
-
 TEST_CASE("larger_samples_close_the_gap_between_the_boundaries_as_one_over_their_size") {
   const ContactSprings springs(SpringConstants{1, 0.3});
   const auto gap = [&](int n) {

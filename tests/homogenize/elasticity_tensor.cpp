@@ -141,23 +141,6 @@ TEST_CASE("nearest_isotropic_tensor_is_the_mean_over_all_directions") {
   }
 }
 
-TEST_CASE("square_lattice_is_isotropic_for_kT_equal_kN_only") {
-  // Abe's remark on 45 degrees holds for second-order tensors: the stiffness is cubic.
-  const double kN = 2, ratio = GENERATE(0.0, 0.1, 0.5, 1.0, 3.0), kT = ratio * kN;
-  const Matrix3 c = square_lattice_stiffness(kN, kT);
-  const Matrix3 diagonal{{{(kN + kT) / 2, (kN - kT) / 2, 0}, {(kN - kT) / 2, (kN + kT) / 2, 0}, {0, 0, kN / 2}}};
-  const Matrix3 seen = rotated(c, pi / 4);
-  const EffectiveModuli moduli = effective_moduli(c);
-  CAPTURE(ratio, shown(seen), moduli.anisotropy);
-  CHECK(relative_difference(seen, diagonal) < 1e-15);
-  CHECK(seen[0][1] / seen[0][0] == Approx((kN - kT) / (kN + kT)).margin(1e-15));  // nu along the diagonal, plane stress
-  CHECK(2 * c[2][2] / (c[0][0] - c[0][1]) == Approx(ratio).margin(1e-15));        // Zener's ratio
-  CHECK(moduli.bulk_modulus_2d == Approx(kN / 2));
-  CHECK(moduli.shear_modulus == Approx((kN + kT) / 4));
-  // Eigenvalues kN, kN, kT against kN and twice (kN + kT)/2.
-  CHECK(moduli.anisotropy == Approx(std::abs(1 - ratio) / std::sqrt(2 + (1 + ratio) * (1 + ratio))).margin(1e-15));
-}
-
 TEST_CASE("eigenstrains_reproduce_the_stiffness") {
   const double scale = GENERATE(1e-150, 1.0, 1e9, 1e150);
   for (Matrix3 c : stiffnesses_of_all_kinds()) {
@@ -181,16 +164,6 @@ TEST_CASE("eigenstrains_reproduce_the_stiffness") {
     }
     CHECK(relative_difference(rebuilt, c) < 1e-14);
   }
-}
-
-TEST_CASE("eigenstrains_of_isotropy_are_dilation_and_shear") {
-  const StiffnessEigen eigen = eigenstrains(isotropic_stiffness(3, 1));
-  CHECK(eigen.values[0] == Approx(2).epsilon(1e-15));  // 2G, twice
-  CHECK(eigen.values[1] == Approx(2).epsilon(1e-15));
-  CHECK(eigen.values[2] == Approx(6).epsilon(1e-15));  // 2K
-  CHECK(std::abs(eigen.strains[2][0]) == Approx(std::sqrt(0.5)).epsilon(1e-15));
-  CHECK(eigen.strains[2][1] == Approx(eigen.strains[2][0]).epsilon(1e-15));
-  CHECK(std::abs(eigen.strains[2][2]) < 1e-15);
 }
 
 TEST_CASE("compliance_undoes_the_stiffness") {

@@ -13,11 +13,11 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/core/threads.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/ensemble/ensemble_statistics.hpp"
 
 #include "support/catch.hpp"
+#include "support/fields.hpp"
 
 using namespace equidem;
 
@@ -60,17 +60,11 @@ bool same_bits(const std::vector<EnsembleSample>& a, const std::vector<EnsembleS
   });
 }
 
-struct ThreadCount {
-  explicit ThreadCount(int count) { set_thread_count(count); }
-  ~ThreadCount() { set_thread_count(before); }
-  int before = thread_count();
-};
-
 }  // namespace
 
 TEST_CASE("an_ensemble_holds_every_size_and_seed_once_in_order_for_every_number_of_threads") {
   const EnsemblePlan plan{.discs = {10, 40, 90}, .samples = 7, .first_seed = 5};
-  const ThreadCount threads(GENERATE(1, 2, 5));
+  const test::ThreadsFor threads(GENERATE(1, 2, 5));
   const EnsembleSamples result = sample_ensemble(plan, KnownCells{});
   CHECK_FALSE(result.stopped);
   REQUIRE(result.samples.size() == 21);
@@ -85,7 +79,7 @@ TEST_CASE("an_ensemble_holds_every_size_and_seed_once_in_order_for_every_number_
 
 TEST_CASE("an_ensemble_that_was_stopped_and_continued_has_the_bits_of_one_that_was_not") {
   const EnsemblePlan plan{.discs = {10, 40}, .samples = 8, .first_seed = 1};
-  const ThreadCount threads(GENERATE(1, 3));
+  const test::ThreadsFor threads(GENERATE(1, 3));
   const auto whole = sample_ensemble(plan, KnownCells{}).samples;
   const int stop_after = GENERATE(0, 1, 7, 11, 15);
   std::atomic<int> computed{0};
@@ -227,7 +221,7 @@ TEST_CASE("cells_of_springs_h_over_l_with_kT_equal_to_kN_and_rotation_restrained
     return HomogenizedCell{static_cast<std::int64_t>(cell.size()), effective_moduli(effective.stiffness)};
   };
   const EnsemblePlan plan{.discs = {20, 60, 200}, .samples = 6, .first_seed = 1};
-  const ThreadCount one(1);  // the checks inside belong to one thread
+  const test::ThreadsFor one(1);  // the checks inside belong to one thread
   const EnsembleSamples sampled = sample_ensemble(plan, homogenize);
   const EnsembleStatistics statistics = analyze_ensemble(plan, sampled.samples, 0.95);
   for (const EnsembleSize& size : statistics.sizes) {

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Moduli by method = "multigrid" are those of elimination.
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include "equidem/homogenize/bounds.hpp"
 #include "equidem/homogenize/calibrate/calibrate.hpp"
@@ -59,21 +57,6 @@ TEST_CASE("multigrid_finds_the_moduli_of_elimination") {
       }
     }
   }
-}
-
-TEST_CASE("multigrid_homogenizes_scattered_springs") {
-  const Assembly cell = random_cell(true);
-  Random random(5);
-  std::vector<SpringConstants> each(cell.contacts.size());
-  for (SpringConstants& k : each) {
-    k.kN = std::pow(10.0, random.uniform(8, 10));
-    k.kT = 0.3 * k.kN;
-  }
-  const ContactSprings springs(each);
-  const auto by = [&](SolverMethod method) {
-    return stiffness_by(method, cell, springs, Boundary::periodic, Rotation::free);
-  };
-  CHECK(relative_difference(by(SolverMethod::multigrid).stiffness, by(SolverMethod::multifrontal).stiffness) < 1e-10);
 }
 
 TEST_CASE("multigrid_calibrates_the_springs_of_elimination_in_half_the_iterations") {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Moduli of networks of bodies that touch off the lines of their centres.
-#include <cmath>
-#include <utility>
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/homogenize/bounds.hpp"
@@ -90,20 +88,6 @@ TEST_CASE("moduli_off_the_line_of_centres_are_those_of_the_least_energy_of_point
   }
 }
 
-TEST_CASE("boundaries_off_the_line_of_centres_give_moduli_in_the_order_of_their_bounds") {
-  const Assembly assembly = off_line(discs_of(4, 60), 4);
-  const ContactSprings springs(SpringConstants{1e8, 0.4e8});
-  const Matrix3 ordered[] = {of(assembly, springs, Boundary::traction).stiffness, of(assembly, springs).stiffness,
-                             of(assembly, springs, Boundary::displacement).stiffness,
-                             voigt_stiffness(assembly, springs)};
-  for (int k = 0; k < 3; ++k) {
-    const auto eigen = eigenstrains(ordered[k + 1] + (-1.0) * ordered[k]);
-    CAPTURE(k, eigen.values[0], eigen.values[2]);
-    CHECK(eigen.values[0] > -1e-12 * largest_entry(ordered[3]));
-    CHECK(eigen.values[2] > 1e-3 * largest_entry(ordered[3]));
-  }
-}
-
 TEST_CASE("the_estimate_of_uniform_stress_is_the_inverse_of_its_compliance_off_the_line_of_centres") {
   const Assembly assembly = off_line(discs_of(5, 40), 5);
   const ContactSprings springs(SpringConstants{2, 0.7});
@@ -141,85 +125,6 @@ TEST_CASE("the_mean_stress_is_that_of_the_bodies_by_their_areas_off_the_line_of_
   for (std::size_t c = 0; c < forces.size(); ++c)
     expected += outer(force_on_i(frame_of(assembly, c), forces[c]), assembly.branch(assembly.contacts[c]));
   CHECK(samples::difference(whole, (1 / assembly.area()) * expected) < 1e-13 * samples::largest(whole));
-}
-
-// Discs tied by springs that become ever stiffer, in two places so that they cannot roll, come to be clumps.
-TEST_CASE("a_clump_is_two_discs_tied_by_springs_that_become_rigid") {
-  const Assembly discs = discs_of(7, 40);
-  const double kN = 1e8, kT = 0.4e8;
-  std::vector<std::int32_t> partner(discs.size(), -1);
-  std::vector<std::size_t> ties;
-  for (std::size_t c = 0; c < discs.contacts.size(); ++c) {
-    const auto [i, j] = std::pair{discs.contacts[c].i, discs.contacts[c].j};
-    if (partner[i] >= 0 || partner[j] >= 0 || ties.size() == 12) continue;
-    partner[i] = j, partner[j] = i;
-    ties.push_back(c);
-  }
-  REQUIRE(ties.size() == 12);
-
-  // One body for both discs of a tie, which the first of them names.
-  Assembly clumps;
-  clumps.period = discs.period;
-  std::vector<std::int32_t> body(discs.size(), -1);
-  std::vector<Vec2> from_body(discs.size());  // to the disc
-  for (std::size_t d = 0; d < discs.size(); ++d) {
-    if (partner[d] >= 0) continue;
-    body[d] = static_cast<std::int32_t>(clumps.size());
-    clumps.centres.push_back(discs.centres[d]);
-    clumps.radii.push_back(discs.radii[d]);
-  }
-  for (const std::size_t c : ties) {
-    const Contact& tie = discs.contacts[c];
-    const Vec2 l = discs.branch(tie);
-    body[tie.i] = body[tie.j] = static_cast<std::int32_t>(clumps.size());
-    clumps.centres.push_back(discs.centres[tie.i] + 0.3 * l);
-    clumps.radii.push_back(discs.radii[tie.i]);
-    from_body[tie.i] = -0.3 * l;
-    from_body[tie.j] = 0.7 * l;
-  }
-  const Vec2 period = *discs.period;
-  for (std::size_t c = 0; c < discs.contacts.size(); ++c) {
-    if (std::find(ties.begin(), ties.end(), c) != ties.end()) continue;
-    const Contact& k = discs.contacts[c];
-    const Vec2 l = discs.branch(k), n = l / norm(l);
-    // Where the body of j lies as seen from that of i.
-    const Vec2 branch = from_body[k.i] + l - from_body[k.j];
-    const Vec2 shift = branch - (clumps.centres[body[k.j]] - clumps.centres[body[k.i]]);
-    const Contact contact{.i = body[k.i],
-                          .j = body[k.j],
-                          .shift_x = static_cast<std::int32_t>(std::lround(shift.x / period.x)),
-                          .shift_y = static_cast<std::int32_t>(std::lround(shift.y / period.y))};
-    place_contact(clumps, contact, n, from_body[k.i] + k.lever_i * n);
-  }
-  check(clumps);
-  const Matrix3 rigid = of(clumps, ContactSprings(SpringConstants{kN, kT})).stiffness;
-
-  const auto tied = [&](double factor) {
-    Assembly pairs = discs;
-    pairs.contacts.clear();
-    pairs.facet_lengths.clear();
-    std::vector<SpringConstants> springs;
-    for (std::size_t c = 0; c < discs.contacts.size(); ++c) {
-      const Contact& k = discs.contacts[c];
-      const Vec2 l = discs.branch(k), n = l / norm(l);
-      if (std::find(ties.begin(), ties.end(), c) == ties.end()) {
-        place_contact(pairs, k, n, k.lever_i * n);
-        springs.push_back({kN, kT});
-        continue;
-      }
-      for (const double side : {-0.5, 0.5}) {
-        place_contact(pairs, k, n, 0.5 * l + side * perpendicular(l));
-        springs.push_back({factor * kN, factor * kN});
-      }
-    }
-    return of(pairs, ContactSprings(springs)).stiffness;
-  };
-  const double stiff = difference(tied(1e3), rigid), stiffer = difference(tied(1e4), rigid),
-               stiffest = difference(tied(1e6), rigid);
-  CAPTURE(stiff, stiffer, stiffest);
-  CHECK(stiff < 0.01);
-  CHECK(stiff / stiffer == Approx(10).epsilon(0.02));
-  CHECK(stiffest < 1e-5);
 }
 
 // Each of them joins two bodies, so that it is its own balance that leaves it nothing to carry.

@@ -11,8 +11,9 @@
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+
+#include "support/refusal.hpp"
 
 namespace samples {
 
@@ -87,12 +88,7 @@ inline std::string shown(const Tensor2& t) {
 /// The message of the Error that `call` throws; empty where it throws none.
 template <typename Call>
 std::string message_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal_of([&] { call(); }).message;
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -217,39 +217,6 @@ TEST_CASE("slow_and_fast_limits_are_elastic_with_relaxed_and_unrelaxed_springs")
   }
 }
 
-TEST_CASE("weak_dashpots_lose_the_energy_shares_of_their_springs") {
-  // To first order the motion stays: Im C = omega (tau_N kN dC/dkN + tau_T kT dC/dkT).
-  for (const Sample& sample : assemblies(true)) {
-    const ContactSprings springs = random_springs(sample.assembly, 0.1, 11);
-    const EffectiveStiffness elastic = effective_stiffness(sample.assembly, springs);
-    constexpr double small = 1e-7;
-    const auto weak = [](double x) {
-      return ViscoelasticSpring{.model = SpringModel::kelvin_voigt, .time = x / (2 * std::numbers::pi)};
-    };
-    const HarmonicStiffness c = harmonic(sample.assembly, springs, {weak(small), weak(3 * small)}, 1);
-    const Matrix3 expected = small * (elastic.normal_part + 3.0 * elastic.tangential_part);
-    CAPTURE(sample.name, relative_difference(c.loss, expected));
-    CHECK(relative_difference(c.loss, expected) < 1e-11);
-  }
-}
-
-TEST_CASE("storage_follows_from_loss_by_causality") {
-  // Kramers & Kronig: C'(infinity) - C'(0) = 2/pi times the integral of C'' over ln omega, here by the trapezoidal rule
-  // over 24 decades. Internal motions of a network of unequal times relax, too, and must keep it.
-  const Assembly cell = assemblies(true)[3].assembly;
-  const ContactSprings springs = random_springs(cell, 0.1, 13);
-  const Viscoelasticity solid{{.model = SpringModel::standard_solid, .time = 1, .arm = 3},
-                              {.model = SpringModel::standard_solid, .time = 0.01, .arm = 2}};
-  constexpr int per_decade = 6;
-  const std::vector<double> frequencies = logarithmic_frequencies(1e-13, 1e13, per_decade);
-  const ViscoelasticStiffness c = viscoelastic_stiffness(cell, springs, solid, frequencies);
-  Matrix3 integral{};
-  for (const HarmonicStiffness& one : c.harmonic) integral = integral + (std::numbers::ln10 / per_decade) * one.loss;
-  const Matrix3 rise = c.harmonic.back().storage - c.harmonic.front().storage;
-  CAPTURE(relative_difference((2 / std::numbers::pi) * integral, rise));
-  CHECK(relative_difference((2 / std::numbers::pi) * integral, rise) < 1e-9);
-}
-
 TEST_CASE("motions_without_energy_are_held_at_every_frequency") {
   // A disc of the hexagonal lattice that keeps two contacts in line can leave it at no cost where kT = 0.
   Assembly cell = hexagonal_lattice({.columns = 6, .rows = 6, .radius = 0.005, .periodic = true});

@@ -128,76 +128,6 @@ TEST_CASE("nodes_give_points_rigid_motions_and_pure_bending_exactly") {
   for (const Motion& motion : bendings()) CHECK(largest_miss(grid, points, motion) < rounding);
 }
 
-TEST_CASE("without_some_nodes_the_functions_around_are_continued") {
-  Grid grid = plain_grid();
-  std::vector<double> mass(grid.nodes(), 1.0);
-  mass[0] = mass[20] = mass[grid.nodes() - 1] = 0.01;
-  grid.keep_nodes(mass);
-  const std::vector<Vec2> points = random_points(300);
-  for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, points, motion) < rounding);
-  for (const Motion& motion : bendings()) CHECK(largest_miss(grid, points, motion) < rounding);
-}
-
-TEST_CASE("where_no_cell_is_complete_rigid_motions_stay_exact") {
-  Grid grid = plain_grid();
-  std::vector<double> mass(grid.nodes());
-  for (std::size_t node = 0; node < mass.size(); ++node) mass[node] = node % 2 == 0 ? 1 : 0;
-  grid.keep_nodes(mass);
-  for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, random_points(300), motion) < rounding);
-}
-
-TEST_CASE("the_place_of_a_point_seen_from_its_host_is_that_of_the_host") {
-  for (const bool periodic : {false, true}) {
-    Grid grid({.low = -3, .spacing = 2, .cells = 6, .periodic = periodic},
-              {.low = 1, .spacing = 1.5, .cells = 5, .periodic = periodic});
-    std::vector<double> mass(grid.nodes(), 1.0);
-    mass[0] = mass[8] = 0;
-    grid.keep_nodes(mass);
-    for (const Vec2 x : random_points(200)) {
-      const Place host = grid.host(grid.place(x)), seen = grid.place_in(host.cell, x);
-      CAPTURE(periodic, x.x, x.y, host.cell, host.s, host.t, seen.s, seen.t);
-      CHECK(seen.s == Approx(host.s).margin(1e-12));
-      CHECK(seen.t == Approx(host.t).margin(1e-12));
-    }
-  }
-}
-
-TEST_CASE("forces_on_nodes_do_the_work_of_those_on_points") {
-  for (const bool periodic : {false, true}) {
-    Grid grid({.low = -3, .spacing = 2, .cells = 6, .periodic = periodic},
-              {.low = 1, .spacing = 1.5, .cells = 5, .periodic = periodic});
-    std::vector<double> mass(grid.nodes(), 1.0);
-    mass[8] = 0;
-    grid.keep_nodes(mass);
-    std::vector<Place> places;
-    for (const Vec2 x : random_points(200)) places.push_back(grid.place(x));
-    Transfer transfer(grid, places);
-    number_in_place(transfer, grid);
-    Random random(4);
-    const auto random_quads = [&](std::size_t count) {
-      QuadVector x(count);
-      const auto number = [&] { return static_cast<float>(random.uniform(-1, 1)); };
-      for (Quad& q : x) q = Quad{number(), number(), number(), 0};
-      return x;
-    };
-    const auto work = [](const QuadVector& x, const QuadVector& y) {
-      double sum = 0;
-      for (std::size_t k = 0; k < x.size(); ++k) {
-        for (int e = 0; e < 3; ++e) sum += static_cast<double>(x[k][e]) * y[k][e];
-      }
-      return sum;
-    };
-    const QuadVector forces = random_quads(places.size()), motions = random_quads(transfer.unknowns());
-    QuadVector on_points(places.size(), Quad{}), nodes(transfer.unknowns()), corners(4 * transfer.cells());
-    add_motions(transfer, motions, on_points);
-    for (std::size_t chunk = 0; chunk < transfer.chunks(); ++chunk) {
-      transfer.restrict_chunk(chunk, forces.data(), corners);
-    }
-    transfer.add_up_corners(corners, nodes);
-    CHECK(work(motions, nodes) == Approx(work(on_points, forces)).epsilon(1e-5));
-  }
-}
-
 TEST_CASE("cells_store_the_energy_of_uniform_strain_and_none_of_rigid_motions") {
   const Assembly assembly = delaunay_assembly({.discs = 400, .radii = {.smallest = 0.004, .largest = 0.006}});
   const double a = assembly.mean_radius();
@@ -257,17 +187,4 @@ TEST_CASE("envelope_cholesky_solves_and_holds_what_has_no_stiffness") {
     CHECK(x[row][1] == 0);
     for (int e = 0; e < 3; ++e) CHECK(std::abs(left[row][e]) < rounding);
   }
-}
-
-TEST_CASE("inverse_of_a_block_leaves_out_dependent_components") {
-  const Block regular{4, 1, 0.5, 1, 3, 0.2, 0.5, 0.2, 2}, inverse = inverse_or_zero(regular);
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) {
-      double sum = 0;
-      for (int e = 0; e < 3; ++e) sum += regular[3 * r + e] * inverse[3 * e + c];
-      CHECK(sum == Approx(r == c ? 1 : 0).margin(1e-14));
-    }
-  }
-  const Block dependent = inverse_or_zero({4, 2, 0, 2, 1, 0, 0, 0, 0});  // the second row is half of the first
-  CHECK(dependent == Block{0.25});
 }

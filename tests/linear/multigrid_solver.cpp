@@ -83,18 +83,6 @@ std::int64_t iterations_for_a_pull(const Assembly& assembly) {
 
 }  // namespace
 
-TEST_CASE("multigrid_agrees_with_elimination_on_every_kind_of_assembly") {
-  for (const HeldScene& scene : held_scenes()) {
-    if (scene.springs.any_negative()) continue;
-    const Network system(scene.assembly(), scene.springs, scene.supports, scene.options.rotation);
-    const std::vector<double> load = random_vector(system.unknowns.held.size(), 11);
-    const auto solver = system.multigrid({.direct_below = 0});
-    const double off = difference(system.solved(*solver, load), system.solved(*system.elimination(), load));
-    CAPTURE(scene.name, off, solver->report().iterations);
-    CHECK(off < 3e-5);
-  }
-}
-
 TEST_CASE("the_error_of_a_solution_is_within_its_estimate_and_the_rounding_of_the_matrix") {
   constexpr double rounding = 2e-6;  // of the matrix in single precision, in the norm of energy
   for (const HeldScene& scene : held_scenes()) {
@@ -124,19 +112,6 @@ TEST_CASE("iterations_stay_flat_from_1e3_to_1e5_discs") {
     CHECK(*std::max_element(iterations.begin(), iterations.end()) <= iterations[0] + 3);
     CHECK(iterations.back() <= 11);
   }
-}
-
-TEST_CASE("bits_of_multigrid_are_those_of_one_thread") {
-  const Assembly assembly = delaunay_assembly({.discs = 30000});
-  const Network system(assembly, half_tangential, left_held);
-  const std::vector<double> load = random_vector(system.unknowns.held.size(), 5);
-  std::vector<std::vector<double>> answers;
-  for (const int threads : {1, 2, 3}) {
-    const ThreadsFor only(threads);
-    answers.push_back(system.solved(*system.multigrid(), load));
-  }
-  CHECK(answers[0] == answers[1]);
-  CHECK(answers[0] == answers[2]);
 }
 
 TEST_CASE("spacing_and_smoothing_change_iterations_but_not_the_answer") {
@@ -171,18 +146,6 @@ TEST_CASE("networks_that_grow_rigid_have_no_motions_without_energy_but_rigid_one
   }
 }
 
-TEST_CASE("multigrid_refuses_motions_without_stiffness_that_no_load_drives") {
-  Assembly assembly = hexagonal_lattice({.columns = 30, .rows = 30});
-  const std::int32_t loose = 465;  // in the middle: of its six contacts two are left
-  std::erase_if(assembly.contacts,
-                [&, kept = 0](const Contact& c) mutable { return (c.i == loose || c.j == loose) && ++kept > 1; });
-  const Network system(assembly, half_tangential, left_held);
-  const Refusal refusal = refusal_of([&] { static_cast<void>(system.multigrid()); });
-  CAPTURE(refusal.message);
-  CHECK(refusal.kind == ErrorKind::computation_failed);
-  CHECK(refusal.says("method = \"multifrontal\""));
-}
-
 TEST_CASE("pieces_far_apart_leave_the_grids_small") {
   Assembly assembly = hexagonal_lattice({.columns = 15, .rows = 15});
   const auto discs = static_cast<std::int32_t>(assembly.size());
@@ -209,26 +172,4 @@ TEST_CASE("pieces_far_apart_leave_the_grids_small") {
   CAPTURE(refusal.message, off, bytes);
   CHECK((refusal.message.empty() ? off < 1e-4 : refusal.says("method = \"multifrontal\"")));
   CHECK(bytes < 5e6);
-}
-
-TEST_CASE("springs_of_all_sizes_are_refused_or_solved") {
-  const Assembly assembly = hexagonal_lattice({.columns = 30, .rows = 30});
-  for (const int decades : {1, 2, 4, 10}) {
-    Random random(8);
-    std::vector<SpringConstants> each(assembly.contacts.size());
-    for (SpringConstants& k : each) {
-      k.kN = 1e9 * std::pow(10.0, random.uniform(-decades, 0));
-      k.kT = 0.5 * k.kN;
-    }
-    const ContactSprings springs(each);
-    const Network system(assembly, springs, left_held);
-    const std::vector<double> load = random_vector(system.unknowns.held.size(), 9);
-    double off = 0;
-    const Refusal refusal = refusal_of([&] {
-      off = difference(system.solved(*system.multigrid(), load), system.solved(*system.elimination(), load));
-    });
-    CAPTURE(decades, refusal.message, off);
-    CHECK((refusal.message.empty() ? off < 1e-4 : refusal.says("method = \"multifrontal\"")));
-    if (decades == 1) CHECK(refusal.message.empty());
-  }
 }

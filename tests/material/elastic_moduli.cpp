@@ -102,12 +102,3 @@ TEST_CASE("moduli_out_of_range_are_refused_with_value_and_bound") {
   CHECK_THROWS_WITH(moduli_from_bulk(1, 4, Plane::strain), Catch::Contains("Read it in plane stress"));
   CHECK(moduli_from_bulk(1, 4, Plane::stress).poisson_ratio == Approx(-0.6));
 }
-
-TEST_CASE("planes_have_the_names_of_the_case_file") {
-  CHECK(enum_from<Plane>("strain") == Plane::strain);
-  CHECK(enum_from<Plane>("stress") == Plane::stress);
-  CHECK(to_string(Plane::strain) == "strain");
-  CHECK(to_string(Plane::stress) == "stress");
-  CHECK_THROWS_WITH(enum_from<Plane>("Strain"),
-                    Catch::Contains("unknown plane 'Strain'") && Catch::Contains("\"stress\""));
-}

@@ -68,12 +68,6 @@ TEST_CASE("every_disc_has_the_inertia_of_its_radius") {
   }
 }
 
-TEST_CASE("bodies_have_the_names_of_the_case_file") {
-  for (const Body body : {Body::disc, Body::sphere}) CHECK(enum_from<Body>(to_string(body)) == body);
-  CHECK(to_string(Body::disc) == "disc");
-  CHECK_THROWS_WITH(enum_from<Body>("cube"), Catch::Contains("unknown body 'cube'") && Catch::Contains("\"sphere\""));
-}
-
 TEST_CASE("density_that_gives_no_mass_is_refused") {
   for (const double density : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     CAPTURE(density);

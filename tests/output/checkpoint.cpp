@@ -71,35 +71,6 @@ TEST_CASE("an_empty_case_has_a_checkpoint_too") {
   CHECK(refusal_of([&] { read_checkpoint(folder / "a.h5", case_text); }).says("line 1: nothing there"));
 }
 
-TEST_CASE("killed_at_any_moment_the_last_checkpoint_is_good") {
-  const std::size_t discs = 300;
-  const TemporaryFolder folder;
-  const auto path = folder / "run.checkpoint.h5";
-  const CheckpointWriter writer(path, case_text, false);
-  writer.write({state_at(0, discs)});
-  Random random(3);
-  std::int64_t last = 0;
-  int left_behind = 0;
-  std::uint64_t longest = 15000;  // microseconds; longer where no work is finished in that time
-  for (int round = 0; round < 80; ++round) {
-    kill_during(
-        [&] {
-          for (std::int64_t step = last + 1;; ++step) writer.write({state_at(step, discs)});
-        },
-        static_cast<unsigned>(random.below(longest)));
-    left_behind += std::filesystem::exists(path.string() + ".part") ? 1 : 0;
-    const SavedState state = read_checkpoint(path, case_text).state;
-    CAPTURE(round, last, state.step);
-    REQUIRE(state.step >= last);
-    REQUIRE(same_bits(state, state_at(state.step, discs)));
-    if (state.step == last) longest = std::min<std::uint64_t>(longest + longest / 4, 300000);
-    last = state.step;
-  }
-  INFO(last << " checkpoints, " << left_behind << " killed while they were written");
-  CHECK(last > 0);
-  CHECK(left_behind > 0);  // otherwise no kill interrupted a write
-}
-
 TEST_CASE("an_altered_checkpoint_is_refused_whatever_byte_it_is") {
   const TemporaryFolder folder;
   const auto path = folder / "run.checkpoint.h5";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "equidem/output/files/frames.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -175,47 +174,6 @@ TEST_CASE("an_earlier_run_leaves_no_trace_in_one_that_replaces_it") {
   CHECK(files_in(folder / "a/run") == files_in(folder / "b/run"));
   for (const auto& file : std::filesystem::directory_iterator(folder / "a/run"))
     CHECK(read_file(file.path()) == read_file(folder / "b/run" / file.path().filename()));
-}
-
-TEST_CASE("a_killed_run_leaves_all_listed_frames_whole") {
-  const Assembly assembly = block();
-  Random random(11);
-  std::int64_t most = 0, least = 1 << 30;
-  std::uint64_t longest = 40000;  // microseconds; longer where no work is finished in that time
-  for (int round = 0; round < 50; ++round) {
-    const TemporaryFolder folder;
-    FrameWriter writer(folder.path(), "run", assembly, {});
-    append(writer, assembly, 0);
-    const FileMark mark = writer.mark();
-    kill_during(
-        [&] {
-          for (std::int64_t step = 1;; ++step) append(writer, assembly, step);
-        },
-        static_cast<unsigned>(random.below(longest)));
-    REQUIRE(read_file(folder / "run.pvd").ends_with("</VTKFile>\n"));
-    const FoundFrames found = read_frames(folder / "run.pvd", assembly);
-    const auto files = static_cast<std::int64_t>(files_in(folder / "run"));
-    CAPTURE(round, found.count(), files);
-    REQUIRE(found.count() >= 1);
-    CHECK(found.wrong == 0);
-    for (std::int64_t k = 0; k < found.count(); ++k) REQUIRE(found.steps[static_cast<std::size_t>(k)] == k);
-    // With many frames the list is written after every few frames: the last percent may be missing.
-    CHECK(files <= 2 * (found.count() + 2 + found.count() / 100));
-    most = std::max(most, found.count());
-    least = std::min(least, found.count());
-    if (found.count() == 1) longest = std::min<std::uint64_t>(longest + longest / 4, 300000);
-
-    FrameWriter resumed(folder.path(), "run", assembly, {.continue_from = mark});
-    CHECK(resumed.frames() == 1);
-    append(resumed, assembly, 1);
-    resumed.finish();
-    const FoundFrames whole = read_frames(folder / "run.pvd", assembly);
-    CHECK(whole.count() == 2);
-    CHECK(whole.wrong == 0);
-    CHECK(files_in(folder / "run") <= 5);  // two frames, and a file in work when the process was killed
-  }
-  INFO("between " << least << " and " << most << " frames were finished");
-  CHECK(most > least + 3);  // the kills came at different moments
 }
 
 TEST_CASE("a_run_that_goes_on_drops_later_frames") {

@@ -132,43 +132,6 @@ TEST_CASE("the_view_of_an_animation_holds_its_walls") {
   CHECK(height > 0.24 * width);
 }
 
-TEST_CASE("a_film_of_an_open_scene_leaves_out_what_has_fallen_far_below_it_as_the_picture_does") {
-  AnimatedScene scene;
-  scene.walls[0].shape = Wall::Shape::segment;
-  scene.walls[0].point = {0, -0.2};
-  scene.walls[0].end = {3, -0.2};
-  const auto film = [&] {
-    GrainAnimation animation = scene.animation("three bodies");
-    animation.started = scene.grains;
-    return grain_animation_player(animation);
-  };
-  const std::string whole = film();
-  const Data before(whole);
-  for (const std::size_t f : {3, 4}) scene.frames[f].places[1].y -= 1000;
-  const std::string html = film();
-  const Data data(html);
-  for (const char* number : {"low.0", "low.1", "size.0", "size.1"}) {
-    CAPTURE(number);
-    CHECK(data(number) == Approx(before(number)).margin(0.1 * before("size.1")));
-  }
-  for (std::size_t f = 0; f < 5; ++f) {
-    CAPTURE(f);
-    CHECK((data(fmt::format("frames.{}.bodies.5", f)) < 0) == (f >= 3));
-    CHECK(data(fmt::format("frames.{}.bodies.2", f)) >= 0);
-  }
-  CHECK(count_of(whole, "left out") == 0);
-  CHECK(count_of(html, "bodies far outside are left out") == 1);
-  // Beside lines alone nothing is out of the scene; where all have fallen, they are shown.
-  scene.walls.resize(1);
-  scene.walls[0].shape = Wall::Shape::line;
-  CHECK(Data(film())("size.1") > 1000);
-  scene = AnimatedScene();
-  for (GrainFrame& frame : scene.frames)
-    for (Vec2& place : frame.places) place.y -= 1000;
-  const Data all(film());
-  CHECK(all("frames.4.bodies.2") >= 0);
-}
-
 TEST_CASE("a_player_is_one_well_formed_element") {
   const AnimatedScene scene;
   const std::string html = grain_animation_player(scene.animation("a < b & c > d"));

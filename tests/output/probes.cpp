@@ -182,30 +182,6 @@ TEST_CASE("histories_of_a_resumed_run_are_those_of_an_uninterrupted_one") {
   }
 }
 
-TEST_CASE("killed_at_any_moment_histories_can_go_on") {
-  const TemporaryFolder folder;
-  const auto path = folder / "probes.csv";
-  Random random(6);
-  for (int round = 0; round < 20; ++round) {
-    FileMark mark;
-    {
-      ProbeWriter writer(path, probes, discs, {.interval = 0, .overwrite = true});
-      for (std::int64_t step = 0; step < 5; ++step) record(writer, step);
-      mark = writer.mark();
-      for (std::int64_t step = 5; step < 9; ++step) record(writer, step);
-    }
-    kill_during(
-        [&] {
-          ProbeWriter writer(path, probes, discs, {.interval = 0, .continue_from = mark});
-          for (std::int64_t step = 5;; ++step) record(writer, step);
-        },
-        static_cast<unsigned>(random.below(10000)));
-    ProbeWriter writer(path, probes, discs, {.continue_from = mark});
-    writer.flush();
-    CHECK(steps_in(path) == std::vector<std::int64_t>{0, 1, 2, 3, 4});
-  }
-}
-
 TEST_CASE("histories_with_other_columns_are_refused") {
   const TemporaryFolder folder;
   const auto path = folder / "probes.csv";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A synthetic run whose state is a function of the step, and processes that are killed while they write.
+/// A synthetic run whose state is a function of the step, and processes whose disk is full.
 #pragma once
 
 #include <cmath>
@@ -59,22 +59,6 @@ inline SavedState state_at(std::int64_t step, std::size_t discs) {
                      {"previous", 3, numbers_of(motions_at(step - 1, discs))},
                      {"velocities", 3, numbers_of(velocities_at(step, discs))},
                      {"sums", 1, {s, s / 3, -s}}}};
-}
-
-/// Run `work` in another process and kill it after `microseconds`.
-inline void kill_during(const std::function<void()>& work, unsigned microseconds) {
-  const pid_t child = fork();
-  if (child == 0) {
-    try {
-      work();
-    } catch (...) {
-      _exit(1);
-    }
-    _exit(0);
-  }
-  usleep(microseconds);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
 }
 
 /// Message of the Error of `work` in another process whose files may not grow beyond `bytes`; empty: no error.

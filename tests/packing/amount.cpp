@@ -3,10 +3,10 @@
 /// Box and radii from two of number, box and solid fraction, without a case file.
 #include <string>
 
-#include "equidem/core/error.hpp"
 #include "equidem/packing/size_distribution.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -25,12 +25,8 @@ double solid_fraction(const PackingOptions& options) {
 
 /// The option that an error names.
 std::string fault_of_amount(const PackingAmount& amount, PackingOptions options = {}) {
-  try {
-    set_amount(amount, radii_of_amounts, options);
-  } catch (const Error& error) {
-    return error.where();
-  }
-  return "none";
+  const test::Refusal refused = test::refusal_of([&] { set_amount(amount, radii_of_amounts, options); });
+  return refused.message.empty() ? "none" : refused.where;
 }
 
 }  // namespace

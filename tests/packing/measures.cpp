@@ -11,54 +11,6 @@
 
 using namespace equidem;
 
-TEST_CASE("clipped_areas_agree_with_points_thrown_at_random") {
-  Random random(3);
-  const Rectangle region = {{0, 0}, {1, 0.6}};
-  constexpr int points = 20000;
-  for (int k = 0; k < 60; ++k) {
-    const double radius = random.uniform(0.05, 0.9);
-    const double x = random.uniform(-0.6, 1.6);
-    const Vec2 centre = {x, random.uniform(-0.6, 1.2)};
-    int hits = 0;
-    for (int p = 0; p < points; ++p) {
-      const double px = random.uniform(region.low.x, region.high.x);
-      const Vec2 way = Vec2{px, random.uniform(region.low.y, region.high.y)} - centre;
-      if (dot(way, way) < radius * radius) ++hits;
-    }
-    const double thrown = region.area() * hits / points;
-    CAPTURE(centre.x, centre.y, radius);
-    CHECK(clipped_area(centre, radius, region) == Approx(thrown).margin(4.5 * region.area() * 0.5 / std::sqrt(points)));
-  }
-}
-
-TEST_CASE("clipped_areas_of_special_places_are_exact") {
-  const Rectangle region = {{0, 0}, {2, 1}};
-  const double whole = std::numbers::pi * 0.01;
-  CHECK(clipped_area({1, 0.5}, 0.1, region) == Approx(whole).epsilon(1e-14));
-  CHECK(clipped_area({1, 0.1}, 0.1, region) == Approx(whole).epsilon(1e-14));
-  CHECK(clipped_area({1, 0}, 0.1, region) == Approx(whole / 2).epsilon(1e-14));
-  CHECK(clipped_area({2, 1}, 0.1, region) == Approx(whole / 4).epsilon(1e-14));
-  CHECK(clipped_area({1, 0.5}, 10, region) == Approx(2).epsilon(1e-14));
-  CHECK(clipped_area({1, 1.2}, 0.1, region) == Approx(0).margin(1e-16));
-  CHECK(clipped_area({1, 1.1}, 0.1, region) == Approx(0).margin(1e-16));
-  // A segment: r² (alpha - sin alpha cos alpha), cos alpha = 1/2.
-  const double alpha = std::numbers::pi / 3;
-  CHECK(clipped_area({1, 1.05}, 0.1, region) ==
-        Approx(0.01 * (alpha - std::sin(alpha) * std::cos(alpha))).epsilon(1e-13));
-}
-
-TEST_CASE("regions_that_tile_the_box_hold_all_discs_between_them") {
-  const auto sides = GENERATE(PackingBox::Sides::walls, PackingBox::Sides::periodic);
-  const GrainPacking packing = pack(square_box(PackingMethod::growth, sides, 300, 0.8));
-  const Vec2 size = packing.box.size;
-  const double x = 0.37 * size.x, y = 0.61 * size.y;
-  double covered = 0;
-  for (const Rectangle& region : {Rectangle{{0, 0}, {x, y}}, Rectangle{{x, 0}, {size.x, y}},
-                                  Rectangle{{0, y}, {x, size.y}}, Rectangle{{x, y}, size}})
-    covered += measure(packing, region).solid_fraction * region.area();
-  CHECK(covered == Approx(area_of_discs(packing.radii)).epsilon(1e-12));
-}
-
 TEST_CASE("a_region_without_bodies_or_out_of_a_periodic_box_is_refused") {
   const auto sides = GENERATE(PackingBox::Sides::walls, PackingBox::Sides::periodic);
   const GrainPacking packing = packing_of({{4, 2}, sides}, {{0.5, 0.5}}, {0.5});

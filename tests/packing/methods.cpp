@@ -8,47 +8,15 @@
 
 #include "packing/packings.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
 namespace {
 
-struct Reached {
-  PackingMethod method;
-  double solid_fraction;
-};
-/// Solid fraction that each method must reach with discs of 5 to 10 mm.
-constexpr Reached reached[] = {{PackingMethod::rejection, 0.5},
-                               {PackingMethod::local_moves, 0.72},
-                               {PackingMethod::insertion, 0.66},
-                               {PackingMethod::growth, 0.8}};
 constexpr PackingBox::Sides closed[] = {PackingBox::Sides::walls, PackingBox::Sides::periodic};
 
 }  // namespace
-
-TEST_CASE("discs_fill_the_box_as_asked_and_do_not_overlap") {
-  for (const auto& [method, fraction] : reached) {
-    for (const PackingBox::Sides sides : closed) {
-      const PackingOptions options = square_box(method, sides, 400, fraction);
-      const GrainPacking packing = pack(options);
-      INFO(to_string(method) << (packing.box.periodic() ? ", periodic" : ", walls"));
-      REQUIRE(packing.size() == options.radii.size());
-      CHECK(packing.complete);
-      auto given = options.radii, got = packing.radii;
-      std::sort(given.begin(), given.end());
-      std::sort(got.begin(), got.end());
-      double change = 0;
-      for (std::size_t k = 0; k < got.size(); ++k) change = std::max(change, std::abs(got[k] / given[k] - 1));
-      CHECK(change < 1e-14);
-      CHECK(area_of_discs(packing.radii) / packing.box.area() == Approx(fraction).epsilon(1e-12));
-      CHECK(largest_overlap(packing) <= options.overlap);
-      bool inside = true;
-      for (const Vec2 x : centres_of(packing))
-        inside = inside && x.x >= 0 && x.y >= 0 && x.x <= options.box.size.x && x.y <= options.box.size.y;
-      CHECK(inside);
-    }
-  }
-}
 
 TEST_CASE("a_seed_gives_the_same_bits_for_every_number_of_threads_and_another_seed_does_not") {
   const int before = thread_count();
@@ -129,12 +97,8 @@ TEST_CASE("discs_that_rearrange_while_they_jam_are_jammed_at_any_overlap_asked_f
 
 TEST_CASE("what_does_not_fit_is_refused_with_what_was_reached") {
   const auto problem = [](const PackingOptions& options) {
-    try {
-      pack(options);
-    } catch (const Error& error) {
-      return error.problem();
-    }
-    return std::string("none");
+    const test::Refusal refused = test::refusal_of([&] { pack(options); });
+    return refused.message.empty() ? "none" : refused.problem;
   };
   PackingOptions options = square_box(PackingMethod::rejection, PackingBox::Sides::walls, 200, 0.7);
   options.attempts = 200;
@@ -214,17 +178,6 @@ TEST_CASE("a_packing_that_fails_keeps_the_bodies_as_they_lie_and_says_why") {
   options = falling_soil(20, 0.1);
   options.settling.longest = 0.05;
   check_kept(options, 20, "not at rest");
-}
-
-TEST_CASE("one_disc_is_packed_by_every_method") {
-  for (const auto& entry : EnumNames<PackingMethod>::list) {
-    INFO(entry.name);
-    const bool falls = entry.value == PackingMethod::falling;
-    const GrainPacking packing =
-        pack(falls ? falling_soil(1, 0.1) : square_box(entry.value, PackingBox::Sides::walls, 1, 0.3));
-    REQUIRE(packing.size() == 1);
-    CHECK(largest_overlap(packing) < 1e-4);
-  }
 }
 
 // The centre of a clump is known to rounding only; what is nearly round is turned by next to nothing.

@@ -11,37 +11,6 @@
 
 using namespace equidem;
 
-TEST_CASE("settled_discs_carry_their_weights") {
-  PackingOptions options = falling_soil(120, 0.2);
-  const GrainPacking packing = pack(options);
-  const SettlingReport& report = packing.settling;
-  CAPTURE(report.unbalanced, report.largest_unbalanced, report.time, report.steps);
-  CHECK(report.unbalanced <= 1e-6);
-  // The floor and the friction of the walls carry all of the weight.
-  double weight = 0, carried = 0;
-  for (const Grain& grain : packing.grains) weight += grain.inertia.mass * options.settling.gravity;
-  for (const GrainContact& contact : packing.contacts) {
-    if (contact.j >= 0) continue;
-    const Vec2 on_wall =
-        contact.normal_force * contact.normal + contact.tangential_force * perpendicular(contact.normal);
-    carried -= on_wall.y;
-  }
-  CHECK(carried == Approx(weight).epsilon(1e-5));
-  // Springs are compressed by what they carry, but for what dashpots still do, and none pulls or slides beyond its
-  // friction.
-  double worst = 0, mean = 0;
-  for (const GrainContact& contact : packing.contacts) {
-    mean += contact.normal_force / static_cast<double>(packing.contacts.size());
-  }
-  for (const GrainContact& contact : packing.contacts) {
-    worst = std::max(worst, std::abs(contact.normal_force - options.settling.springs.kN * contact.overlap) / mean);
-    const double mu = contact.j < 0 ? options.settling.wall_friction : options.settling.friction;
-    CHECK(contact.normal_force > 0);
-    CHECK(std::abs(contact.tangential_force) <= mu * contact.normal_force * (1 + 1e-9));
-  }
-  CHECK(worst < 1e-3);
-}
-
 TEST_CASE("friction_keeps_settled_discs_looser") {
   PackingOptions options = falling_soil(150, 0.2);
   const auto height_of_mass = [&](double friction) {

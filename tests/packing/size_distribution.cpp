@@ -11,6 +11,7 @@
 #include "equidem/packing/packing.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 using namespace equidem;
 
@@ -112,12 +113,10 @@ TEST_CASE("sieve_curves_are_read_and_what_is_none_is_refused") {
 
 TEST_CASE("a_sieve_curve_that_descends_or_is_in_percent_is_told_so") {
   const auto problem_of = [](std::vector<Sieve> sieves) -> std::string {
-    try {
-      check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = std::move(sieves)});
-    } catch (const Error& error) {
-      return error.problem();
-    }
-    return {};
+    return test::refusal_of([&] {
+             check(SizeDistribution{.kind = SizeDistribution::Kind::sieve_curve, .sieves = std::move(sieves)});
+           })
+        .problem;
   };
   CHECK(problem_of({{0.002, 1}, {0.0015, 0.4}, {0.001, 0}}) == "the sieve curve descends");
   CHECK(problem_of({{0.001, 0}, {0.0015, 40}, {0.002, 100}}) == "the sieve curve runs to 100");

@@ -12,7 +12,6 @@
 
 #include "equidem/assembly/delaunay.hpp"
 #include "equidem/assembly/lattices.hpp"
-#include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/homogenize/stress.hpp"
 
@@ -39,32 +38,6 @@ std::vector<double> numbers_of(const Equilibrium& state) {
 }
 
 }  // namespace
-
-TEST_CASE("a_chain_in_tension_carries_the_same_force_everywhere_and_stretches_by_the_sum_of_its_springs") {
-  const int n = 40;
-  const Assembly chain = chain_of_discs(n, 0.01);
-  Random random(1);
-  std::vector<SpringConstants> k;
-  double flexibility = 0;
-  for (int c = 0; c + 1 < n; ++c) {
-    k.push_back({random.uniform(1e8, 1e10), random.uniform(1e8, 1e9)});
-    flexibility += 1 / k.back().kN;
-  }
-  const ContactSprings springs(k);
-  const double force = 1234.5;
-  const std::vector<Support> supports{{.group = "first", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  const Equilibrium state = solve_equilibrium(
-      chain, springs, supports, {{.group = "last", .kind = LoadKind::total, .force = {force, 0}}}, restrained);
-  for (const ContactForce& f : state.contact_forces) {
-    CAPTURE(f.normal, f.tangential);
-    CHECK(std::abs(f.normal - force) <= 1e-14 * force);
-    CHECK(std::abs(f.tangential) <= 1e-14 * force);
-  }
-  CHECK(state.motions.back().u.x == Approx(force * flexibility).epsilon(1e-14));
-  REQUIRE(state.reactions.size() == 1);
-  CHECK(state.reactions[0].force.x == Approx(-force).epsilon(1e-14));
-  CHECK(state.energy == Approx(0.5 * force * force * flexibility).epsilon(1e-14));
-}
 
 TEST_CASE("a_sheared_chain_of_discs_that_cannot_turn_needs_moments_to_hold_it") {
   const Assembly chain = chain_of_discs(4, 0.01);
@@ -314,62 +287,5 @@ TEST_CASE("a_state_of_rest_has_the_same_bits_for_every_number_of_threads") {
       REQUIRE(many.size() == one.size());
       CHECK(std::memcmp(many.data(), one.data(), one.size() * sizeof(double)) == 0);
     }
-  }
-}
-
-TEST_CASE("a_mechanism_is_held_where_no_load_drives_it_and_changes_no_force") {
-  // A triangle held at two discs; a fourth disc above, on one contact without tangential spring: it may slide sideways.
-  Assembly truss;
-  truss.kind = "truss";
-  truss.centres = {{0, 0}, {1, 0}, {0.5, std::sqrt(0.75)}, {0.5, std::sqrt(0.75) + 1}};
-  truss.radii.assign(4, 0.5);
-  for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 2}, {2, 3}})
-    truss.contacts.push_back({.i = i, .j = j, .lever_i = 0.5, .lever_j = 0.5});
-  for (std::int32_t disc = 0; disc < 4; ++disc) truss.groups[std::to_string(disc)] = {{disc}, {}};
-  const ContactSprings springs(SpringConstants{1e9, 0});
-  const std::vector<Support> supports{{.group = "0", .ux = 0.0, .uy = 0.0, .rotation = {}},
-                                      {.group = "1", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  const EquilibriumOptions hold{.solver = {}, .mechanisms = Mechanisms::hold};
-  const EquilibriumSolver solver(truss, springs, supports, hold);
-
-  const Equilibrium along = solver.solve({{.group = "3", .force = {0, -7}}});
-  CHECK(along.mechanisms == 1);
-  CHECK(along.contact_forces[3].normal == Approx(-7).epsilon(1e-12));
-  CHECK(along.contact_forces[1].normal == Approx(-7 / std::sqrt(3)).epsilon(1e-12));
-  const Equilibrium below = solver.solve({{.group = "2", .force = {3, 0}}});
-  CHECK(std::abs(below.contact_forces[3].normal) < 1e-12);
-  CHECK(below.contact_forces[1].normal == Approx(-3).epsilon(1e-12));
-  CHECK(below.contact_forces[2].normal == Approx(3).epsilon(1e-12));
-
-  const Refusal driven = refusal_of([&] { static_cast<void>(solver.solve({{.group = "3", .force = {1, 0}}})); });
-  CAPTURE(driven.message);
-  CHECK(driven.says("a load drives a mechanism"));
-  CHECK_THROWS_AS(EquilibriumSolver(truss, springs, supports), Error);
-}
-
-TEST_CASE("a_stiff_block_that_turns_far_on_a_soft_spring_balances_its_load") {
-  // The block turns about its pinned corner. What stretches its own springs is 1e-11 and less of the motion.
-  const int rows = 6;
-  Assembly block = hexagonal_lattice({.columns = 8, .rows = rows, .radius = 0.5});
-  const std::int32_t pin = group(block, "bottom_left").discs[0], on_spring = group(block, "bottom_right").discs[0];
-  const std::int32_t loaded = group(block, "top").discs.back(), ground = static_cast<std::int32_t>(block.size());
-  block.centres.push_back(block.centres[on_spring] - Vec2{0, 1});
-  block.cell_areas.clear();
-  block.facet_lengths.clear();
-  block.radii.push_back(0.5);
-  block.contacts.push_back({.i = ground, .j = on_spring, .lever_i = 0.5, .lever_j = 0.5});
-  block.groups = {{"held", {{pin, ground}, {}}}, {"loaded", {{loaded}, {}}}};
-  const std::vector<Support> supports{{.group = "held", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  const auto reach = [&](std::int32_t disc) { return block.centres[disc].x - block.centres[pin].x; };
-  const double force = reach(loaded) / reach(on_spring);  // moments about the pin
-  for (const double softness : {1e-3, 1e-9, 1e-11, 1e-12}) {
-    std::vector<SpringConstants> k(block.contacts.size(), {1e9, 0});
-    k.back().kN = softness * 1e9;
-    const Equilibrium state =
-        solve_equilibrium(block, ContactSprings(k), supports, {{.group = "loaded", .force = {0, 1}}});
-    CAPTURE(softness, state.relative_residual, state.refinements, state.contact_forces.back().normal, force);
-    CHECK(state.relative_residual <= 1e-13);
-    CHECK(state.contact_forces.back().normal == Approx(force).epsilon(1e-13));
-    CHECK(state.motions[on_spring].u.y == Approx(force / (softness * 1e9)).epsilon(1e-13));
   }
 }

@@ -8,10 +8,8 @@
 #include <numeric>
 #include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "equidem/assembly/lattices.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/linear/contact_graph.hpp"
@@ -19,7 +17,7 @@
 #include "equidem/statics/mechanisms.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
-#include "statics/random_bending.hpp"
+#include "statics/random_networks.hpp"
 #include "statics/semidefinite_factor.hpp"
 #include "support/catch.hpp"
 
@@ -142,22 +140,8 @@ double energy(const Compatibility& law, const Vector& forces) {
 int spanned_by(const Assembly& assembly) {
   std::set<std::pair<int, int>> windings;
   for (int first = 0; first < static_cast<int>(assembly.size()); ++first) {
-    std::set<std::tuple<int, int, int>> found{{first, 0, 0}};
-    std::vector<std::tuple<int, int, int>> open{{first, 0, 0}};
-    while (!open.empty()) {
-      const auto [d, x, y] = open.back();
-      open.pop_back();
+    for (const auto& [d, x, y] : images_joined_to(assembly, first))
       if (d == first && (x != 0 || y != 0)) windings.insert({x, y});
-      const auto visit = [&](int other, int to_x, int to_y) {
-        if (std::abs(to_x) < 6 && std::abs(to_y) < 6 && found.insert({other, to_x, to_y}).second) {
-          open.emplace_back(other, to_x, to_y);
-        }
-      };
-      for (const Contact& c : assembly.contacts) {
-        if (c.i == d) visit(c.j, x + c.shift_x, y + c.shift_y);
-        if (c.j == d) visit(c.i, x - c.shift_x, y - c.shift_y);
-      }
-    }
   }
   for (const auto& [x, y] : windings) {
     for (const auto& [p, q] : windings) {
@@ -173,15 +157,10 @@ Network random_network(Random& random, bool bends) {
   Network network;
   Assembly& a = network.assembly;
   const bool periodic = random.uniform() < 0.7;
-  const LatticeOptions options{.columns = (periodic ? 1 : 2) + static_cast<int>(random.below(3)),
-                               .rows = 2 + 2 * static_cast<int>(random.below(2)),
-                               .radius = 0.5,
-                               .periodic = periodic};
-  a = random.uniform() < 0.7 ? hexagonal_lattice(options) : square_lattice(options);
-  if (random.uniform() < 0.7) {
-    for (Vec2& x : a.centres) x += {random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
-    for (double& r : a.radii) r = random.uniform(0.3, 0.6);
-  }
+  const int columns = (periodic ? 1 : 2) + static_cast<int>(random.below(3)),
+            rows = 2 + 2 * static_cast<int>(random.below(2));
+  const bool hexagonal = random.uniform() < 0.7;
+  a = shaken_lattice(hexagonal, {.columns = columns, .rows = rows, .radius = 0.5, .periodic = periodic}, random);
   const double lost = random.uniform(0.2, 0.7);
   std::erase_if(a.contacts, [&](const Contact&) { return random.uniform() < lost; });
   const std::uint64_t levers = random.below(6);
@@ -194,10 +173,7 @@ Network random_network(Random& random, bool bends) {
     c.lever_j = levers == 2 ? a.radii[c.j] : l - c.lever_i;
   }
   const double tangential = std::min(1.0, 1.5 * random.uniform());
-  std::vector<SpringConstants> springs(a.contacts.size());
-  for (auto& k : springs) k = {random.uniform(0.5, 2), random.uniform() < tangential ? random.uniform(0.2, 1) : 0.0};
-  network.springs = ContactSprings(springs);
-  if (bends) network.springs = network.springs.with_bending(random_bending(springs.size(), random));
+  network.springs = drawn_springs(a.contacts.size(), tangential, bends, random);
   network.rotation = random.uniform() < 0.7 ? Rotation::free : Rotation::restrained;
   if (!periodic || random.uniform() < 0.1) {
     network.held.resize(a.size());

@@ -3,6 +3,7 @@
 /// Motions in words, and the quotient of energies that distinguishes a mechanism from a soft mode.
 #include "equidem/statics/motion_description.hpp"
 
+#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -44,72 +45,34 @@ std::vector<DiscMotion> gears(const Assembly& square_assembly) {
   return motions;
 }
 
-/// Cholesky factor of K + shift max(diag K) over the free components, in a band; discs of lattices are numbered along
-/// their rows, so that the band of a slender one is narrow.
-class BandSolver {
- public:
-  BandSolver(const Assembly& assembly, const ContactSprings& springs, const DegreesOfFreedom& unknowns, double shift) {
-    const ContactGraph graph(assembly);
-    columns_ = compress(assemble_stiffness(assembly, graph, springs, unknowns), assembly, graph, unknowns);
-    const std::int64_t n = columns_.size;
-    for (std::int64_t c = 0; c < n; ++c) {
-      for (std::int64_t e = columns_.first[c]; e < columns_.first[c + 1]; ++e) {
-        band_ = std::max(band_, columns_.rows[e] - c);
-      }
-    }
-    l_.assign(n * (band_ + 1), 0.0);
-    for (std::int64_t c = 0; c < n; ++c) {
-      for (std::int64_t e = columns_.first[c]; e < columns_.first[c + 1]; ++e) {
-        at(columns_.rows[e], c) += columns_.values[e];
-      }
-      at(c, c) += shift * springs.largest();
-    }
-    for (std::int64_t c = 0; c < n; ++c) {
-      for (std::int64_t k = std::max<std::int64_t>(0, c - band_); k < c; ++k) {
-        for (std::int64_t r = c; r <= std::min(n - 1, k + band_); ++r) at(r, c) -= at(r, k) * at(c, k);
-      }
-      REQUIRE(at(c, c) > 0);
-      at(c, c) = std::sqrt(at(c, c));
-      for (std::int64_t r = c + 1; r <= std::min(n - 1, c + band_); ++r) at(r, c) /= at(c, c);
-    }
+/// The eigenvector of the smallest eigenvalue of K + shift max(diag K) by inverse iteration, as motions.
+std::vector<DiscMotion> softest_mode(const Assembly& assembly, const ContactSprings& springs,
+                                     const DegreesOfFreedom& unknowns, double shift) {
+  const ContactGraph graph(assembly);
+  const CompressedColumns columns =
+      compress(assemble_stiffness(assembly, graph, springs, unknowns), assembly, graph, unknowns);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::int64_t c = 0; c < columns.size; ++c) {
+    entries.emplace_back(c, c, shift * springs.largest());
+    for (std::int64_t e = columns.first[c]; e < columns.first[c + 1]; ++e)
+      entries.emplace_back(columns.rows[e], c, columns.values[e]);
   }
-
-  /// The eigenvector of the smallest eigenvalue by inverse iteration, as motions.
-  std::vector<DiscMotion> softest_mode(const Assembly& assembly, const DegreesOfFreedom& unknowns) {
-    const std::int64_t n = columns_.size;
-    Random random(3);
-    std::vector<double> x(n);
-    for (double& value : x) value = random.uniform(-1, 1);
-    for (int iteration = 0; iteration < 30; ++iteration) {
-      for (std::int64_t c = 0; c < n; ++c) {
-        x[c] /= at(c, c);
-        for (std::int64_t r = c + 1; r <= std::min(n - 1, c + band_); ++r) x[r] -= at(r, c) * x[c];
-      }
-      for (std::int64_t c = n; c-- > 0;) {
-        for (std::int64_t r = c + 1; r <= std::min(n - 1, c + band_); ++r) x[c] -= at(r, c) * x[r];
-        x[c] /= at(c, c);
-      }
-      double square = 0;
-      for (const double value : x) square += value * value;
-      for (double& value : x) value /= std::sqrt(square);
-    }
-    std::vector<DiscMotion> motions(assembly.size());
-    for (std::int64_t c = 0; c < n; ++c) {
-      const std::int64_t disc = columns_.component[c] / unknowns.per_disc;
-      const std::int64_t k = columns_.component[c] % unknowns.per_disc;
-      DiscMotion& m = motions[disc];
-      (k == 0 ? m.u.x : k == 1 ? m.u.y : m.theta) = k == 2 ? x[c] / unknowns.rotation_scale : x[c];
-    }
-    return motions;
+  Eigen::SparseMatrix<double> K(columns.size, columns.size);
+  K.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(K);  // reads the lower triangle
+  REQUIRE(factor.info() == Eigen::Success);
+  Random random(3);
+  Eigen::VectorXd x(columns.size);
+  for (double& value : x) value = random.uniform(-1, 1);
+  for (int iteration = 0; iteration < 30; ++iteration) x = factor.solve(x).eval().normalized();
+  std::vector<DiscMotion> motions(assembly.size());
+  for (std::int64_t c = 0; c < columns.size; ++c) {
+    const std::int64_t k = columns.component[c] % unknowns.per_disc;
+    DiscMotion& m = motions[columns.component[c] / unknowns.per_disc];
+    (k == 0 ? m.u.x : k == 1 ? m.u.y : m.theta) = k == 2 ? x[c] / unknowns.rotation_scale : x[c];
   }
-
- private:
-  double& at(std::int64_t r, std::int64_t c) { return l_[c * (band_ + 1) + r - c]; }
-
-  CompressedColumns columns_;
-  std::int64_t band_ = 0;
-  std::vector<double> l_;
-};
+  return motions;
+}
 
 /// The first row held in all components.
 DegreesOfFreedom clamp_first_row(const Assembly& assembly, int columns, int per_disc) {
@@ -166,8 +129,7 @@ TEST_CASE("mechanisms_have_no_stiffness_but_rounding") {
     const Assembly assembly = square_block(10, 30);
     const ContactSprings springs(SpringConstants{1e9, 0});
     const DegreesOfFreedom unknowns = clamp_first_row(assembly, 10, 2);
-    BandSolver solver(assembly, springs, unknowns, 1e-13);
-    const auto motions = solver.softest_mode(assembly, unknowns);
+    const auto motions = softest_mode(assembly, springs, unknowns, 1e-13);
     const double quotient = softness(assembly, springs, motions);
     CAPTURE(quotient);
     CHECK(std::abs(quotient) < 1e-24);
@@ -184,8 +146,7 @@ TEST_CASE("soft_modes_stay_above_mechanisms") {
   const Assembly assembly = hexagonal(strip.columns, strip.rows);
   const ContactSprings springs(SpringConstants{1e9, strip.kT});
   const DegreesOfFreedom unknowns = clamp_first_row(assembly, strip.columns, 3);
-  BandSolver solver(assembly, springs, unknowns, 0);
-  const auto motions = solver.softest_mode(assembly, unknowns);
+  const auto motions = softest_mode(assembly, springs, unknowns, 0);
   const double quotient = softness(assembly, springs, motions);
   CAPTURE(assembly.size(), strip.columns, strip.kT, quotient);
   CHECK(quotient > 1e-16);

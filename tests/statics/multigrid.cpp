@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// States of rest by method = "multigrid" are those of elimination.
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -133,65 +132,6 @@ TEST_CASE("multigrid_finds_the_states_of_rest_of_elimination") {
   }
 }
 
-TEST_CASE("multigrid_finds_the_tension_test_of_elimination") {
-  for (const Assembly& assembly :
-       {hexagonal_lattice({.columns = 21, .rows = 21}), network(PointProcess::poisson_disc, false, false)}) {
-    const ContactSprings springs({1e9, 0.2e9});
-    const TensionSetup setup = tension_setup(assembly, {});
-    check_same(assembly.kind, assembly, springs, setup.supports, setup.loads);
-  }
-}
-
-TEST_CASE("multigrid_solves_cases_with_nothing_to_do") {
-  Assembly assembly = hexagonal_lattice({.columns = 20, .rows = 20});
-  for (std::size_t d = 0; d < assembly.size(); ++d) {
-    assembly.groups["all"].discs.push_back(static_cast<std::int32_t>(d));
-  }
-  const ContactSprings springs({1e9, 0.5e9});
-  const std::vector<Support> left{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
-  const Equilibrium unloaded = solve_equilibrium(assembly, springs, left, {}, by(SolverMethod::multigrid));
-  for (const DiscMotion& motion : unloaded.motions) CHECK(norm(motion.u) == 0);
-  CHECK(unloaded.iterations == 0);
-  const std::vector<Support> everywhere{{.group = "all", .ux = 1e-3, .uy = 0.0, .rotation = 0.0}};
-  const Equilibrium held = solve_equilibrium(assembly, springs, everywhere, {}, by(SolverMethod::multigrid));
-  for (const DiscMotion& motion : held.motions) CHECK(motion.u == Vec2{1e-3, 0});
-}
-
-TEST_CASE("multigrid_is_right_or_names_the_method_that_serves") {
-  struct Hard {
-    std::string name;
-    Assembly assembly;
-  };
-  std::vector<Hard> all;
-  for (const int rows : {2, 3, 6}) {
-    all.push_back({"strip of " + std::to_string(rows) + " rows", hexagonal_lattice({.columns = 300, .rows = rows})});
-  }
-  for (const double share : {0.3, 0.4, 0.5}) {  // left out
-    Assembly assembly = hexagonal_lattice({.columns = 30, .rows = 30});
-    Random random(1);
-    std::erase_if(assembly.contacts, [&](const Contact&) { return random.uniform() < share; });
-    assembly.facet_lengths.clear();
-    all.push_back({"diluted by " + std::to_string(share), std::move(assembly)});
-  }
-  const std::vector<Support> left{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = 0.0}};
-  const ContactSprings springs({1e9, 0.5e9});
-  const LoadCase loads{{.group = "right", .kind = LoadKind::total, .force = {0, 1e3}}};
-  for (const Hard& hard : all) {
-    Equilibrium ours, direct;
-    const Refusal refused =
-        refusal_of([&] { ours = solve_equilibrium(hard.assembly, springs, left, loads, by(SolverMethod::multigrid)); });
-    const Refusal directly = refusal_of(
-        [&] { direct = solve_equilibrium(hard.assembly, springs, left, loads, by(SolverMethod::multifrontal)); });
-    CAPTURE(hard.name, refused.message, directly.message, ours.iterations);
-    if (refused.message.empty()) {
-      REQUIRE(directly.message.empty());
-      CHECK(largest_difference(hard.assembly, ours, direct) < 1e-7);
-    } else {
-      CHECK((refused.says("multifrontal") || !directly.message.empty()));
-    }
-  }
-}
-
 TEST_CASE("multigrid_refuses_negative_springs_and_floppy_networks") {
   const Assembly assembly = hexagonal_lattice({.columns = 20, .rows = 20});
   const std::vector<Support> left{{.group = "left", .ux = 0.0, .uy = 0.0, .rotation = {}}};
@@ -209,19 +149,4 @@ TEST_CASE("multigrid_refuses_negative_springs_and_floppy_networks") {
   CAPTURE(floppy.message);
   CHECK(floppy.kind == ErrorKind::computation_failed);
   CHECK(floppy.says("method = \"multifrontal\""));
-}
-
-TEST_CASE("the_error_bound_of_multigrid_holds") {
-  const Assembly assembly = network(PointProcess::poisson_disc, false, true);
-  EquilibriumOptions options = by(SolverMethod::multigrid);
-  options.error_bound = true;
-  const LoadCase loads{{.group = "right", .kind = LoadKind::total, .force = {1e5, 0}}};
-  const ContactSprings springs({1e9, 0.5e9});
-  const auto supports = supports_of(assembly);
-  const Equilibrium ours = solve_equilibrium(assembly, springs, supports, loads, options);
-  options.solver.method = SolverMethod::multifrontal;
-  const Equilibrium direct = solve_equilibrium(assembly, springs, supports, loads, options);
-  CHECK(ours.condition == Approx(direct.condition).epsilon(0.1));
-  CHECK(largest_difference(assembly, ours, direct) < ours.error_bound + direct.error_bound);
-  CHECK(ours.error_bound < 1e-9);
 }

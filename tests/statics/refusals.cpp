@@ -36,17 +36,14 @@ Assembly small_block() {
 void check_refused(const Assembly& assembly, SpringConstants k, const std::vector<Support>& supports,
                    const LoadCase& loads, const std::vector<std::string>& words, EquilibriumOptions options = {}) {
   const ContactSprings springs(k);
-  std::string solution;
   const Refusal refusal =
-      refusal_of([&] { solution = solve_equilibrium(assembly, springs, supports, loads, options).report(); });
+      refusal_of([&] { static_cast<void>(solve_equilibrium(assembly, springs, supports, loads, options)); });
   INFO("the sentence: " << refusal.message);
-  INFO("the solution: " << solution);
-  CHECK(!refusal.message.empty());
+  REQUIRE_FALSE(refusal.message.empty());
   for (const std::string& word : words) {
     INFO("looked for: " << word);
     CHECK(refusal.says(word));
   }
-  if (refusal.message.empty()) return;
   CHECK(refusal.says("("));
   CHECK(refusal.message.back() == '.');
 }

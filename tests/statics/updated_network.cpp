@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <string>
@@ -121,28 +120,6 @@ TEST_CASE("residuals_are_as_told_to_the_last_contact") {
     CHECK(events > 30);
   }
   CHECK(measured > 500);
-}
-
-TEST_CASE("breaking_has_the_same_bits_on_every_number_of_threads") {
-  for (const BreakingScene& scene : breaking_scenes()) {
-    std::vector<std::vector<double>> found;
-    for (const int threads : {1, 2, 3}) {
-      const ThreadsFor set(threads);
-      UpdatedNetwork state = scene.updated();
-      std::vector<double> numbers;
-      for (int event = 0; event < 25; ++event) {
-        const Weakest next = weakest(scene, state.forces(0));
-        numbers.push_back(next.load_factor);
-        numbers.push_back(static_cast<double>(next.contact));
-        static_cast<void>(state.remove(static_cast<std::size_t>(next.contact)));
-      }
-      for (const ContactForce& f : state.forces(0)) numbers.push_back(f.normal), numbers.push_back(f.tangential);
-      found.push_back(std::move(numbers));
-    }
-    CAPTURE(scene.name);
-    CHECK(std::memcmp(found[0].data(), found[1].data(), found[0].size() * sizeof(double)) == 0);
-    CHECK(std::memcmp(found[0].data(), found[2].data(), found[0].size() * sizeof(double)) == 0);
-  }
 }
 
 TEST_CASE("what_comes_loose_is_held_and_named_and_a_load_on_it_is_not_carried") {

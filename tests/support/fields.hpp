@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Random fields on assemblies, and what errors say.
+/// Random fields on assemblies.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/frame.hpp"
-#include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/statics/number_unknowns.hpp"
 
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 namespace equidem::test {
 
@@ -69,23 +68,6 @@ inline std::vector<DiscMotion> as_motions(const DegreesOfFreedom& unknowns, std:
     motions[d] = {{x[d * b], x[d * b + 1]}, b == 3 ? x[d * b + 2] / unknowns.rotation_scale : 0.0};
   }
   return motions;
-}
-
-/// Kind and message of the Error that `call` throws; the message is empty where it throws none.
-struct Refusal {
-  std::string message;
-  ErrorKind kind = ErrorKind::bad_input;
-
-  [[nodiscard]] bool says(const std::string& words) const { return message.find(words) != std::string::npos; }
-};
-template <typename Call>
-Refusal refusal_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return {error.what(), error.kind()};
-  }
-  return {};
 }
 
 /// Sets the number of threads and puts the old one back.

@@ -160,33 +160,3 @@ TEST_CASE("restrained_rotation_has_the_wave_speeds_of_abe_53") {
   CHECK(speeds.longitudinal_squared == Approx((g + sum) / waves.mass_per_area()).epsilon(1e-13));
   CHECK(!waves.squared_rotational_gap());
 }
-
-TEST_CASE("long_waves_of_random_cells_approach_their_sound_speeds") {
-  const Assembly assembly = random_cell(12, GENERATE(1, 2, 3));
-  const BlochWaves waves = waves_of(assembly, GENERATE(0.2, 1.0));
-  const Vec2 n{0.28, 0.96};
-  const auto speeds = waves.sound_speeds(n);
-  const auto measured = [&](double q) {  // c² + O(q²)
-    const std::vector<double> values = waves.squared_frequencies(q * n);
-    return std::vector{values[0] / (q * q), values[1] / (q * q)};
-  };
-  const auto coarse = measured(4e-3), fine = measured(2e-3);
-  for (const int k : {0, 1}) {
-    const double expected = k == 0 ? std::min(speeds.longitudinal_squared, speeds.transverse_squared)
-                                   : std::max(speeds.longitudinal_squared, speeds.transverse_squared);
-    const double extrapolated = (4 * fine[k] - coarse[k]) / 3;
-    CAPTURE(k, expected, coarse[k], fine[k], extrapolated);
-    CHECK(extrapolated == Approx(expected).epsilon(1e-7));
-  }
-}
-
-TEST_CASE("the_same_sound_in_any_repetition_of_a_cell") {
-  const Assembly cell = random_cell(6, 2);
-  const ContactSprings springs(SpringConstants{1, 0.3});
-  const Assembly larger = repeated(cell, 2, 2, 5);
-  const BlochWaves small(primitive_cell(cell, springs), unit_masses(cell), true);
-  const BlochWaves large(given_cell(larger, springs), unit_masses(larger), true);
-  const auto p = small.sound_speeds({1, 2}), q = large.sound_speeds({1, 2});
-  CHECK(q.longitudinal_squared == Approx(p.longitudinal_squared).epsilon(1e-11));
-  CHECK(q.transverse_squared == Approx(p.transverse_squared).epsilon(1e-11));
-}

@@ -160,53 +160,6 @@ TEST_CASE("a_chain_with_a_held_and_a_free_end_has_the_frequencies_of_a_string_of
   }
 }
 
-// A bar that is held at one end and cannot move across: f = c/(4 L), c² = 3/8 (3 + kT/kN) kN d²/m along x, but for the
-// rows at its edges, whose share halves as the bar doubles.
-TEST_CASE("a_bar_vibrates_along_its_axis_with_a_quarter_wave") {
-  double before = 1;
-  for (const int rows : {20, 40, 80}) {
-    const int columns = 4 * rows;
-    Assembly bar = hexagonal_lattice({.columns = columns, .rows = rows, .radius = 0.5});
-    for (std::int32_t d = 0; d < static_cast<std::int32_t>(bar.size()); ++d) {
-      bar.groups["all"].discs.push_back(d);
-      if (bar.centres[d].x < bar.centres[0].x + 0.6) bar.groups["end"].discs.push_back(d);
-    }
-    const double ratio = 0.5;
-    const ContactSprings springs(SpringConstants{1, ratio});
-    const std::vector<Support> supports{{"end", 0.0, {}, {}}, {"all", {}, 0.0, 0.0}};
-    const DegreesOfFreedom unknowns =
-        number_unknowns(bar, springs, derive_effects(springs, Rotation::from_scene), supports);
-    const NaturalFrequencies found = natural_frequencies(bar, springs, unknowns, unit_masses(bar));
-    REQUIRE(!found.squared.empty());
-    const double theory = 0.5 * std::numbers::pi * std::sqrt(0.375 * (3 + ratio)) / (columns - 1);
-    const double error = std::abs(std::sqrt(found.squared.front()) / theory - 1);
-    CAPTURE(rows, theory, error, before, found.solver);
-    CHECK(found.converged);
-    CHECK(error < 0.6 * before);
-    CHECK(error < 0.8 / rows);
-    before = error;
-  }
-}
-
-// Euler & Bernoulli: omega_k in the ratios of (1.8751, 4.6941, 7.8548, 10.9955)², for frequencies 1e-13 of the highest.
-TEST_CASE("a_slender_cantilever_has_the_frequencies_of_a_beam") {
-  Assembly strip = hexagonal_lattice({.columns = 2000, .rows = 2, .radius = 0.5});
-  for (std::int32_t d = 0; d < static_cast<std::int32_t>(strip.size()); ++d) {
-    if (strip.centres[d].x < strip.centres[0].x + 0.6) strip.groups["end"].discs.push_back(d);
-  }
-  const ContactSprings springs(SpringConstants{1, 0.5});
-  const std::vector<Support> supports{{"end", 0.0, 0.0, 0.0}};
-  const DegreesOfFreedom unknowns =
-      number_unknowns(strip, springs, derive_effects(springs, Rotation::from_scene), supports);
-  const NaturalFrequencies found = natural_frequencies(strip, springs, unknowns, unit_masses(strip));
-  CAPTURE(found.squared, found.error_bounds, found.iterations, found.solver);
-  CHECK(found.converged);
-  REQUIRE(found.squared.size() == 4);
-  for (const auto& [k, root] : {std::pair{1, 4.694091}, std::pair{2, 7.854757}, std::pair{3, 10.995541}}) {
-    CHECK(std::sqrt(found.squared[k] / found.squared[0]) == Approx(std::pow(root / 1.875104, 2)).epsilon(1e-4));
-  }
-}
-
 TEST_CASE("multigrid_and_elimination_find_the_same_frequencies") {
   DelaunayOptions options{.discs = 1500, .seed = 3, .radii = {0.8, 1.6}, .aspect = 2};
   Assembly random = delaunay_assembly(options);

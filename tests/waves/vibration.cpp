@@ -8,7 +8,6 @@
 
 #include "equidem/homogenize/tension_test.hpp"
 
-#include "support/assemblies.hpp"
 #include "support/catch.hpp"
 #include "support/fields.hpp"
 #include "waves/networks.hpp"
@@ -98,23 +97,6 @@ TEST_CASE("no_assembly_vibrates_faster_than_its_element_bound") {
   }
 }
 
-TEST_CASE("holding_discs_lowers_the_highest_frequency") {
-  for (const HeldScene& scene : held_scenes()) {
-    const Assembly& assembly = scene.assembly();
-    const auto inertia = inertia_of(assembly.radii, 1000, Body::disc);
-    const Effects effects = derive_effects(scene.springs, scene.options.rotation);
-    const auto end_of = [&](std::span<const Support> supports) {
-      return extreme_squared_frequency(assembly, scene.springs,
-                                       number_unknowns(assembly, scene.springs, effects, supports), inertia,
-                                       SpectrumEnd::largest);
-    };
-    const ExtremeEigenvalue held = end_of(scene.supports), free = end_of({});
-    CAPTURE(scene.name, held.value, free.value, element_bound(assembly, scene.springs, inertia, effects.rotation));
-    CHECK(held.value <= free.value * (1 + 1e-12));
-    CHECK(free.value <= element_bound(assembly, scene.springs, inertia, effects.rotation) * (1 + 1e-12));
-  }
-}
-
 TEST_CASE("the_bits_of_the_highest_frequency_do_not_depend_on_threads") {
   const Assembly assembly = random_cell(400, 8);
   const ContactSprings springs(SpringConstants{1, 0.4});
@@ -126,18 +108,6 @@ TEST_CASE("the_bits_of_the_highest_frequency_do_not_depend_on_threads") {
     if (threads == 1) first = found.value;
     CHECK(found.value == first);
   }
-}
-
-// A chain of discs between walls, u_x only: omega² = 2 kN/m (1 + cos(pi/(n + 1))) for n discs between two that are
-// held.
-TEST_CASE("a_chain_between_held_ends_has_the_frequency_of_a_string_of_beads") {
-  const int n = GENERATE(1, 2, 30, 300);
-  Assembly chain = chain_of_discs(n + 2, 1);
-  const ContactSprings springs(SpringConstants{4, 0});
-  const std::vector<Support> supports{{"first", 0.0, 0.0, {}}, {"last", 0.0, 0.0, {}}};
-  const ExtremeEigenvalue found = highest(chain, springs, unit_masses(chain), supports);
-  CAPTURE(n, found.value, found.residual, found.products);
-  CHECK(found.value == Approx(8 * (1 + std::cos(std::numbers::pi / (n + 1)))).epsilon(1e-12));
 }
 
 TEST_CASE("with_negative_kT_the_finite_assembly_grows_no_faster_than_the_lattice") {
@@ -173,12 +143,9 @@ TEST_CASE("magnitudes_whose_squares_are_no_numbers_are_refused") {
   const auto refused = [&](double mass, double kN) {
     std::vector<Inertia> inertia = unit_masses(assembly);
     for (Inertia& body : inertia) body.mass *= mass, body.moment *= mass;
-    try {
-      check_magnitudes(assembly, ContactSprings(SpringConstants{kN, kN}), inertia);
-    } catch (const Error& error) {
-      return error.kind() == ErrorKind::bad_input;
-    }
-    return false;
+    return !refusal_of([&] {
+              check_magnitudes(assembly, ContactSprings(SpringConstants{kN, kN}), inertia);
+            }).message.empty();
   };
   CHECK(refused(1e-300, 1));
   CHECK(refused(1e300, 1));

@@ -179,22 +179,6 @@ TEST_CASE("gears_follow_long_waves") {
   CHECK(std::abs(loss.ratio - largest) < 1e-7);
 }
 
-// Below its critical ratio the wave costs negative energy: K has a negative eigenvalue beyond one for each rotation.
-TEST_CASE("k_of_q_changes_its_inertia_at_the_critical_ratio") {
-  const Assembly cell = random_cell(6, GENERATE(1, 2));
-  const ZoneMaximum critical = Case(cell, 0.5).critical();
-  const auto unstable_modes = [&](double ratio) {
-    int negative = 0;
-    for (const double value : eigenvalues(Case(cell, ratio).waves.stiffness(critical.at.q)))
-      negative += value < 0 ? 1 : 0;
-    return negative - static_cast<int>(cell.size());
-  };
-  CAPTURE(critical.value, critical.at.name);
-  REQUIRE(critical.value < -1e-3);
-  CHECK(unstable_modes(critical.value + 1e-7) == 0);
-  CHECK(unstable_modes(critical.value - 1e-7) == 1);
-}
-
 TEST_CASE("the_highest_frequency_over_the_zone_is_that_of_f10") {
   const double kT = GENERATE(0.0, 1e-4, 0.05, 0.2, 1.0 / 3, 0.5, 1.0, 3.0), beta = GENERATE(0.5, 0.4);
   const bool rotation = kT != 0;

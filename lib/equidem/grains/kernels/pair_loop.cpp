@@ -140,7 +140,7 @@ EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geom
   const auto dashpot = load<Lanes>(group.dashpot), half_mobility = load<Lanes>(group.half_mobility);
   const Lanes deep = only(touch, overlap);
   const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * opening;
-  const Lanes impulse = only(touch, larger(elastic - drag, law.least));
+  const Lanes impulse = only(touch, larger(law.least, elastic - drag));  // in this order a NaN persists
   const auto impulse_before = load<Lanes>(group.impulse);
   store(impulse, group.impulse);
   Lanes mean_closing, deep_before, elastic_before;

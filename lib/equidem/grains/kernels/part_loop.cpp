@@ -111,7 +111,7 @@ EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, 
   const Lanes dashpot = dt * column<Lanes>(group, PartGroup::dashpot);
   const Lanes deep = only(touch, at.overlap);
   const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
-  const Lanes impulse = only(touch, larger(elastic + drag, law.least));
+  const Lanes impulse = only(touch, larger(law.least, elastic + drag));  // in this order a NaN persists
   const auto impulse_before = column<Lanes>(group, PartGroup::impulse);
   store(impulse, group.numbers[PartGroup::impulse]);
   Lanes normal_loss, mean_closing, deep_before, elastic_before;

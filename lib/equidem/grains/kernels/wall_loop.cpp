@@ -142,7 +142,8 @@ void CollideWithWalls<Law, friction>::run(GrainSystem& system, std::size_t begin
     const Lanes spring = -Law::spring(a, depth);
     PairLanes pulls;
     for (std::size_t k = 0; k < lanes_of_pairs; ++k) pulls[k] = near.contact[k]->attraction ? none : 0;
-    const Lanes change = only(touch, smaller(spring - Law::dashpot(dissipation, depth) * sigma, load<Lanes>(pulls)));
+    const Lanes change =  // in this order a NaN persists
+        only(touch, smaller(load<Lanes>(pulls), spring - Law::dashpot(dissipation, depth) * sigma));
     const Lanes unit = mass * unit_speed;
     const Lanes impulse = -change * unit;
     const Lanes by_others = only(lasting, closing - closing_before + impulse_before / mass);
