@@ -96,7 +96,7 @@ ContactSprings contact_springs(const Assembly& assembly, SpringConstants springs
   assert(!own_kT || assembly.contact_kT.size() == count);
   const bool case_is_used = !own_kN || !own_kT;
   if (case_is_used) {
-    check({own_kN ? 1.0 : springs.kN, own_kT ? 0.0 : springs.kT});
+    check(SpringConstants{own_kN ? 1.0 : springs.kN, own_kT ? 0.0 : springs.kT});
     if (weighting == SpringWeighting::uniform && !own_kN && !own_kT) return ContactSprings(springs);
   }
 

@@ -37,7 +37,7 @@ constexpr auto motion_numbers = [](auto& m, const auto& visit) {
 };
 
 /// Images in periodic cells, parts and arms in scenes with shapes.
-auto contact_numbers(const GrainSystem& system) {
+auto numbers_of_contact(const GrainSystem& system) {
   return [cell = system.cell.active, shapes = !system.shapes.parts.empty()](auto& c, const auto& visit) {
     visit(c.i), visit(c.j), visit(c.steps), visit(c.mode), visit(c.parted), visit(c.overlap), visit(c.closing);
     visit(c.normal.x), visit(c.normal.y), visit(c.impulse), visit(c.moment), visit(c.tangential_impulse);
@@ -199,7 +199,7 @@ SavedState GrainSimulation::save() const {
   GrainState state = implementation_->state();
   SavedState saved{.step = state.step,
                    .arrays = {saved_rows("motions", std::move(state.motions), motion_numbers),
-                              saved_rows("contacts", std::move(state.contacts), contact_numbers(system)),
+                              saved_rows("contacts", std::move(state.contacts), numbers_of_contact(system)),
                               saved_rows("impulses", std::move(state.impulses), impulse_numbers),
                               saved_rows("bonds", std::move(state.bonds), mode_numbers),
                               saved_rows("breaks", std::move(state.breaks), break_numbers),
@@ -221,7 +221,7 @@ void GrainSimulation::restore(const SavedState& saved) {
   const auto start = rows_in<double>(saved, "start", one_number);
   GrainState state{.step = saved.step,
                    .motions = rows_in<GrainMotion>(saved, "motions", motion_numbers),
-                   .contacts = rows_in<ContactState>(saved, "contacts", contact_numbers(system)),
+                   .contacts = rows_in<ContactState>(saved, "contacts", numbers_of_contact(system)),
                    .impulses = rows_in<BodyImpulse>(saved, "impulses", impulse_numbers),
                    .bonds = rows_in<BondModes>(saved, "bonds", mode_numbers),
                    .breaks = rows_in<BondBreak>(saved, "breaks", break_numbers),

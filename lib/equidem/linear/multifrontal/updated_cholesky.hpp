@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "equidem/linear/kernels/panel_solve.hpp"
+#include "equidem/linear/kernels/panel_change.hpp"
 #include "equidem/linear/multifrontal/multifrontal_cholesky.hpp"
 
 namespace equidem {

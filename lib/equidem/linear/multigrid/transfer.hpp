@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
+/// Motions and forces between the points of one level and the nodes of the grid above it.
 /// Stiffness matrices of the cells of a grid. The energy of a contact goes into the one cell that holds its midpoint,
 /// whose functions move both of its discs: the matrix on the nodes is positive semidefinite and couples a node to the
 /// eight around it only, where the exact projection of K would couple 22.
-/// Motions and forces between the points of one level and the nodes of the grid above it.
 #pragma once
 
 #include <array>
@@ -19,18 +19,6 @@
 #include "equidem/linear/stiffness_matrix.hpp"
 
 namespace equidem::multigrid {
-
-/// 12 x 12 entries per cell: four nodes of three unknowns.
-using CellStiffness = LargeVector<double>;
-
-/// \param unit Pa, by which springs are divided
-CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
-                                    const DegreesOfFreedom& unknowns, double unit);
-/// Projects the energies of the cells of a fine grid: its nodes are moved by the functions of the cells of `coarse`.
-CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells);
-
-/// The matrix on the numbered nodes of the grid.
-BlockMatrix assemble_cells(const Transfer& numbering, const CellStiffness& cells);
 
 /// Points are sorted by their host cell, so that a cell reads one run of them and four nodes. Cells follow one another
 /// along the shorter side of the grid (Grid::cell_order), so that neighbours are not far apart in memory.
@@ -80,5 +68,17 @@ std::vector<std::int32_t> order_along(const Grid& grid);
 
 /// Computes the weight of each node: the sum of its functions over points of a given mass.
 std::vector<double> node_masses(const Grid& grid, std::span<const Place> places, std::span<const double> masses);
+
+/// 12 x 12 entries per cell: four nodes of three unknowns.
+using CellStiffness = LargeVector<double>;
+
+/// \param unit Pa, by which springs are divided
+CellStiffness stiffness_of_contacts(const Grid& grid, const Assembly& assembly, const ContactSprings& springs,
+                                    const DegreesOfFreedom& unknowns, double unit);
+/// Projects the energies of the cells of a fine grid: its nodes are moved by the functions of the cells of `coarse`.
+CellStiffness stiffness_on_coarser(const Grid& coarse, const Grid& fine, const CellStiffness& cells);
+
+/// The matrix on the numbered nodes of the grid.
+BlockMatrix assemble_cells(const Transfer& numbering, const CellStiffness& cells);
 
 }  // namespace equidem::multigrid
