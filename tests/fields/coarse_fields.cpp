@@ -16,12 +16,12 @@ using namespace equidem::test;
 namespace {
 
 /// Discs side by side in rows, all contacts alike: s_xx = -fx/d, s_yy = -fy/d, s_xy = s_yx = t/d.
-struct Lattice {
+struct Rows {
   std::vector<Grain> grains;
   std::vector<BodyContact> contacts;
 };
-Lattice square_lattice(int count, double d, double fx, double fy, double t) {
-  Lattice lattice;
+Rows square_lattice(int count, double d, double fx, double fy, double t) {
+  Rows lattice;
   for (int row = 0; row < count; ++row)
     for (int column = 0; column < count; ++column)
       lattice.grains.push_back(disc({d * column, d * row}, d / 2, {2, -1}));
@@ -48,7 +48,7 @@ Lattice square_lattice(int count, double d, double fx, double fy, double t) {
 
 TEST_CASE("the_stress_of_a_lattice_is_the_one_its_forces_make_in_every_cell") {
   const double d = 0.02;
-  const Lattice lattice = square_lattice(20, d, 30, 50, 7);
+  const Rows lattice = square_lattice(20, d, 30, 50, 7);
   for (const Vec2 corner : {Vec2{2.25 * d, 2.4 * d}, Vec2{2.3 * d, 3.8 * d}}) {
     const CoarseGrid grid = grid_over({corner, corner + Vec2{12 * d, 8 * d}}, 2 * d);
     REQUIRE(grid.columns == 6);

@@ -396,23 +396,23 @@ Results estimate_results(const SolveEstimate& e, double resident, double memory_
 
 }  // namespace
 
-Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys, bool of_complex,
-                        std::optional<double> inertia) {
+Results dry_run_results(const Problem& problem, const Results& further, AssemblyKeys keys, const MoreMemory& more) {
   const double resident = resident_memory();
   const Effects effects = derive_effects(problem.assembly, problem.springs.springs, problem.resolved.rotation);
   EquilibriumOptions options = problem.options();
-  if (inertia) options.solver.method = SolverMethod::multifrontal;
+  if (more.inertia) options.solver.method = SolverMethod::multifrontal;
   SolveEstimate estimate =
-      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, options, inertia.has_value());
-  if (inertia) {
-    const double vectors = sizeof(double) * *inertia * static_cast<double>(estimate.unknowns);
+      estimate_solve(problem.assembly, problem.springs.springs, problem.supports, options, more.inertia.has_value());
+  if (more.inertia) {
+    const double vectors = sizeof(double) * *more.inertia * static_cast<double>(estimate.unknowns);
     estimate.peak_bytes = std::max(estimate.peak_bytes, estimate.factor_bytes + vectors);
   }
   // Forces, motions and histories of contacts that break: measured, with friction and without.
   constexpr double bytes_of_breaking_contact = 380;
   if (problem.breaks)
     estimate.peak_bytes += bytes_of_breaking_contact * static_cast<double>(problem.assembly.contacts.size());
-  if (of_complex) {
+  estimate.peak_bytes += more.bytes_of_disc * static_cast<double>(problem.assembly.size());
+  if (more.of_complex) {
     estimate.peak_bytes = std::max(
         estimate.peak_bytes,
         estimate.factor_bytes + estimate_viscoelastic(problem.assembly, problem.springs.springs, effects).peak_bytes);

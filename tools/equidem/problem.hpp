@@ -162,11 +162,15 @@ Results problem_results(const Problem& problem, const AssemblySummary& summary, 
 /// The largest circle that no disc reaches into; nothing where there is none.
 void add_largest_void(Results& results, const Assembly& assembly);
 
+/// What takes memory beside one solution of K u = f.
+struct MoreMemory {
+  bool of_complex = false;        ///< factors of complex numbers follow, beside that of the others
+  std::optional<double> inertia;  ///< L D L^T decides it, with so many vectors kept beside it
+  double bytes_of_disc = 0;       ///< kept while it solves
+};
 /// The problem, further results, size, memory and work of a factorization, for --dry-run.
-/// \param of_complex whether factors of complex numbers follow, beside that of the others
-/// \param inertia whether L D L^T decides it, with so many vectors kept beside it; none: K u = f is solved
 Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all,
-                        bool of_complex = false, std::optional<double> inertia = {});
+                        const MoreMemory& more = {});
 
 /// K <= G/3, that is nu <= -1 in plane strain.
 inline constexpr const char* no_solid = "no isotropic solid has these moduli: K <= G/3";

@@ -65,7 +65,8 @@ class Pruning {
         anchored_(assembly.periodic() ||
                   std::any_of(held.begin(), held.end(), [](std::uint8_t value) { return value != 0; })),
         only_loose_(which == LeaveOut::loose),
-        cut_at_discs_(!only_loose_ && turns_rigidly(assembly, springs, effects)),
+        turns_rigidly_(turns_rigidly(assembly, springs, effects)),
+        cut_at_discs_(!only_loose_ && turns_rigidly_),
         graph_(assembly),
         fate_(assembly.size(), Fate::left),
         contacts_left_(assembly.size()) {
@@ -284,7 +285,9 @@ class Pruning {
     std::int32_t core = 0;
     for (std::int32_t k = 1; k < end;) {
       const Step& step = steps_[k];
-      const bool by_one = step.low > step.parent && (!only_loose_ || is_loose(step.contact));
+      // A bending spring balances the couple of a force whose levers do not add up to the branch.
+      const bool by_one = step.low > step.parent && (!only_loose_ || is_loose(step.contact)) &&
+                          (turns_rigidly_ || !carries_moment(step.contact));
       const bool parts = by_one || (cut_at_discs_ && step.low == step.parent);
       if (parts && step.anchors == 0) {
         leave_out_steps(k, k + step.size, Fate::dangling);
@@ -376,8 +379,9 @@ class Pruning {
   const ContactSprings& springs_;
   bool rotation_;
   const std::vector<std::uint8_t>& held_;
-  bool anchored_;      ///< the period or held discs can load the network
-  bool only_loose_;    ///< LeaveOut::loose
+  bool anchored_;    ///< the period or held discs can load the network
+  bool only_loose_;  ///< LeaveOut::loose
+  bool turns_rigidly_;
   bool cut_at_discs_;  ///< what a single disc joins to the rest can follow it
   ContactGraph graph_;
   std::vector<Fate> fate_;

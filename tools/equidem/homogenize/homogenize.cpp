@@ -568,6 +568,9 @@ void add_solver_of_complex(Results& results, const SolverOptions& asked) {
                                        to_string(asked.method)));
 }
 
+/// A disc, of the motions under one boundary that are kept beside the solution under the next: measured.
+constexpr double bytes_beside_others = 350;
+
 int dry_run_homogenization(const CommonOptions& options, const Problem& problem, std::optional<double> accuracy) {
   const std::vector<Boundary> boundaries =
       boundaries_of(problem.assembly, problem.springs.springs, bounds_options(problem.resolved));
@@ -586,7 +589,10 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
   deliver(options, "dry_run",
-          dry_run_results(problem, results, AssemblyKeys::all, problem.resolved.viscoelastic.has_value()),
+          dry_run_results(problem, results, AssemblyKeys::all,
+                          {.of_complex = problem.resolved.viscoelastic.has_value(),
+                           .inertia = {},
+                           .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0}),
           problem.times);
   return 0;
 }

@@ -573,9 +573,10 @@ int dry_run_survey(const StabilityCommand& options, Problem given) {
            "s is guaranteed to be stable (element bound)")
       .note(assumed ? "; density 1 kg/m³ assumed" : "");
   results.set("density_assumed", assumed);
-  deliver(options, "dry_run",
-          dry_run_results(problem, results, AssemblyKeys::size, false, vectors_of_frequencies(options.frequencies)),
-          problem.times);
+  deliver(
+      options, "dry_run",
+      dry_run_results(problem, results, AssemblyKeys::size, {.inertia = vectors_of_frequencies(options.frequencies)}),
+      problem.times);
   return 0;
 }
 
