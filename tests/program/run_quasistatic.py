@@ -517,6 +517,9 @@ class Quasistatic(ProgramTest):
         self.check_error(equidem("quasistatic", NOTCH, "--set", "support.1.uy=true"), 2, "nothing grows with lambda")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "notch.0.to=[-0.0005,0.0152]"), 2, "crosses no contact")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.tension=-1"), 2, "strength.tension")
+        for size in ("1e-300", "1e300"):
+            self.check_error(equidem("quasistatic", NOTCH, "--set", f"springs.kN={size}", "--set", f"springs.kT={size}"), 2,
+                             "the largest spring", "leave the range of numbers", "Pa")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strain.xx=1e-3"), 2, "not periodic")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "springs.kT=-1e8"), 2, "kT < 0", "Take kT >= 0")
         self.check_error(equidem("quasistatic", NOTCH, "--set", "strength.weibull_modulus=1e-3"), 2, "scatters them")

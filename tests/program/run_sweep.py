@@ -245,6 +245,13 @@ class Sweep(ProgramTest):
         for name in ("poisson_ratio.csv", "poisson_ratio.gp", "stiffness_ratio.csv", "case.toml", "result.json"):
             self.assertTrue((out / name).exists(), name)
 
+    def test_a_number_named_as_the_key_is_one_column(self):
+        out = self.folder / "stability"
+        self.check_done(equidem("sweep", CASES / "hexagonal_cell.toml", "--verb", "stability", "--key", "ratio",
+                                "--values", "0.1,0.2", "--out", out))
+        head = (out / "sweep.csv").read_text().splitlines()[0].split(",")
+        self.assertEqual(head.count("ratio"), 1)
+
     def test_the_title_of_the_curve_is_the_users_and_its_symbols_are_typeset(self):
         for number, (options, title) in enumerate([(["--title", "My a_b {sweep}"], r"My a\_b \{sweep\}"),
                                                    (["--set", 'title="Block of 50_000"'], r"Block of 50\_000"),

@@ -101,16 +101,16 @@ namespace {
             "Add [[load]], a motion in [[support]], or [strain]");
 }
 
+constexpr double most_driving = 1e70, stiffest = 1e160;  // N/m, m or a strain; Pa
 constexpr const char* unit_of_size = "Choose another unit; lambda multiplies what grows";
 
-/// Squares of forces and motions must stay within a double.
-void check_size(const std::string& what, double size, const char* remedy) {
-  constexpr double smallest = 1e-70, largest = 1e70;  // N/m, m, Pa or a strain
-  if (size >= smallest && size <= largest) return;
-  bad_input(fmt::format("the size of {} is {:g}", what, size),
-            fmt::format("energies would leave the range of numbers: sizes from {:g} to {:g} can be followed", smallest,
-                        largest),
-            remedy);
+/// Squares of forces and motions must stay within a double: sizes from 1/`most` to `most`.
+void check_size(const std::string& what, double size, double most, const char* remedy) {
+  if (size >= 1 / most && size <= most) return;
+  bad_input(
+      fmt::format("the size of {} is {:g}", what, size),
+      fmt::format("energies would leave the range of numbers: sizes from {:g} to {:g} can be followed", 1 / most, most),
+      remedy);
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ void check_breaking_springs(const ContactSprings& springs) {
               "the search for the next break knows forces, and no moments of contacts",
               "Take kM and bond_width out; bonds of colliding bodies carry moments and break in run");
   }
-  check_size("the largest spring", springs.largest(), "Check the unit of kN and kT, which are in Pa");
+  check_size("the largest spring", springs.largest(), stiffest, "Check the unit of kN and kT, which are in Pa");
   if (!springs.any_negative()) return;
   bad_input("kT < 0 in a network that breaks",
             "behind a break the discs move to another equilibrium, and with kT < 0 no motion of discs is stable",
@@ -170,13 +170,14 @@ LoadPath make_load_path(const Assembly& assembly, const ContactSprings& springs,
               "the load and the motion through which it works are then not one pair of numbers",
               "Keep one; loads that stay are [[dead_load]]");
   }
-  check_size(driving.front(), path.size, unit_of_size);
+  check_size(driving.front(), path.size, most_driving, unit_of_size);
   if (!options.dead_loads.empty()) {
     RightHandSide dead;
     dead.force = assemble_loads(assembly, unknowns, options.dead_loads);
     check_inert_loads(assembly, unknowns, dead.force);
     if (any_nonzero(dead.force)) {
-      check_size("the dead loads", sum_of_loads(dead.force, static_cast<std::size_t>(unknowns.per_disc)), unit_of_size);
+      check_size("the dead loads", sum_of_loads(dead.force, static_cast<std::size_t>(unknowns.per_disc)), most_driving,
+                 unit_of_size);
       path.dead = std::move(dead);
     }
   }

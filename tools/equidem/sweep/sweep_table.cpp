@@ -113,8 +113,11 @@ std::vector<MainQuantity> main_quantities(const SweepPlan& plan) {
 Table sweep_table(const SweepPlan& plan, std::span<const SweepPoint> points) {
   Table table;
   table.add(number_name, points, &SweepPoint::number);
-  for (std::size_t k = 0; k < plan.keys.size(); ++k)
-    table.add(key_column(plan.keys[k]), points, [k](const SweepPoint& point) { return point.values[k]; });
+  std::vector<std::string> names_of_keys;
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    names_of_keys.push_back(key_column(plan.keys[k]));
+    table.add(names_of_keys.back(), points, [k](const SweepPoint& point) { return point.values[k]; });
+  }
   table.add("status", points, &SweepPoint::status);
   std::map<std::string, std::vector<std::string>> cells;
   const std::vector<std::string> names = columns_of_numbers(points);
@@ -122,7 +125,8 @@ Table sweep_table(const SweepPlan& plan, std::span<const SweepPoint> points) {
   for (std::size_t row = 0; row < points.size(); ++row)
     for (const ScalarNumber& number : points[row].numbers)
       cells[column_name(number.path, number.unit)][row] = number.text;
-  for (const std::string& name : names) table.add(name, std::move(cells[name]));
+  for (const std::string& name : names)  // what a verb repeats of the point, such as the ratio, stands there already
+    if (std::ranges::find(names_of_keys, name) == names_of_keys.end()) table.add(name, std::move(cells[name]));
   return table.add("message", points, &SweepPoint::message);
 }
 
