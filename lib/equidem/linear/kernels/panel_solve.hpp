@@ -12,6 +12,8 @@ namespace equidem {
 /// 32 bytes of numbers: two vectors where the processor has only those of 16.
 typedef double PanelLanes __attribute__((vector_size(32)));  // NOLINT(modernize-use-using): attribute of a typedef
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are passed between inlined functions only
 inline __attribute__((always_inline)) PanelLanes load_lanes(const double* from) {
   PanelLanes v;
   std::memcpy(&v, from, sizeof v);
@@ -20,6 +22,7 @@ inline __attribute__((always_inline)) PanelLanes load_lanes(const double* from) 
 inline __attribute__((always_inline)) void store_lanes(double* to, const PanelLanes& v) {
   std::memcpy(to, &v, sizeof v);
 }
+#pragma GCC diagnostic pop
 
 /// The columns of L that a front eliminates, column-major: a triangle of `pivots` rows above `rows - pivots` others.
 struct Panel {
