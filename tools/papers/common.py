@@ -24,7 +24,7 @@ DATA = ROOT / "data" / "papers"
 try:
     import equidem as eq
 except ImportError:  # not installed: the one that was built here
-    for preset in ("release", "dev"):
+    for preset in ("release", "dev", "test"):
         sys.path.append(str(ROOT / "build" / preset / "python"))
     try:
         import equidem as eq
