@@ -156,10 +156,10 @@ void check_held(const Network& network) {
   if (turns) refuse_free(true, "rotation", "Hold one more disc, along a line that does not pass through that point");
   const bool rolls = assembly.kind == "square" && b == 3 && gram[5] == 0;
   if (rolls) {
-    bad_input(
-        fmt::format("{} around disc 0 can counter-rotate like gears at no cost", counted(network.whole.discs, "disc")),
-        "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
-        "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
+    bad_input(fmt::format("{} around disc 0 have a zero-energy mode in which they counter-rotate like gears",
+                          counted(network.whole.discs, "disc")),
+              "their graph of contacts is bipartite: no odd ring of contacts makes neighbours slip",
+              "Hold the rotation of one of them, restrain rotation, or add a contact that closes an odd ring");
   }
 }
 

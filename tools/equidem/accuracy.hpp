@@ -52,7 +52,7 @@ inline constexpr const char* bound_is_compared = "the error bound is compared wi
 /// value, note}}.
 Results accuracy_results(const ReachedAccuracy& reached);
 
-/// What a search varies, and how its result is told.
+/// What a search varies, and how its result is reported.
 struct SearchedSetting {
   RefinementOptions refinement;
   std::function<AccuracySetting(std::int64_t level)> setting_of;  ///< keys of the case and their values at a level

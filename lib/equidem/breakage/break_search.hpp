@@ -61,7 +61,7 @@ struct NextBreak {
   double gap = 0;         ///< of lambda, relative, to the next contact that does not tie; infinite: none
 };
 
-/// Of keys that tie for the least one, the first, with the number of the others and the least key beyond them.
+/// The first of the keys that tie for the least, the number of the others, and the least key beyond them.
 struct TiedKeys {
   std::size_t first = 0;
   std::int64_t others = -1;

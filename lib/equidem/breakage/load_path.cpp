@@ -101,10 +101,11 @@ namespace {
             "Add [[load]], a motion in [[support]], or [strain]");
 }
 
-constexpr double most_driving = 1e70, stiffest = 1e160;  // N/m, m or a strain; Pa
+/// N/m, m or a strain; and Pa: the largest squared over the softest spring, 1e300, stays within a double.
+constexpr double most_driving = 1e70, stiffest = 1e160;
 constexpr const char* unit_of_size = "Choose another unit; lambda multiplies what grows";
 
-/// Squares of forces and motions must stay within a double: sizes from 1/`most` to `most`.
+/// Energies must stay within a double: sizes lie between 1/`most` and `most`.
 void check_size(const std::string& what, double size, double most, const char* remedy) {
   if (size >= 1 / most && size <= most) return;
   bad_input(

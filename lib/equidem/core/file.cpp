@@ -131,7 +131,7 @@ std::string read_file(const fs::path& path) {
       content.resize(static_cast<std::size_t>(file.gcount()));
       if (file.eof()) file.clear();
     }
-    // What a file of /proc holds, whose size reads 0, or one that grows.
+    // A file of /proc states the size 0, and a file may grow meanwhile.
     content.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   } catch (const std::ios_base::failure&) {
     file.setstate(std::ios_base::badbit);  // /proc/self/mem, a broken disk: the buffer throws by itself

@@ -292,7 +292,7 @@ void check(const Scene& scene, const SimulationOptions& options) {
   check_damping(options);
   if (scene.springs.bends() && (options.damping.normal_time > 0 || options.damping.tangential_time > 0)) {
     bad_input("viscoelastic springs are asked for beside bending springs",
-              "the relaxation of the normal and the tangential spring does not tell that of bending",
+              "the relaxation of the normal and the tangential spring does not determine that of bending",
               "Remove [viscoelastic], or the bending springs");
   }
   check(scene, options.rotation);

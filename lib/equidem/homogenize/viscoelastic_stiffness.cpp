@@ -32,7 +32,7 @@ void check_harmonic(const ContactSprings& springs, const Viscoelasticity& viscoe
   }
   if (springs.bends()) {
     bad_input("bonds resist bending, and the springs are viscoelastic",
-              "the relaxation of the normal and the tangential spring does not tell that of bending",
+              "the relaxation of the normal and the tangential spring does not determine that of bending",
               "Take kM and bond_width out, or [viscoelastic]");
   }
   if (springs.prestressed()) {

@@ -55,7 +55,7 @@ FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& r
 void check_most_events(const FreeKeysOfPath& before, const Case& resolved, std::int64_t events);
 
 inline constexpr const char* event_table_name = "events.csv";
-/// The state from which a path goes on that the table of events does not hold: where contacts rub, and frames.
+/// The state from which a path goes on that the table of events does not hold: frictional contacts, and frames.
 inline constexpr const char* path_checkpoint_name = "quasistatic.checkpoint.h5";
 
 /// \param checkpoint whether a state is kept

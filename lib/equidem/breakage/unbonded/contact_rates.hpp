@@ -44,7 +44,7 @@ class MotionControl {
   MotionControl(const ContactOperator& contacts, const TangentSolver& solver, std::span<const double> load);
   /// Adds the motion by lambda times the loads, so that these do the work `wanted`. \return lambda
   double hold(std::span<double> motion, double wanted) const;
-  /// Of the loads on the motion that they cause.
+  /// The work of the loads on the motion that they cause.
   [[nodiscard]] double work() const { return work_; }
 
  private:
@@ -57,7 +57,7 @@ class MotionControl {
 Rates driven_rates(const ContactOperator& contacts, const Driving& driving, double lambda);
 ContactDeformation deformation_of(const ContactOperator& contacts, const Driving& driving, const Rates& rates,
                                   std::size_t contact);
-/// What drives less what contacts take, and the deformations and scales of the rates.
+/// The residual of the rates: driving forces less those that contacts take. Sets deformations and scales of `rates`.
 /// \return its largest component over the largest rate of a force
 double residual_of(const ContactOperator& contacts, std::span<const ContactTangent> tangents, const Driving& driving,
                    Rates& rates, std::vector<double>& residual);

@@ -62,7 +62,7 @@ class UnbondedState {
   [[nodiscard]] const std::vector<std::size_t>& releasing() const { return releasing_; }
   [[nodiscard]] double released_by(std::size_t contact) const { return released_by_[contact]; }
 
-  /// Of all contacts by the mean gradient of the pattern; empty: there is none.
+  /// Deformation of each contact by the mean gradient of the pattern; empty: there is none.
   [[nodiscard]] const std::vector<ContactDeformation>& affine() const { return affine_; }
   [[nodiscard]] const PreciseMotion& motion() const { return motion_; }
   [[nodiscard]] double lambda() const { return lambda_; }

@@ -326,9 +326,9 @@ void bind_breakage(File<CaseTables>& file) {
              "forces put on first, which stay while lambda grows, for the verb quasistatic")
       .keys({key("group", &Load::group, required, "as in [[support]]"), key("kind", &Load::kind, "as in [[load]]"),
              key("force", &Load::force, optional, unit("N/m (traction: Pa)"),
-                 "[f_x, f_y]; where contacts rub it grows from none to this, event by event, before lambda does, "
-                 "beside the "
-                 "loads that forces at rest balance: the weight under which a packing fell is not given again"),
+                 "[f_x, f_y]; with frictional contacts it grows from none to this, event by event, before lambda does, "
+                 "beside the loads that forces at rest balance: the weight under which a packing fell is not given "
+                 "again"),
              key("moment", &Load::moment, optional, unit("N"), "N m per metre of depth, counter-clockwise")});
   file.table("notch", &CaseTables::notches, "a straight cut through contacts from the start, for the verb quasistatic")
       .keys({key("from", &Notch::from, required, unit("m"), "[x, y] of one end"),
@@ -339,8 +339,8 @@ void bind_breakage(File<CaseTables>& file) {
       .keys(
           {key("control", &Q::control,
                "what does not fall while contacts break: path: nothing, lambda may fall from event to event "
-               "(snap-back); load; motion: that through which the load works. Left out: path, or where contacts rub "
-               "what lambda multiplies"),
+               "(snap-back); load; motion: that through which the load works. Left out: path, or with frictional "
+               "contacts what lambda multiplies"),
            key("legs", &Q::legs, "lambda at the end of each leg, such as [1.0, 0.0, 2.0]; empty: until nothing breaks"),
            key("max_events", &Q::max_events, not_negative, "after so many events the path ends; 0: no limit"),
            key("frame_every", &Q::frame_every, not_negative,

@@ -115,7 +115,7 @@ struct NamedLoads {
 
 /// [quasistatic]: the path along which contacts break.
 struct QuasistaticCase {
-  std::optional<LoadControl> control;  ///< none: path, or where contacts rub what lambda multiplies
+  std::optional<LoadControl> control;  ///< none: path, or with frictional contacts what lambda multiplies
   std::vector<double> legs;            ///< lambda at the end of each; empty: one without an end
   std::int64_t max_events = 0;         ///< 0: no limit
   std::int64_t frame_every = 0;        ///< events from one frame to the next; 0: no frames

@@ -397,7 +397,7 @@ std::vector<Key<GrainBond>> keys_of_bonds() {
   return keys;
 }
 
-/// Of those of contacts that break at rest: without a bond discs always rub, and have no facets.
+/// The keys of contacts that break at rest, less two: without a bond discs are always frictional, and have no facets.
 std::vector<Key<StrengthOptions>> strength_keys_of_bonds() {
   std::vector<Key<StrengthOptions>> keys = strength_keys();
   std::erase_if(keys, [](const Key<StrengthOptions>& key) {

@@ -70,7 +70,7 @@ struct CellSums {
   double work = 0;       ///< J
 };
 
-/// What the motion of a cell goes on from.
+/// State from which the motion of a cell continues.
 struct CellMotion {
   Periods now, before;                    ///< at the start of this step, of the last one
   Tensor2 gradient = {};                  ///< L in the step that is being made, 1/s

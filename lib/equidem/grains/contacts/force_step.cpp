@@ -193,7 +193,7 @@ TouchPlace place_of(const ContactGeometry& geometry) {
   return {geometry.overlap, geometry.normal, geometry.lever_i * geometry.normal, {}};
 }
 
-/// Of a disc and a wall.
+/// The drift of a disc along a wall.
 ContactDrift drift_of(const GrainSystem& system, const Candidate& candidate, const ContactGeometry& geometry) {
   const GrainMotion& motion = system.bodies.motions[candidate.i];
   const Vec2 relative = passed_velocity(system, candidate) - motion.velocity;

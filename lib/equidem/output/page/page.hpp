@@ -50,7 +50,7 @@ struct Answer {
 
 struct Answers {
   std::vector<Answer> main;     ///< the first four that are known
-  std::vector<Answer> quality;  ///< errors, residuals and what else tells how far the answer may be trusted
+  std::vector<Answer> quality;  ///< errors, residuals and whatever shows how far the answer may be trusted
 };
 
 /// Whether a verb has a page: its numbers are listed in answers.csv.

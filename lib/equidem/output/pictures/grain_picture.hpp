@@ -34,7 +34,7 @@ struct GrainPicture {
 
 /// Write NAME.png, 1000 pixels wide, and NAME.svg where no more than most_drawn_discs are drawn. The view holds grains,
 /// their paths, segments; lines are clipped to it. Without paths, grains are left out that lie farther from the box
-/// round the segments and the grains that started than half its larger side, unless all do. The caption tells how many
+/// round the segments and the grains that started than half its larger side, unless all do. The caption states how many
 /// are shown.
 /// \throws Error (bad_input) without grains, on places that are not finite, and as write_file does
 void write_grain_picture(const std::filesystem::path& folder, const std::string& name, const GrainPicture& picture,
