@@ -205,10 +205,10 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   const std::string noun = noun_of(options.shape.kind);
   Results out = pack_case_results(resolved);
   out.set("title", resolved.title).set("method", to_string(options.method)).set("shape", to_string(packing.shape));
-  out.set("grains", packing.size()).set("complete", packing.complete).set("box", packing.box.size);
+  out.set("grains", packing.size()).set("complete", !packing.failure).set("box", packing.box.size);
   if (packing.size() < options.radii.size()) {
     out.line("packed", fmt::format("{} of {}", packing.size(), options.radii.size()));
-  } else if (options.method == PackingMethod::growth && !packing.complete) {
+  } else if (grows_to_any_size(options) || (options.method == PackingMethod::growth && packing.failure)) {
     const auto [smallest, largest] = std::ranges::minmax(packing.radii);
     out.line("packed", fmt::format("all radii scaled by {:.6g}: {:.6g} to {:.6g} m",
                                    packing.radii[0] / options.radii[0], smallest, largest));
