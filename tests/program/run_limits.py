@@ -65,6 +65,7 @@ class Memory(ProgramTest):
              ("homogenize", CASES / "viscoelastic_cell.toml",
               ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
              ("stability", TENSION, GRID),
+             ("stability", CELL, ("--set", "assembly.discs=10000")),
              ("run", CASES / "run_pulse.toml",
               ("--set", "assembly.columns=150", "--set", "assembly.rows=150", "--set", "run.duration=1e-5"))]
 

@@ -9,6 +9,7 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
@@ -59,7 +60,9 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
   Stopwatch watch;
   ContactGraph graph(assembly);
   DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
+  stop_if_interrupted();
   check_rigidity(assembly, graph, springs, unknowns, options.mechanisms);
+  stop_if_interrupted();
   if (assembly.size() == 1 && assembly.contacts.empty()) {
     bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
               "Add discs that touch it");
