@@ -56,6 +56,7 @@ class Stability(ProgramTest):
 class Memory(ProgramTest):
     BLOCK = ("--set", "assembly.columns=150", "--set", "assembly.rows=150")
     GRID = ("--set", "assembly.columns=80", "--set", "assembly.rows=80")
+    LOOSE = ("--set", "packing.solid_fraction=0.5")
     CASES = [("solve", TENSION, (*BLOCK, "--set", "solver.method=multifrontal")),
              ("solve", TENSION, (*BLOCK, "--set", "solver.method=cholmod")),
              ("solve", TENSION, (*BLOCK, "--set", "solver.method=umfpack")),
@@ -69,6 +70,9 @@ class Memory(ProgramTest):
               ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
              ("stability", TENSION, GRID),
              ("stability", CELL, ("--set", "assembly.discs=10000")),
+             ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=50000", "--set", "packing.box=none", *LOOSE)),
+             ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=200000", "--set", "packing.box=none", "--set",
+                                                   "packing.method=insertion", "--set", "packing.overlap=none", *LOOSE)),
              ("run", CASES / "run_pulse.toml",
               ("--set", "assembly.columns=150", "--set", "assembly.rows=150", "--set", "run.duration=1e-5"))]
 
@@ -117,6 +121,7 @@ class Magnitudes(ProgramTest):
         usual = solved()
         for stress in ("1e-160", "1e-250", "1e140"):
             self.assertAlmostEqual(solved("--set", f"test.stress={stress}") / usual, 1, delta=1e-12)
+        self.check_error(equidem("solve", TENSION, "--set", "test.stress=1e-300"), 2, "underflow", "units")
         for unit in ("1e-160", "1e-100", "1e60", "1e160"):
             for method in ("multifrontal", "multigrid"):
                 found = solved("--set", f"springs.kN={unit}", "--set", f"springs.kT={float(unit) / 2!r}", "--set",
