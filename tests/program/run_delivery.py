@@ -200,8 +200,15 @@ radius = 0.005
 kind = "uniaxial_tension"
 ''')
         os.link(case, self.folder / "other.json")
-        before = {path: path.read_bytes() for path in self.folder.iterdir()}
+        (self.folder / "of_bonds").mkdir()
+        (self.folder / "of_bonds" / "bonds.csv").write_text("i,j\n0,1\n")
+        (self.folder / "tied.toml").write_text(case.read_text() + '[bonds]\npath = "of_bonds/bonds.csv"\nnormal_spring = 1e6\n')
+        def files():
+            return {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+
+        before = files()
         for command in (("run", "c.toml", "--out", ".", "--overwrite"),
+                        ("run", "tied.toml", "--out", "of_bonds", "--overwrite"),
                         ("run", "c.toml", "--json", "c.toml", "--overwrite"),
                         ("run", "c.toml", "--json", "other.json", "--overwrite"),
                         ("run", "c.toml", "--json", "grains.csv", "--overwrite"),
@@ -210,7 +217,7 @@ kind = "uniaxial_tension"
                         ("solve", "case.toml", "--out", self.folder, "--overwrite")):
             with self.subTest(command=command):
                 self.check_error(equidem(*command, cwd=self.folder), 2, "is an input of the case", "Choose another")
-                self.assertEqual({path: path.read_bytes() for path in self.folder.iterdir()}, before)
+                self.assertEqual(files(), before)
         out = self.folder / "out"
         for _ in range(2):
             self.check_done(equidem("solve", "case.toml", "--out", out, "--overwrite", cwd=self.folder))

@@ -9,7 +9,6 @@
 
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/core/error.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/statics/internal_force.hpp"
 #include "equidem/statics/loads.hpp"
@@ -61,7 +60,6 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
   ContactGraph graph(assembly);
   DegreesOfFreedom unknowns = number_unknowns(assembly, springs, effects, supports);
   check_rigidity(assembly, graph, springs, unknowns, options.mechanisms);
-  stop_if_interrupted();
   if (assembly.size() == 1 && assembly.contacts.empty()) {
     bad_input("the assembly is a single disc", "it touches nothing, so there is no equilibrium to find",
               "Add discs that touch it");
