@@ -82,7 +82,7 @@ TEST_CASE("one_table_is_the_same_in_all_its_spellings") {
       "# settled 3 May\n# x_mm, r_mm\n0, 2\n# in between\n4.5, 2\n", "\xef\xbb\xbfx_mm,r_mm\n0,2\n4.5,2\n",
       "x_mm,label,r_mm\n0,\"gneis, \"\"dark\"\"\",2\n4.5,\"two\nlines\",2\n", "x_mm;r_mm\n0;2\n4,5E+00;2\n",
       "x_um,r_um\n0,2000\n4500,2000\n", "x (\xc2\xb5m),r (\xce\xbcm)\n0,2e3\n4500,2e3\n",
-      "x_m  r_m\n 0 \t 2e-3\n4.5e-3 2e-3\n");
+      "x_m  r_m\n 0 \t 2e-3\n4.5e-3 2e-3\n", "sep=;\r\nx_mm;r_mm\r\n0;2\r\n4,5;2\r\n");
   CAPTURE(text);
   const auto found = numbers(text);
   REQUIRE(found.size() == 2);

@@ -154,10 +154,13 @@ class Parts(ProgramTest):
         for name in ("grains.csv", "energy.csv", "energy_plot.png", "picture.png", "case.toml", "index.html"):
             self.assertTrue((out / name).exists(), name)
 
-    def test_a_sweep_and_an_ensemble_go_on_where_their_tables_cannot_be_saved(self):
-        limit = 3000  # of a file: the case fits, the tables do not
-        for command, words in ((("sweep", TENSION, "--key", "ratio", "--from", 0, "--to", 1, "--steps", 41), "nu theory"),
-                               (("homogenize", ENSEMBLE, "--set", "ensemble.discs=[20, 40]", "--set", "ensemble.samples=20"), "discs")):
+    def test_a_path_a_sweep_and_an_ensemble_go_on_where_they_cannot_be_saved(self):
+        # limit of a file: the case fits, the tables and the checkpoint do not
+        for limit, command, words in (
+                (3000, ("sweep", TENSION, "--key", "ratio", "--from", 0, "--to", 1, "--steps", 41), "nu theory"),
+                (3000, ("homogenize", ENSEMBLE, "--set", "ensemble.discs=[20, 40]", "--set", "ensemble.samples=20"), "discs"),
+                (30000, ("quasistatic", CASES / "rubbing_notch.toml", "--set", "quasistatic.max_events=20", "--set",
+                         "output.checkpoint_interval=1e-9"), "20 events")):
             done = run(*command, "--out", self.folder / command[0], stdout=subprocess.PIPE,
                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
             self.assertEqual(done.returncode, 1, done.stderr)
@@ -197,8 +200,15 @@ radius = 0.005
 kind = "uniaxial_tension"
 ''')
         os.link(case, self.folder / "other.json")
-        before = {path: path.read_bytes() for path in self.folder.iterdir()}
+        (self.folder / "of_bonds").mkdir()
+        (self.folder / "of_bonds" / "bonds.csv").write_text("i,j\n0,1\n")
+        (self.folder / "tied.toml").write_text(case.read_text() + '[bonds]\npath = "of_bonds/bonds.csv"\nnormal_spring = 1e6\n')
+        def files():
+            return {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
+
+        before = files()
         for command in (("run", "c.toml", "--out", ".", "--overwrite"),
+                        ("run", "tied.toml", "--out", "of_bonds", "--overwrite"),
                         ("run", "c.toml", "--json", "c.toml", "--overwrite"),
                         ("run", "c.toml", "--json", "other.json", "--overwrite"),
                         ("run", "c.toml", "--json", "grains.csv", "--overwrite"),
@@ -207,7 +217,7 @@ kind = "uniaxial_tension"
                         ("solve", "case.toml", "--out", self.folder, "--overwrite")):
             with self.subTest(command=command):
                 self.check_error(equidem(*command, cwd=self.folder), 2, "is an input of the case", "Choose another")
-                self.assertEqual({path: path.read_bytes() for path in self.folder.iterdir()}, before)
+                self.assertEqual(files(), before)
         out = self.folder / "out"
         for _ in range(2):
             self.check_done(equidem("solve", "case.toml", "--out", out, "--overwrite", cwd=self.folder))

@@ -145,7 +145,7 @@ class Folders(ExportTest):
 
     def test_formats_and_options_that_are_missing_or_unknown(self):
         self.check_error(self.export(TENSION, "lamps"), 2, "'lamps'", 'mean "lammps"')
-        self.check_error(self.export(TENSION, "pfc"), 2, "'pfc'", "lammps", "yade")
+        self.check_error(self.export(TENSION, "pfc"), 2, "'pfc'", "earlier version", "equidem calibrate")
         self.check_error(equidem("export", TENSION, "--to", "yade"), 2, "--out")
         self.check_error(equidem("export", TENSION, "--out", self.folder / "x"), 2, "--to")
         self.check_error(self.export(CASES / "pack_jammed.toml", "yade"), 2, "assembly")

@@ -39,6 +39,8 @@ class Import(ProgramTest):
         def refused(path, *words, keys=()):
             self.check_error(equidem("homogenize", self.case(path, *keys)), 2, *words)
         refused(PACKINGS / "packing.data", "packing.data", "unit of length", 'assembly.unit_of_length = "mm"')
+        (self.folder / "empty.csv").write_text("\n\n")
+        refused(self.folder / "empty.csv", "the file is empty", keys=['unit_of_length = "mm"'])
         refused(PACKINGS / "packing.data", "whether its box is periodic", "assembly.periodic_box",
                 keys=['unit_of_length = "m"'])
         half = self.folder / "half.dump"

@@ -56,15 +56,23 @@ class Stability(ProgramTest):
 class Memory(ProgramTest):
     BLOCK = ("--set", "assembly.columns=150", "--set", "assembly.rows=150")
     GRID = ("--set", "assembly.columns=80", "--set", "assembly.rows=80")
+    LOOSE = ("--set", "packing.solid_fraction=0.5")
     CASES = [("solve", TENSION, (*BLOCK, "--set", "solver.method=multifrontal")),
              ("solve", TENSION, (*BLOCK, "--set", "solver.method=cholmod")),
              ("solve", TENSION, (*BLOCK, "--set", "solver.method=umfpack")),
              ("solve", TENSION, (*BLOCK, "--set", "solver.method=multigrid")),
              ("solve", TENSION, (*BLOCK, "--set", "springs.kT=-0.1e9")),
-             ("homogenize", CELL, ("--set", "assembly.discs=20000", "--set", "homogenize.bounds=\"off\"")),
+             ("homogenize", CELL, ("--set", "assembly.discs=20000", "--set", "homogenize.bounds=affine")),
+             ("homogenize", CELL, ("--set", "assembly.discs=20000")),
+             ("quasistatic", CASES / "notched_plate.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
+             ("quasistatic", CASES / "rubbing_notch.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
              ("homogenize", CASES / "viscoelastic_cell.toml",
               ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
              ("stability", TENSION, GRID),
+             ("stability", CELL, ("--set", "assembly.discs=10000")),
+             ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=50000", "--set", "packing.box=none", *LOOSE)),
+             ("pack", CASES / "pack_jammed.toml", ("--set", "packing.grains=200000", "--set", "packing.box=none", "--set",
+                                                   "packing.method=insertion", "--set", "packing.overlap=none", *LOOSE)),
              ("run", CASES / "run_pulse.toml",
               ("--set", "assembly.columns=150", "--set", "assembly.rows=150", "--set", "run.duration=1e-5"))]
 
@@ -82,7 +90,7 @@ class Memory(ProgramTest):
         bare, _ = self.peak("solve", CASES / "truss.toml")
         slack = 6e6  # buffers of libraries
         for verb, case, options in self.CASES:
-            with self.subTest(verb=verb, case=case.name, options=options):
+            with self.subTest(verb=verb, case=pathlib.Path(case).name, options=options):
                 told = parse_json(self.peak(verb, case, *options, "--dry-run", "--json", "-")[1])["peak_bytes"]
                 taken, _ = self.peak(verb, case, *options)
                 shown = f"told {told / 1e6:.0f} MB, taken {taken / 1e6:.0f} MB, {bare / 1e6:.0f} MB of it for any case"
@@ -113,6 +121,7 @@ class Magnitudes(ProgramTest):
         usual = solved()
         for stress in ("1e-160", "1e-250", "1e140"):
             self.assertAlmostEqual(solved("--set", f"test.stress={stress}") / usual, 1, delta=1e-12)
+        self.check_error(equidem("solve", TENSION, "--set", "test.stress=1e-300"), 2, "underflow", "units")
         for unit in ("1e-160", "1e-100", "1e60", "1e160"):
             for method in ("multifrontal", "multigrid"):
                 found = solved("--set", f"springs.kN={unit}", "--set", f"springs.kT={float(unit) / 2!r}", "--set",
@@ -224,7 +233,7 @@ class Inputs(ProgramTest):
         self.check_error(equidem("solve", CASES / "calibrate_random.toml", "--set", "springs.kN=1e9"), 2, "both given")
 
 
-class Memory(ProgramTest):
+class TooLarge(ProgramTest):
     def within(self, address_space, *arguments):
         """Run with that many bytes of address space."""
         done = [subprocess.run([PROGRAM, *map(str, given)], capture_output=True, text=True, timeout=120,

@@ -81,6 +81,7 @@ class Files(PackTest):
         self.check_error(equidem("pack", ROCK, *few, "--set", "packing.density=2480"), 2, "material.density", "contradicts",
                          "2033.6", "Remove one of the two")
         default, _ = self.pack(JAMMED, "--set", "packing.grains=40", name="default")
+        self.assertTrue(default["complete"])
         self.assertEqual(default["density"], {"discs": 2480})
         self.assertIn("the default", default["report"])
 

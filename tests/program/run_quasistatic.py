@@ -379,7 +379,7 @@ class Quasistatic(ProgramTest):
                 result = parse_json(done.stdout)
                 self.assertGreaterEqual(result["event_count"], count)
                 self.assertLess(result["event_count"], count + 3)
-                self.assertIn("while a broken bond gives up its force", result["ended"])
+                self.assertIn(f"(max_events = {count}), while a broken bond gives up its force", result["ended"])
                 self.assertEqual(len(self.events_of(out)), result["event_count"])
             tables.append((out / "events.csv").read_text())
         self.assertEqual(*tables)

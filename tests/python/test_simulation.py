@@ -100,10 +100,10 @@ def test_a_run_that_fails_raises_its_sentence():
                velocity=[{"group": "left", "velocity": (0.1, 0.0)}])
 
 
-@pytest.mark.parametrize("steps", [-1, 1.5, "2", None])
+@pytest.mark.parametrize("steps", [-1, 1.5, "2", None, 10**30])
 def test_steps_are_whole_numbers(steps):
     simulation = pulse()
-    with pytest.raises(eq.BadInput, match="steps = .*whole number, 0 or more"):
+    with pytest.raises(eq.BadInput, match="steps = .*whole number, (0 or more|from 0 to 9223372036854775807)"):
         simulation.advance(steps)
     if steps is not None:
         with pytest.raises(eq.BadInput, match="whole number"):

@@ -195,7 +195,6 @@ TEST_CASE("powers_of_the_resolution_have_their_exponent_as_order") {
   CHECK(order->uncertainty < 1e-10);
   CHECK(order->constant == Approx(3).epsilon(1e-12));
   CHECK(order->error_at(0.01) == Approx(3 * std::pow(0.01, p)).epsilon(1e-12));
-  CHECK(order->resolution_for(order->error_at(0.01)) == Approx(0.01).epsilon(1e-12));
 }
 
 TEST_CASE("coarse_levels_before_the_asymptotic_range_do_not_spoil_the_order") {

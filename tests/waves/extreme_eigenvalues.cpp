@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "equidem/core/error.hpp"
+
 #include "support/catch.hpp"
 
 using namespace equidem;
@@ -80,4 +82,21 @@ TEST_CASE("vectors_that_depend_on_one_another_have_no_orthonormal_basis") {
   CHECK(make_orthonormal(3, two));
   CHECK(std::abs(two[0] * two[3] + two[1] * two[4] + two[2] * two[5]) < 1e-15);
   CHECK(!make_orthonormal(3, alike));
+}
+
+TEST_CASE("an_iteration_that_the_user_stops_has_not_broken_down") {
+  constexpr std::size_t size = 500;
+  const int last = GENERATE(1, 20, 60);
+  int products = 0;
+  const auto multiply = [&](std::span<const double> x, std::span<double> y) {
+    if (++products > last) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] = static_cast<double>(k + 1) * x[k];
+  };
+  try {
+    static_cast<void>(extreme_eigenvalue(size, multiply, SpectrumEnd::largest));
+    FAIL("it went on");
+  } catch (const Error& error) {
+    CAPTURE(last, error.what());
+    CHECK(error.kind() == ErrorKind::interrupted);
+  }
 }

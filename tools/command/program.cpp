@@ -70,9 +70,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 void check_refusals(const Program& program, const std::string& word) {
   for (const Refusal& refusal : program.refusals)
     if (word == refusal.word) bad_input(refusal.problem, refusal.why, refusal.remedy);
-  if (const casefile::RemovedWord* removed = casefile::removed_word(word))
-    bad_input(fmt::format("'{}' is of an earlier version", word), fmt::format("{} has it no longer", program.name),
-              std::string(removed->remedy));
+  casefile::refuse_removed_word(word, program.name);
 }
 
 /// Report an error of CLI11 as one of the program.

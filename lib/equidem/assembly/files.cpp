@@ -369,7 +369,7 @@ Assembly read_assembly(const std::filesystem::path& path, const AssemblyFileOpti
     return imported;
   }
   try {
-    refuse_foreign_options(options);
+    if (is_hdf5 || text.find_first_not_of(" \t\r\n") != std::string::npos) refuse_foreign_options(options);
     return is_hdf5 ? read_hdf5_assembly(path, options.gap_tolerance) : assembly_of(parse(text), options.gap_tolerance);
   } catch (const Error& error) {
     // "file: entry", so that the user finds both.

@@ -24,9 +24,8 @@ bool EventPath::advance() {
     if (most == 0 || std::ssize(events_) < most) {
       step();
     } else {
-      end(PathEnd::most_events,
-          fmt::format("{} are done, as many as asked for{}", counted(std::ssize(events_), "event"),
-                      releasing() ? ", while a broken bond gives up its force" : ""));
+      end(PathEnd::most_events, fmt::format("{} are done (max_events = {}){}", counted(std::ssize(events_), "event"),
+                                            most, releasing() ? ", while a broken bond gives up its force" : ""));
     }
   }
   return events_.size() > before || end_ == PathEnd::none;

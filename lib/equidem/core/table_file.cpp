@@ -363,7 +363,8 @@ bool TableFile::take_row(const OfComment& of_comment) {
     }
     const TableRecord record = take_record(rest_);
     next_line_ += record.lines;
-    if (trimmed(record.text).empty()) continue;
+    const bool names_separator = separator_ == 0 && record.text.starts_with("sep=");  // of spreadsheets
+    if (names_separator || trimmed(record.text).empty()) continue;
     check_text(record.text);
     if (!record.is_closed)
       fail("a quote begins here and does not end", "what stands in quotes is one cell", "Close it, or take it out");

@@ -25,6 +25,7 @@ struct PackingMethodEntry {
   FillBox* fill;
   bool open_top = false;             ///< bodies come from above; otherwise the box is closed or periodic
   bool as_dense_as_possible = true;  ///< ends without a wanted solid fraction
+  double bytes_of_body = 700;        ///< at the peak, with its contacts: measured of discs
 };
 
 template <>
@@ -35,7 +36,8 @@ struct EnumNames<PackingMethod> {
        .name = "rejection",
        .help = "random places, tried again where bodies overlap, up to about 0.5",
        .unit_of_work = "attempts",
-       .fill = fill_by_rejection},
+       .fill = fill_by_rejection,
+       .bytes_of_body = 500},
       {.value = PackingMethod::local_moves,
        .name = "local_moves",
        .help = "overlapping bodies moved at random, to 0.78",
@@ -46,7 +48,8 @@ struct EnumNames<PackingMethod> {
        .name = "insertion",
        .help = "into gaps, in contact with two others, discs to 0.7, others to 0.6",
        .unit_of_work = "attempts",
-       .fill = fill_by_insertion},
+       .fill = fill_by_insertion,
+       .bytes_of_body = 500},
       {.value = PackingMethod::growth,
        .name = "growth",
        .help = "bodies grow and push each other apart, to jamming",
@@ -57,7 +60,8 @@ struct EnumNames<PackingMethod> {
        .help = "under gravity from a staggered grid, to rest",
        .unit_of_work = "time steps, relaxation included",
        .fill = fill_by_falling,
-       .open_top = true},
+       .open_top = true,
+       .bytes_of_body = 1200},
   };
 };
 

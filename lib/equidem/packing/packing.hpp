@@ -69,7 +69,6 @@ struct GrainPacking {
   std::vector<Clump> clumps;
   std::vector<GrainBond> bonds;  ///< with their dashpots where they fell
   std::vector<double> radii;     ///< of each body (PackingShape), m
-  bool complete = true;          ///< all wanted bodies are there, in the wanted sizes
   std::optional<Error> failure;  ///< why it is not what was wanted, but what there was when packing ended
   bool jammed = false;           ///< the overlaps, with equal springs, hold the bodies in balance
   double seconds = 0;
@@ -102,7 +101,6 @@ void keep_failure(GrainPacking& packing, const Work& work) {
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::bad_input) throw;
     packing.failure = error;
-    packing.complete = false;
   }
 }
 

@@ -88,6 +88,9 @@ Equilibrium EquilibriumSolver::Implementation::solve(std::vector<double> force) 
     const double per = all == &given.force ? unit : 1;
     for (const double value : *all) size = std::max(size, std::abs(value) / per);
   }
+  if (size > 0 && size < 0x1p-960)  // smaller motions have fewer digits
+    bad_input("the numbers of this case underflow a double", fmt::format("motions are of the order of {:.0e}", size),
+              "Check the units of sizes, springs and loads");
   const double amount = size == 0 || in_range(size) ? 1 : std::exp2(std::ilogb(size));
   const std::vector<double> loads = given.force;
   for (double& value : given.force) value = value / unit / amount;

@@ -197,10 +197,6 @@ double ObservedOrder::error_at(double h) const {
   return constant * std::pow(h, order);
 }
 
-double ObservedOrder::resolution_for(double error) const {
-  return std::pow(error / constant, 1 / order);
-}
-
 std::optional<ObservedOrder> observed_order(std::span<const Level> levels, double floor) {
   std::vector<Level> usable;
   for (const Level& level : levels) {

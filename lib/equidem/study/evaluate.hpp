@@ -28,8 +28,6 @@ struct ObservedOrder {
   std::size_t levels = 0;
 
   [[nodiscard]] double error_at(double h) const;
-  /// The h with that error.
-  [[nodiscard]] double resolution_for(double error) const;
 };
 
 /// Slope of log error over log h, least squares over the asymptotic range: at least four levels from the finest on

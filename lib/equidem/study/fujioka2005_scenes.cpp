@@ -41,10 +41,6 @@ GrainScene stacked(const PairProperties& pair) {
   return scene;
 }
 
-double dimensionless_speed(double speed) {
-  return speed / std::sqrt(4 * gravity * stacked_radius);
-}
-
 double rigid_height(double height, double e, double time) {
   double speed = std::sqrt(2 * gravity * height), left = time - speed / gravity;
   if (left < 0) return height - 0.5 * gravity * time * time;

@@ -66,6 +66,8 @@ class Process : public Spectra::SymEigsSolver<Operator> {
     init(start.data());
     try {
       compute(Spectra::SortRule::LargestAlge, restarts, tolerance);
+    } catch (const Error&) {  // of A x
+      throw;
     } catch (const std::runtime_error& error) {
       computation_failed("the Lanczos process broke down", error.what(), "Report the case");
     }

@@ -13,6 +13,7 @@ from .errors import BadInput
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int32]
+_LARGEST = 2**63 - 1  # of the whole numbers of the compiled part
 
 
 def _shown(shape: tuple[int | None, ...]) -> str:
@@ -32,14 +33,14 @@ def _check_mask(name: str, value: Any) -> None:
         raise BadInput(f"{name} has masked entries", "every number is used", "Fill them, or leave them out")
 
 
-def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+def whole(name: str, value: Any, least: int, most: int = _LARGEST) -> int:
     """A whole number of a range."""
     try:
         number = operator.index(value)
     except TypeError:
         number = least - 1
-    if number < least or (most is not None and number > most):
-        upto = f"from {least} to {most}" if most is not None else f"{least} or more"
+    if not least <= number <= most:
+        upto = f"{least} or more" if number < least and most == _LARGEST else f"from {least} to {most}"
         raise BadInput(f"{name} = {value!r}", f"it is a whole number, {upto}", f"Give {upto}", name)
     return number
 

@@ -291,6 +291,7 @@ constexpr std::array export_formats{
 
 int export_case(const ExportOptions& options) {
   prepare(options);
+  casefile::refuse_removed_word(options.to, "export");
   const ExportFormat& format = entry_named(export_formats, options.to, "format of --to");
   if (!options.out && !options.dry_run)
     bad_input("export without --out", "its files need a folder", "Name one: --out DIR");

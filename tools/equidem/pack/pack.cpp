@@ -15,6 +15,7 @@
 #include "equidem/contact/prestress/forces_at_rest.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/file.hpp"
+#include "equidem/core/memory.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/body_tables.hpp"
@@ -205,10 +206,10 @@ Results packing_results(const PackCase& resolved, const GrainPacking& packing, c
   const std::string noun = noun_of(options.shape.kind);
   Results out = pack_case_results(resolved);
   out.set("title", resolved.title).set("method", to_string(options.method)).set("shape", to_string(packing.shape));
-  out.set("grains", packing.size()).set("complete", packing.complete).set("box", packing.box.size);
+  out.set("grains", packing.size()).set("complete", !packing.failure).set("box", packing.box.size);
   if (packing.size() < options.radii.size()) {
     out.line("packed", fmt::format("{} of {}", packing.size(), options.radii.size()));
-  } else if (options.method == PackingMethod::growth && !packing.complete) {
+  } else if (grows_to_any_size(options) || (options.method == PackingMethod::growth && packing.failure)) {
     const auto [smallest, largest] = std::ranges::minmax(packing.radii);
     out.line("packed", fmt::format("all radii scaled by {:.6g}: {:.6g} to {:.6g} m",
                                    packing.radii[0] / options.radii[0], smallest, largest));
@@ -304,12 +305,16 @@ int run(const CommonOptions& common) {
   check_outputs(common, resolved);
   located(resolved, "method", [&] { check(resolved.packing); });
   if (resolved.region) located(resolved, "region", [&] { check_region(resolved.packing.box, *resolved.region); });
+  const double bodies = static_cast<double>(resolved.packing.radii.size()), resident = resident_memory();
+  const double needed = entry_of(resolved.packing.method).bytes_of_body * bodies;
   if (common.dry_run) {
     const Results estimate = located(resolved, "method", [&] { return pack_estimate_results(resolved); });
-    deliver(common, "dry_run",
-            pack_case_results(resolved).set("grains", resolved.packing.radii.size()).append(estimate), {});
+    Results out = pack_case_results(resolved).set("grains", resolved.packing.radii.size());
+    out.line("memory").add("peak_bytes", "about", resident + needed, "at the peak", {Shown::bytes});
+    deliver(common, "dry_run", out.append(estimate), {});
     return 0;
   }
+  require_memory(needed, "packing needs about", "Pack fewer bodies, or take a machine with more memory");
   const auto lock = lock_out(common);
   StageTimes times;
   Stopwatch watch;

@@ -251,6 +251,7 @@ struct Stop {
   bool interrupted = false;
   std::optional<Error> failure{};    ///< what ended it otherwise than by its own end
   std::optional<PathState> state{};  ///< behind the last event; none: not known
+  std::optional<Error> unsaved{};    ///< why events, state or frames are not on disk
 };
 
 /// Whatever ends the path, all that was found so far stays.
@@ -267,6 +268,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     if (options.out) write_samples(*options.out / event_table_name, event_table(run, sequence.scene()));
     if (checkpoint && between) checkpoint->write(sequence, frames ? &*frames : nullptr);
   };
+  SavedOnTheWay saved_on_the_way(options);
   const Stopwatch watch;
   double saved = 0;
   const auto contacts = static_cast<double>(sequence.problem.assembly.contacts.size());
@@ -285,7 +287,7 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     Progress progress("breaking");
     while (advance()) {
       if (watch.seconds() - saved > sequence.problem.resolved.output.checkpoint_interval) {
-        save();
+        saved_on_the_way(save);
         saved = watch.seconds();
       }
       progress.update(static_cast<double>(run.events().size()) / most);
@@ -297,10 +299,14 @@ Stop go(const CommonOptions& options, Sequence& sequence, const std::optional<Fi
     const std::string& why = stop.failure->why();
     run.fail(stop.failure->problem() + (why.empty() ? "" : ": " + why));
   }
-  save();
+  stop.unsaved = failure_of(save);
   if (!stop.interrupted || sequence.unbonded) stop.state = run.state();
-  if (frames && !stop.interrupted && stop.state) frames->add_end(run, *stop.state);
-  if (frames) frames->finish();
+  if (frames && !stop.unsaved) {
+    stop.unsaved = failure_of([&] {
+      if (!stop.interrupted && stop.state) frames->add_end(run, *stop.state);
+      frames->finish();
+    });
+  }
   sequence.problem.times.add("events", watch.seconds());
   return stop;
 }
@@ -345,7 +351,11 @@ int quasistatic(const QuasistaticOptions& given) {
     write_figures(into, kept.output, shared_sequence->scene(), shared_sequence->run(), shared_sequence->cut,
                   kept.title);
   };
-  const std::vector<OutputPart> parts{{"the state", write_state_at_end},
+  const auto tell_unsaved = [&](const CommonOptions& /*into*/) {
+    if (stop.unsaved) throw *stop.unsaved;
+  };
+  const std::vector<OutputPart> parts{{"the events", tell_unsaved},
+                                      {"the state", write_state_at_end},
                                       {"the figures", write_case_and_figures, OutputPart::page}};
   deliver(options, stop.interrupted ? "interrupted" : "done", std::move(results), sequence.problem.times, parts);
   const std::int64_t events = std::ssize(sequence.run().events());

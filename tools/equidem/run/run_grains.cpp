@@ -213,6 +213,7 @@ std::vector<std::string> GrainRun::files() const {
   std::vector<std::string> names{"energy.csv"};
   if (case_.measures) names.emplace_back("measures.csv");
   if (case_.output.csv) names.emplace_back("grains.csv");
+  if (case_.output.csv && !case_.scene.bonds.empty()) names.emplace_back("bonds.csv");
   if (case_.output.picture) names.emplace_back("picture.png");
   for (std::size_t k = 0; k + 1 < case_.stages.size(); ++k)
     names.push_back(fmt::format("run.{}.checkpoint.h5", case_.stages[k].name));

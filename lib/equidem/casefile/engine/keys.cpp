@@ -382,7 +382,12 @@ constexpr std::array keys_of_earlier_versions{
 };
 
 /// Options and verbs of the command line.
+struct RemovedWord {
+  std::string_view word, remedy;
+};
+
 constexpr std::array words_of_earlier_versions{
+    RemovedWord{"pfc", "Take kn and ks of PFC from the table of 'equidem calibrate'"},
     RemovedWord{"--without-critical-ratio", "Leave it out: the critical ratio is always sought"},
     RemovedWord{"reproduce", "Run tools/papers/PAPER.py of the source"},
     RemovedWord{"--list", "Give a study of data/studies"},
@@ -402,10 +407,6 @@ std::span<const RemovedKey> removed_keys() {
   return keys_of_earlier_versions;
 }
 
-std::span<const RemovedWord> removed_words() {
-  return words_of_earlier_versions;
-}
-
 const RemovedKey* removed_key(std::string_view table, std::string_view name, std::string_view value) {
   const auto found = std::ranges::find_if(keys_of_earlier_versions, [&](const RemovedKey& row) {
     return (row.table == table || row.table == of_the_case(table)) && row.name == name && row.value == value;
@@ -413,9 +414,11 @@ const RemovedKey* removed_key(std::string_view table, std::string_view name, std
   return found == keys_of_earlier_versions.end() ? nullptr : &*found;
 }
 
-const RemovedWord* removed_word(std::string_view word) {
+void refuse_removed_word(std::string_view word, std::string_view taker) {
   const auto found = std::ranges::find(words_of_earlier_versions, word, &RemovedWord::word);
-  return found == words_of_earlier_versions.end() ? nullptr : &*found;
+  if (found == words_of_earlier_versions.end()) return;
+  bad_input(fmt::format("'{}' is of an earlier version", word), fmt::format("{} has it no longer", taker),
+            std::string(found->remedy));
 }
 
 }  // namespace equidem::casefile

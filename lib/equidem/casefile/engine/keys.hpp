@@ -176,17 +176,12 @@ struct RemovedKey {
   std::string_view remedy;  ///< what to use instead, a sentence without its full stop
 };
 
-/// An option (with its dashes) or a verb.
-struct RemovedWord {
-  std::string_view word;
-  std::string_view remedy;
-};
-
 std::span<const RemovedKey> removed_keys();
-std::span<const RemovedWord> removed_words();
 
 /// The row of a key, or of one of its words; null where there is none.
 const RemovedKey* removed_key(std::string_view table, std::string_view name, std::string_view value = "");
-const RemovedWord* removed_word(std::string_view word);
+
+/// Refuses an option (with its dashes), a verb or a format of an earlier version. \param taker what took it
+void refuse_removed_word(std::string_view word, std::string_view taker);
 
 }  // namespace equidem::casefile

@@ -41,9 +41,6 @@ inline constexpr auto break_numbers = [](auto& event, const auto& visit) {
   visit(event.energy);
 };
 
-/// The bonds that have not broken, in their order.
-std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks);
-
 /// Strengths of the bonds of a scene, scattered in their order as those of the contacts of an assembly.
 /// \throws Error (bad_input) as contact_strengths
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options);

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -207,6 +208,7 @@ void Cycle::build_grids(const SpringNetwork& network, const CycleOptions& option
   double largest = 2;
   auto matrix = std::make_unique<GroupedRows>(network, order_, transfer->first_points(), unit_);
   while (transfer) {
+    stop_if_interrupted();
     Level& level = levels_.emplace_back();
     level.rows = matrix->rows();
     level.matrix = std::move(matrix);

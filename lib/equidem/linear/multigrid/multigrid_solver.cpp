@@ -9,6 +9,7 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/statistics.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/core/threads.hpp"
 #include "equidem/linear/multigrid/conjugate_gradients.hpp"
@@ -143,6 +144,7 @@ class MultigridSolver final : public Factorization {
         cycle_(std::make_unique<multigrid::Cycle>(network, options)) {
     report_.name = "conjugate gradients with multigrid on " + counted(cycle_->grids(), "grid");
     report_.bytes = cycle_->bytes();
+    stop_if_interrupted();
     if (!grows_rigid(network.assembly, network.graph, network.springs, network.unknowns.per_disc)) probe();
   }
 

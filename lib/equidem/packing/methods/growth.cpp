@@ -203,7 +203,6 @@ void fill_by_growth(const PackingOptions& given, GrainPacking& packing) {
   keep_failure(packing, [&] {
     growth.emplace(options);
     if (options.as_dense_as_possible) {
-      packing.complete = false;
       grow_to_jamming(options, *growth);
       growth->refuse_two_images();
       packing.jammed = true;

@@ -35,7 +35,6 @@ void place_all(const PackingOptions& options, GrainPacking& packing, const Place
         found = insert(radii[k], attempt);
       }
       if (found) continue;
-      packing.complete = false;
       if (options.as_dense_as_possible) continue;
       computation_failed(
           fmt::format("{} of {} {}s found a {}, {:.4g} of the box", k, radii.size(), noun_of(options.shape.kind), room,
