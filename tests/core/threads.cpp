@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/core/stopwatch.hpp"
 
 #include "support/catch.hpp"
 
@@ -163,4 +166,31 @@ TEST_CASE("fewer_than_one_thread_is_refused") {
   CHECK_THROWS_WITH(set_thread_count(count), Catch::Contains("number of threads is " + std::to_string(count)));
   CHECK(thread_count() == before);
   CHECK(before >= 1);
+}
+
+TEST_CASE("a_library_that_asks_for_no_signal_is_left_behind_where_the_user_interrupts") {
+  const InterruptCatcher catcher;
+  const auto released = std::make_shared<std::atomic<bool>>(false);
+  const auto ended = std::make_shared<std::atomic<bool>>(false);
+  try {
+    run_aside([released, ended] {
+      std::raise(SIGINT);
+      while (!*released) std::this_thread::yield();
+      *ended = true;
+    });
+    FAIL("it waited");
+  } catch (const Error& error) {
+    CAPTURE(error.what());
+    CHECK(error.kind() == ErrorKind::interrupted);
+  }
+  CHECK(!*ended);
+  *released = true;
+  while (!*ended) std::this_thread::yield();
+}
+
+TEST_CASE("an_exception_of_a_library_set_aside_travels_to_the_caller") {
+  CHECK_THROWS_AS(run_aside([] { throw std::out_of_range("x"); }), std::out_of_range);
+  int done = 0;
+  run_aside([&] { done = 1; });
+  CHECK(done == 1);
 }

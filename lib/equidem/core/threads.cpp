@@ -3,16 +3,20 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <pthread.h>
 
 #include "equidem/core/error.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 
 namespace equidem {
@@ -189,6 +193,20 @@ void parallel_ranges(std::size_t count, std::size_t grain, const std::function<v
   grain = std::max<std::size_t>(grain, 1);
   parallel_tasks((count + grain - 1) / grain,
                  [&](std::size_t task, int) { body(task * grain, std::min(count, (task + 1) * grain)); });
+}
+
+void run_aside(std::function<void()> work) {
+  std::packaged_task<void()> task(std::move(work));
+  std::future<void> done = task.get_future();
+  std::thread aside(std::move(task));
+  try {
+    while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) stop_if_interrupted();
+  } catch (...) {
+    aside.detach();
+    throw;
+  }
+  aside.join();
+  done.get();
 }
 
 }  // namespace equidem

@@ -29,6 +29,11 @@ void parallel_shares(std::size_t tasks, const std::function<void(std::size_t tas
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// Run work(), a call of a library that asks for no signal, on a thread of its own; where the user asks to stop before
+/// it has returned, the thread is left behind: work owns all that it touches. What it throws is thrown here.
+/// \throws Error of kind interrupted where the user asked to stop
+void run_aside(std::function<void()> work);
+
 /// Wait until `value` is another than `old`; whoever changes it notifies.
 ///
 /// It spins for some ten microseconds, longer than threads that work together wait for one another, and then sleeps:

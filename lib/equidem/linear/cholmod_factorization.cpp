@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
@@ -41,34 +43,37 @@ class OneThread {
   int before_ = omp_get_max_active_levels();
 };
 
-/// With 32-bit indices: with those of 64 bits CHOLMOD takes 8 % longer at 3e5 unknowns, and what they allow beyond, a
-/// factor of 2^31 numbers, takes 17 GB.
-class CholmodCholesky final : public Factorization {
- public:
-  CholmodCholesky(double held_stiffness, CholmodOrdering ordering) : held_stiffness_(held_stiffness) {
-    cholmod_start(&common_);
-    common_.print = 0;
-    common_.error_handler = nullptr;
-    common_.supernodal = CHOLMOD_SUPERNODAL;
-    common_.final_ll = 1;
-    common_.quick_return_if_not_posdef = 1;
-    report_.name = fmt::format("CHOLMOD supernodal Cholesky, {}", entry_of(ordering).in_reports);
-    report_.negative_pivots = 0;
+/// The matrix and its factor, which outlive an interrupted factorization. With 32-bit indices: with those of 64 bits
+/// CHOLMOD takes 8 % longer at 3e5 unknowns, and what they allow beyond, a factor of 2^31 numbers, takes 17 GB.
+struct CholmodFactor {
+  CompressedColumns columns;
+  cholmod_common common;  ///< its workspace is used by every call
+  cholmod_factor* factor = nullptr;
+
+  CholmodFactor(CompressedColumns lower, CholmodOrdering ordering) : columns(std::move(lower)) {
+    cholmod_start(&common);
+    common.print = 0;
+    common.error_handler = nullptr;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.final_ll = 1;
+    common.quick_return_if_not_posdef = 1;
+    common.nmethods = 1;
+    common.method[0].ordering = ordering == CholmodOrdering::metis ? CHOLMOD_METIS
+                                : ordering == CholmodOrdering::amd ? CHOLMOD_AMD
+                                                                   : CHOLMOD_NATURAL;
   }
-  ~CholmodCholesky() override {
-    cholmod_free_factor(&factor_, &common_);
-    cholmod_finish(&common_);
+  CholmodFactor(const CholmodFactor&) = delete;
+  CholmodFactor& operator=(const CholmodFactor&) = delete;
+  ~CholmodFactor() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
   }
 
-  /// Whether K is positive definite.
-  bool factorize(CompressedColumns columns, CholmodOrdering ordering) {
-    component_ = std::move(columns.component);
-    if (component_.empty()) return true;
-    if (columns.rows.size() > std::numeric_limits<int>::max()) fail("compressing", CHOLMOD_TOO_LARGE);
+  void factorize() {
     const OneThread one_thread;
     std::vector<int> first(columns.first.begin(), columns.first.end()), rows(columns.rows.begin(), columns.rows.end());
     cholmod_sparse matrix = {};
-    matrix.nrow = matrix.ncol = component_.size();
+    matrix.nrow = matrix.ncol = columns.component.size();
     matrix.nzmax = rows.size();
     matrix.p = first.data();
     matrix.i = rows.data();
@@ -78,12 +83,39 @@ class CholmodCholesky final : public Factorization {
     matrix.xtype = CHOLMOD_REAL;
     matrix.dtype = CHOLMOD_DOUBLE;
     matrix.sorted = matrix.packed = 1;
+    factor = cholmod_analyze(&matrix, &common);
+    if (factor == nullptr) return;
+    cholmod_factorize(&matrix, factor, &common);
+  }
+};
 
-    analyze(matrix, ordering);
-    cholmod_factorize(&matrix, factor_, &common_);
-    if (common_.status < CHOLMOD_OK) fail("factorizing", common_.status);
-    const bool positive = common_.status != CHOLMOD_NOT_POSDEF;
-    watch_pivots(positive, columns.first, columns.values);
+class CholmodCholesky final : public Factorization {
+ public:
+  CholmodCholesky(double held_stiffness, CholmodOrdering ordering) : held_stiffness_(held_stiffness) {
+    report_.name = fmt::format("CHOLMOD supernodal Cholesky, {}", entry_of(ordering).in_reports);
+    report_.negative_pivots = 0;
+  }
+
+  /// Whether K is positive definite.
+  bool factorize(CompressedColumns columns, CholmodOrdering ordering) {
+    component_ = columns.component;
+    if (component_.empty()) return true;
+    if (columns.rows.size() > std::numeric_limits<int>::max()) fail("compressing", CHOLMOD_TOO_LARGE);
+    work_ = std::make_shared<CholmodFactor>(std::move(columns), ordering);
+    constexpr std::size_t small = 30000;  // less than a second
+    if (component_.size() < small) {
+      work_->factorize();
+    } else {
+      run_aside([work = work_] { work->factorize(); });
+    }
+    const int status = work_->common.status;
+    if (status < CHOLMOD_OK) fail(work_->factor == nullptr ? "analyzing" : "factorizing", status);
+    const bool positive = status != CHOLMOD_NOT_POSDEF;
+    report_.nonzeros = work_->common.lnz;
+    report_.bytes = static_cast<double>(work_->factor->xsize) * sizeof(double) +
+                    static_cast<double>(work_->factor->ssize) * sizeof(int);
+    watch_pivots(positive, *work_->factor, work_->columns);
+    work_->columns = {};
     return positive;
   }
 
@@ -104,48 +136,36 @@ class CholmodCholesky final : public Factorization {
     b.x = given.data();
     b.xtype = CHOLMOD_REAL;
     b.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &b, &common_);
-    if (solution == nullptr) fail("solving with", common_.status);
+    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, work_->factor, &b, &work_->common);
+    if (solution == nullptr) fail("solving with", work_->common.status);
     const auto* y = static_cast<const double*>(solution->x);
     for (std::size_t c = 0; c < columns; ++c) {
       for (std::size_t k = 0; k < free; ++k) x[c * n + component_[k]] = y[c * solution->d + k];
     }
-    cholmod_free_dense(&solution, &common_);
+    cholmod_free_dense(&solution, &work_->common);
   }
 
   [[nodiscard]] const FactorReport& report() const override { return report_; }
 
  private:
-  void analyze(cholmod_sparse& matrix, CholmodOrdering ordering) {
-    common_.nmethods = 1;
-    common_.method[0].ordering = ordering == CholmodOrdering::metis ? CHOLMOD_METIS
-                                 : ordering == CholmodOrdering::amd ? CHOLMOD_AMD
-                                                                    : CHOLMOD_NATURAL;
-    factor_ = cholmod_analyze(&matrix, &common_);
-    if (factor_ == nullptr) fail("analyzing", common_.status);
-    report_.nonzeros = common_.lnz;
-    report_.bytes =
-        static_cast<double>(factor_->xsize) * sizeof(double) + static_cast<double>(factor_->ssize) * sizeof(int);
-  }
-
-  void watch_pivots(bool positive, const std::vector<std::int64_t>& first, const std::vector<double>& values) {
-    const auto* permutation = static_cast<const int*>(factor_->Perm);
+  void watch_pivots(bool positive, const cholmod_factor& factor, const CompressedColumns& k) {
+    const auto* permutation = static_cast<const int*>(factor.Perm);
     if (!positive) {
       report_.smallest_pivot = 0;
-      report_.smallest_component = component_[permutation[factor_->minor]];
+      report_.smallest_component = component_[permutation[factor.minor]];
       return;
     }
-    assert(factor_->is_super);
-    const auto* begin = static_cast<const int*>(factor_->super);
-    const auto* row_begin = static_cast<const int*>(factor_->pi);
-    const auto* value_begin = static_cast<const int*>(factor_->px);
-    const auto* l = static_cast<const double*>(factor_->x);
-    for (std::size_t s = 0; s < factor_->nsuper; ++s) {
+    assert(factor.is_super);
+    const auto* begin = static_cast<const int*>(factor.super);
+    const auto* row_begin = static_cast<const int*>(factor.pi);
+    const auto* value_begin = static_cast<const int*>(factor.px);
+    const auto* l = static_cast<const double*>(factor.x);
+    for (std::size_t s = 0; s < factor.nsuper; ++s) {
       const auto rows = static_cast<std::size_t>(row_begin[s + 1] - row_begin[s]);
-      for (int k = begin[s]; k < begin[s + 1]; ++k) {
-        const double pivot = l[value_begin[s] + static_cast<std::size_t>(k - begin[s]) * (rows + 1)];
-        const int column = permutation[k];
-        const double share = pivot * pivot / values[first[column]];  // a column begins with its diagonal
+      for (int c = begin[s]; c < begin[s + 1]; ++c) {
+        const double pivot = l[value_begin[s] + static_cast<std::size_t>(c - begin[s]) * (rows + 1)];
+        const int column = permutation[c];
+        const double share = pivot * pivot / k.values[k.first[column]];  // a column begins with its diagonal
         if (report_.smallest_component >= 0 && share >= report_.smallest_pivot) continue;
         report_.smallest_pivot = share;
         report_.smallest_component = component_[column];
@@ -167,8 +187,7 @@ class CholmodCholesky final : public Factorization {
 
   double held_stiffness_;
   std::vector<std::int64_t> component_;  // of each column
-  mutable cholmod_common common_;        // its workspace is used by every call
-  cholmod_factor* factor_ = nullptr;
+  std::shared_ptr<CholmodFactor> work_;
   FactorReport report_;
 };
 

@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <string>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -18,8 +15,8 @@
 #include <umfpack.h>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/core/threads.hpp"
 #include "equidem/linear/linear_solver.hpp"
 #include "equidem/linear/multifrontal/dense_kernels.hpp"
 #include "equidem/linear/ordering/symbolic_factor.hpp"
@@ -83,26 +80,14 @@ struct Work {
   }
 };
 
-/// UMFPACK asks for no signal, and the analysis of a long strip takes minutes: a thread of its own does the work and
-/// is left behind where the user interrupts. \throws Error (computation_failed) where UMFPACK fails
+/// UMFPACK asks for no signal, and the analysis of a long strip takes minutes.
+/// \throws Error (computation_failed) where UMFPACK fails
 void factorize(const std::shared_ptr<Work>& work) {
   constexpr Index small = 30000;  // less than a second
   if (work->size < small) {
     work->factorize();
   } else {
-    std::promise<void> promise;
-    const std::future<void> done = promise.get_future();
-    std::thread aside([work, promise = std::move(promise)]() mutable {
-      work->factorize();
-      promise.set_value();
-    });
-    try {
-      while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) stop_if_interrupted();
-    } catch (...) {
-      aside.detach();
-      throw;
-    }
-    aside.join();
+    run_aside([work] { work->factorize(); });
   }
   if (work->status < UMFPACK_OK) work->fail(work->analyzed ? "factorizing" : "analyzing", work->status);
 }
