@@ -16,16 +16,14 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
-from common import Output, columns_of, eq, main, mean_of, rows_of, samples_of
-from shown import Page, Row, told_of
+from common import Output, eq, main, mean_of, rows_of, samples_of, with_error
+from shown import Row
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
 STORED = Row(date="2026-11-23", commit="ca6078f8")
 SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
 GRAVITY, PERIOD = NUMBERS["gravity"], NUMBERS["sloshing period"]
-TOLD = told_of("sukegawa2010")
 WHOLE, INNER = ("whole_void_ratio_before", "whole_void_ratio"), ("void_ratio_before", "void_ratio")
-KEPT = ("numbers", "filling", "falling", "shaking", "pictures")  # of a run
 
 
 # ---- runs
@@ -35,12 +33,14 @@ def usual_cycles(frequency):
 
 
 class Run(Row):
-    """A row of runs.csv: what was run, and its numbers. `filling`: the motion while the box was filled."""
+    """A row of runs.csv: what was run, and its numbers; beside them what a run of this day has: `filling`, the motion
+    while the box was filled, histories and pictures."""
     filling, falling, shaking, pictures = None, (), (), ()
 
-    def __init__(self, row):
+    def __init__(self, row, numbers=(), **more):
         text = ("run", "shape", "variant")
-        super().__init__({key: value if key in text else float(value) for key, value in row.items()})
+        super().__init__({key: value if key in text else float(value) for key, value in {**row, **dict(numbers)}.items()})
+        vars(self).update(more)
 
     def number(self, key):
         """key: a name, that of a number of the filling, or two whose difference is wanted."""
@@ -60,20 +60,15 @@ class Run(Row):
 
 
 class Runs(list):
-    def alike(self, shape, gal, frequency, variant=""):
-        return [run for run in self if (run.shape, run.variant, run.acceleration_gal, run.frequency_Hz) ==
-                (shape, variant, gal, frequency)]
-
-    def values(self, key, shape="discs", gal=400, variant="", cycles=10):
-        """Finite values over the runs at 10 Hz that differ only in the seed."""
-        numbers = [run.number(key) for run in self.alike(shape, gal, 10, variant) if run.cycles == cycles]
-        return [number for number in numbers if math.isfinite(number)]
-
-    def of_seeds(self, key, shape, gal=400, frequency=10):
-        """{seed: number} of the usual runs."""
-        found = {run.seed: run.number(key) for run in self.alike(shape, gal, frequency)
-                 if run.cycles <= usual_cycles(frequency)}
+    def of_seeds(self, key, shape="discs", gal=400, frequency=10, variant="", cycles=None):
+        """{seed: number} of the runs that differ in the seed alone, where it is finite."""
+        wanted = (shape, variant, gal, frequency, cycles or usual_cycles(frequency))
+        found = {run.seed: run.number(key) for run in self if wanted == (
+            run.shape, run.variant, run.acceleration_gal, run.frequency_Hz, run.cycles)}
         return {seed: value for seed, value in sorted(found.items()) if math.isfinite(value)}
+
+    def values(self, key, *chosen, **more):
+        return list(self.of_seeds(key, *chosen, **more).values())
 
     def mapped(self, shape, frequencies=None):
         return [run for run in self if run.mapped and run.shape == shape and
@@ -84,30 +79,27 @@ class Runs(list):
                       key=lambda run: -run.frequency_Hz)
 
 
-def plan(quick):
+def plan(options, told):
     """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
-    keys = ("shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
-    small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
-    rows, found = TOLD["quick_runs"] if quick else rows_of("sukegawa2010/runs"), []
-    for row in (row for row in rows if row["variant"] in TOLD["variants"]):
-        shape, variant, seed, gal, frequency, cycles = (
-            kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys))
-        name = f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz"
-        name += f"_{cycles}cycles" if cycles > usual_cycles(frequency) else ""
-        found.append((Row(run=name, **dict(zip(keys, (shape, variant, seed, gal, frequency, cycles)))),
-                      Fill(shape, seed, **{**small, **TOLD["variants"][variant]})))
+    kinds = {"shape": str, "variant": str, "seed": int, "acceleration_gal": float, "frequency_Hz": float, "cycles": int}
+    rows, found = told["quick_runs"] if options.quick else rows_of("sukegawa2010/runs"), []
+    for row in (row for row in rows if row["variant"] in told["variants"]):
+        own = Row({key: kind(row[key]) for key, kind in kinds.items()})
+        name = "_".join(filter(None, (own.shape, own.variant, str(own.seed), f"{own.acceleration_gal:g}gal",
+                                      f"{own.frequency_Hz:.3g}Hz")))
+        name += f"_{own.cycles}cycles" if own.cycles > usual_cycles(own.frequency_Hz) else ""
+        found.append((Row(run=name, **own), Fill(own.shape, own.seed, **{**options.size, **told["variants"][own.variant]})))
     return found
 
 
 def kept_run(arguments):
-    """A run, kept in two files where a path is given."""
-    *given, path = arguments
-    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(KEPT, run_box(given)))}
+    """A run, kept in a file where a path is given."""
+    fill, *shaking, path = arguments
+    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
-        np.savez_compressed(path.with_suffix(".npz"), *(array for one in found["pictures"] for array in one))
         part = path.with_suffix(".part")
-        part.write_text(json.dumps({**found, "pictures": []}, default=float), encoding="utf-8")
+        part.write_text(json.dumps(found), encoding="utf-8")
         part.rename(path)
     return found
 
@@ -117,25 +109,18 @@ def read_run(path, fill):
     if found["fill"] != dataclasses.asdict(fill):
         raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
                           "Choose another --out, or remove it")
-    with np.load(path.with_suffix(".npz")) as file:
-        arrays = list(file.values())
-    return {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
+    return found
 
 
-def compute(options):
+def compute(options, planned):
     """The runs of the plan, those that are in --out already taken from there."""
     kept = options.out and options.out / "runs"
-    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in plan(options.quick)]
+    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
     runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
     todo = [one for one in wanted if one[0].run not in runs]
     runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
         (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
-    done = []
-    for row, _, _ in wanted:
-        done.append(Run({**row, **runs[row.run]["numbers"]}))
-        for key in KEPT[1:]:
-            setattr(done[-1], key, runs[row.run][key])
-    return done
+    return [Run(row, **runs[row.run]) for row, _, _ in wanted]
 
 
 # ---- words of tables
@@ -149,10 +134,9 @@ def figures(value, digits):
 
 
 def spread(values):
-    if not values:
-        return "-"
-    mean = mean_of(values)
-    return figures(mean.mean, 4) + (f" ± {mean.standard_deviation:.4f}" if len(values) > 1 else "")
+    """Mean and standard deviation."""
+    mean = mean_of(values) if values else None
+    return with_error(mean.mean, mean.standard_deviation) if values else "-"
 
 
 def printed(shape, *times):
@@ -302,28 +286,23 @@ def void_ratio_points(runs, key, after, offset):
     return found
 
 
-def less_first(rows, name, k, scale):
-    """Of one of the nine grains. name: "time", "x", "y" or "angle"; scale of positions."""
-    if name == "time":
-        return [row["time_s"] for row in rows]
-    values = np.array([row[f"{name}{k}_{'rad' if name == 'angle' else 'm'}"] for row in rows])
-    return ((values - values[0]) * (1 if name == "angle" else scale)).tolist()
-
-
 def histories(runs, fill):
-    """Figures of the motion of nine grains: (name, title, labels, rows, abscissa, ordinate, scale, names of grains)."""
+    """Figures of the motion of nine grains from their start: (name, title, labels, abscissae, ordinates, names)."""
     found = []
-    for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and len(run.falling)):
-        shape, names = run.shape, dataclasses.replace(fill, shape=run.shape).followed()[1]
-        for stage, title, rows, box, unit, scale in (
+    for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and run.falling):
+        names = dataclasses.replace(fill, shape=run.shape).followed()[1]
+        for stage, title, history, box, unit, scale in (
                 ("falling", "falling", run.falling, "", "m", 1),
                 ("shaken", "400 gal, 10 Hz", run.shaking, " in the box", "mm", 1e3)):
-            for what, label in (("x", f"displacement along x{box}, {unit}"), ("y", f"displacement along y, {unit}"),
-                                ("angle", "rotation, rad")):
-                found.append((f"{shape}_{stage}_{what}", f"{words(shape)}, {title}", "time, s", label, rows, "time",
-                              what, scale, names))
-        found.append((f"{shape}_paths", f"Paths, {words(shape)}, 400 gal, 10 Hz", "displacement along x in the box, mm",
-                      "displacement along y, mm", run.shaking, "x", "y", 1e3, names))
+            x, y, angle = (factor * (np.array(history[key]) - history[key][0])
+                           for key, factor in (("x_m", scale), ("y_m", scale), ("angle_rad", 1)))
+            time = np.repeat(history["time_s"], x.shape[1]).reshape(x.shape)
+            for what, values, label in (("x", x, f"displacement along x{box}, {unit}"),
+                                        ("y", y, f"displacement along y, {unit}"), ("angle", angle, "rotation, rad")):
+                found.append((f"{run.shape}_{stage}_{what}", f"{words(run.shape)}, {title}", "time, s", label, time,
+                              values, names))
+        found.append((f"{run.shape}_paths", f"Paths, {words(run.shape)}, 400 gal, 10 Hz",
+                      "displacement along x in the box, mm", "displacement along y, mm", x, y, names))
     return found
 
 
@@ -335,7 +314,7 @@ def compaction_curves(runs):
               for name in dict.fromkeys(row.series for row in rows)}
     for run in runs:
         if run.run == "discs_1_400gal_10Hz_200cycles" and run.shaking:
-            curves[next(iter(curves))] = [(row["time_s"], row["whole_void_ratio"]) for row in run.shaking]
+            curves[next(iter(curves))] = [*zip(run.shaking["time_s"], run.shaking["whole_void_ratio"])]
     return curves
 
 
@@ -352,6 +331,7 @@ def draw_sheet(pictures, title):
         for one in axes.flat:
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
+            centres, half_axes = np.array(centres), np.array(half_axes)
             one.add_collection(EllipseCollection(
                 *(2 * half_axes.T), np.degrees(angles), units="xy", offsets=centres, transOffset=one.transData,
                 array=layers, cmap="viridis", edgecolors="black", linewidths=0.2))
@@ -367,7 +347,7 @@ def sheets(runs):
     found = {}
     for shape in SHAPES:
         own = [run for run in runs if run.shape == shape and run.seed == 1 and not run.variant and run.cycles <= 10 and
-               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and len(run.pictures)]
+               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and run.pictures]
         own.sort(key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
         for run in own:
             if run.title == "400 gal, 10 Hz":
@@ -379,25 +359,24 @@ def sheets(runs):
     return found
 
 
-def reproduce(options):
-    old, fill = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options.quick)[0][1]
-    new = [] if options.stored else compute(options)
-    by_name = {run.run: run for run in new}
-    missing = [] if options.quick else [run for run in old if run.run not in by_name]
-    runs = Runs(new if options.quick else [by_name.get(run.run, run) for run in old])
-    page = Page("sukegawa2010", globals(), vars(options), {
-        "runs": runs, "fill": fill, "width": fill.width, "missing": missing, "before": runs.values(WHOLE[0]),
-        "capped": runs.values(WHOLE[0], variant="printed_cap"),
-        "radius": 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
-        "depth": runs.of_seeds("surface_height_before_m", "discs")[1.0]})
-    text = page.text("report", resonance=resonance_text(page, runs, fill.width), statements="".join(
-        statement(page, runs, told, options.stored) for told in TOLD["statements"]), best="".join(
-            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs")))
+def reproduce(options, page):
+    old, planned = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options, page.told)
+    new = {} if options.stored else {run.run: run for run in compute(options, planned)}
+    fill = planned[0][1]
+    missing = [] if options.quick else [run for run in old if run.run not in new]
+    runs = Runs(new.values() if options.quick else [new.get(run.run, run) for run in old])
+    page.names.update(
+        runs=runs, fill=fill, width=fill.width, missing=missing, before=runs.values(WHOLE[0]),
+        capped=runs.values(WHOLE[0], variant="printed_cap"),
+        radius=0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
+        depth=runs.of_seeds("surface_height_before_m")[1.0])
+    names = {"resonance": resonance_text(page, runs, fill.width), "statements": "".join(
+        statement(page, runs, told, options.stored) for told in page.told["statements"]), "best": "".join(
+            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs"))}
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(text, {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
-                  {**page.figures(), **sheets(runs)})
+    return Output(names, {"runs": rows}, {"runs": rows}, sheets(runs))
 
 
 if __name__ == "__main__":
-    main("sukegawa2010", __doc__, reproduce, lambda parser: parser.add_argument(
+    main(reproduce, lambda parser: parser.add_argument(
         "--stored", action="store_true", help="tables and figures of the stored runs; nothing is computed"))
