@@ -28,17 +28,9 @@ class Family:
     stretch: float = 1.0
     geometry: Row | None = None
 
-    @property
-    def lattice(self):
-        return self.points == "perturbed_hexagonal"
-
-    @property
-    def random(self):
-        return not self.lattice or self.disorder > 0
-
-    @property
-    def isotropic(self):
-        return self.stretch == 1
+    def __post_init__(self):
+        self.lattice, self.isotropic = self.points == "perturbed_hexagonal", self.stretch == 1
+        self.random = not self.lattice or self.disorder > 0
 
     def cell(self, discs, seed):
         keys = {"disorder": self.disorder} if self.lattice else {}

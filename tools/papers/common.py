@@ -11,6 +11,7 @@ import dataclasses
 import json
 import math
 import multiprocessing
+import os
 import pathlib
 import signal
 import sys
@@ -181,7 +182,9 @@ def machine():
 # ---- samples side by side, their means, lines of least squares
 
 def begin_worker():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Signals to all processes go to the first one, which ends the others: one that is killed while it takes a sample
+    keeps a lock for which the end would wait for ever."""
+    os.setpgrp()
     eq.set_threads(1)
     eq.show_progress(False)
 

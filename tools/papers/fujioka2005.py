@@ -102,11 +102,9 @@ def samples_of_law(law):
     return np.ascontiguousarray(np.array(states[:4096]).T)
 
 
-def gravity_first(variant, step):
-    """Evaluations in the paper's run where gravity is added before the contact force; 0: not computed."""
-    if not variant.of_paper:
-        return 0
-    law, fall, depth, closing, count = variant.alone(), G * step * step / D, -DROP, 0.0, 0
+def gravity_first(law, step):
+    """Evaluations in the paper's run where gravity is added before the contact force."""
+    fall, depth, closing, count = G * step * step / D, -DROP, 0.0, 0
     for _ in range(round(DURATION / step)):
         closing += fall
         if depth > 0:
@@ -129,14 +127,14 @@ def measure_table1(size):
     effect."""
     slices, rows, laws, runs, samples = 50, [], [], [], []
     for variant in variants(VERY_STIFF):
-        step = STEP if variant.label == "X stiff" else size.table1_step
+        step, law = STEP if variant.label == "X stiff" else size.table1_step, variant.alone()
         balls = [(1.5 * D * k, column(1)[0][1]) for k in range(BALLS)]
         rows.append(variant.row(time_step=step, run_seconds=0.0,
                                 law_alone_nanoseconds=math.inf if variant.of_paper else math.nan,
-                                evaluations_gravity_first=gravity_first(variant, step)))
-        laws.append(variant.alone())
+                                evaluations_gravity_first=gravity_first(law, step) if variant.of_paper else 0))
+        laws.append(law)
         runs.append([variant.spheres(balls, step) for _ in range(3)])
-        samples.append(samples_of_law(laws[-1]) if variant.of_paper else None)
+        samples.append(samples_of_law(law) if variant.of_paper else None)
     for part in tracked("Table 1:", range(slices)):
         for row, law, own, states in zip(rows, laws, runs, samples):
             steps = round(DURATION / row.time_step) // slices
@@ -197,13 +195,6 @@ def watch_impacts(variant, fast):
             run = start()
     return variant.row(paths=paths, energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest,
                        ran_away=ran_away)
-
-
-def impacts(fast):
-    laws = variants(VERY_STIFF)
-    if fast:
-        laws.insert(2, Variant("hertz_dashpot", SOFT_HERTZ, "T soft"))
-    return [watch_impacts(variant, fast) for variant in laws]
 
 
 def compare_printed():
@@ -273,21 +264,18 @@ def slide_without_lag(step):
     return errors_of(step, vx, parting)
 
 
-def order(points, key):
-    """Slope of log(error) over log(step), least squares over steps up to 1e-4 s."""
-    fine = [p for p in points if p.time_step <= 1.01e-4 and p[key] > 0]
-    return float(np.polyfit(*(np.log([p[name] for p in fine]) for name in ("time_step", key)), 1)[0])
-
-
 def slide_stacked(size):
-    """1e-3 s and less, by quarters of a decade."""
+    """1e-3 s and less, by quarters of a decade; orders: slopes of log(error) over log(step) up to 1e-4 s."""
     steps = [10 ** (-k / 4) for k in size.quarters]
     curves = [variant.row(points=[slide(variant, step) for step in steps])
               for variant in tracked("stacked spheres:", variants(STIFF))]
     without_lag = dataclasses.replace(variants(STIFF)[0], label="C, no lag")
     curves.append(without_lag.row(points=[slide_without_lag(step) for step in steps]))
     for one in curves:
-        one.update(speed_order=order(one.points, "speed_error"), parting_order=order(one.points, "parting_error"))
+        for what in ("speed", "parting"):
+            fine = [(p.time_step, p[what + "_error"]) for p in one.points
+                    if p.time_step <= 1.01e-4 and p[what + "_error"] > 0]
+            one[what + "_order"] = np.polyfit(*np.log(fine).T, 1)[0]
     return curves
 
 
@@ -350,16 +338,11 @@ def settle(variant, balls, duration, e):
             speeds += (u**2 + v**2).mean()
             overlaps += 0.5 * D - y[0]
             touched += sum(j < 0 for _, j in run.contacts())
-    steps = last - late
+    steps, changes = last - late, [energy / energies[0] - 1 for energy in energies]
     return variant.row(
-        times=times, energies=energies, balls=balls, energy_above_rest=energies[-1],
+        times=times, energies=energies, changes=changes, balls=balls, energy_above_rest=energies[-1],
         speed_of_g_dt=math.sqrt(speeds / steps) / (G * STEP), share_of_steps_in_contact=touched / steps,
-        overlap_of_static=overlaps / steps / at_rest[0], energy_change=changes(energies)[-1])
-
-
-def changes(energies):
-    """Relative change of the energy since the start."""
-    return [energy / energies[0] - 1 for energy in energies]
+        overlap_of_static=overlaps / steps / at_rest[0], energy_change=changes[-1])
 
 
 def come_to_rest(balls, duration, e=E):
@@ -368,9 +351,12 @@ def come_to_rest(balls, duration, e=E):
 
 
 def compute(size):
-    return Row(slow_impacts=impacts(False), fast_impacts=impacts(True), printed=compare_printed(),
-               table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS])
-                       for variant in variants(VERY_STIFF)],
+    laws = variants(VERY_STIFF)
+    return Row(slow_impacts=[watch_impacts(variant, False) for variant in laws],
+               fast_impacts=[watch_impacts(variant, True) for variant in (
+                   *laws[:2], Variant("hertz_dashpot", SOFT_HERTZ, "T soft"), *laws[2:])],
+               printed=compare_printed(),
+               table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS]) for variant in laws],
                bouncing_ball=cost_of_ball(size), stacked=slide_stacked(size), rest=come_to_rest(1, 6),
                column=come_to_rest(size.balls, size.duration), lossless=come_to_rest(5, size.duration, 1.0),
                table1=measure_table1(size))
@@ -443,8 +429,8 @@ def conclusions(r):
 # ---- figures
 
 def name_of(law):
-    special = {"C, no lag": "C, no lag", "X, step 0.1 s": "X, step 0.1 s, a = 1e4 to 1e12"}
-    return special.get(law.label, f"{law.letter} (a = {law.a:g})")
+    steps = "X, step 0.1 s"
+    return {steps: steps + ", a = 1e4 to 1e12", "C, no lag": law.label}.get(law.label, f"{law.letter} (a = {law.a:g})")
 
 
 def f_over_p(laws):
@@ -466,7 +452,7 @@ def first_paths(law):
 def numbers_of(row):
     """What result.json has of a row: without curves, the points as columns."""
     points = row.get("points", [{}])
-    return {**{key: row[key] for key in row if key not in ("points", "paths", "times", "energies")},
+    return {**{key: row[key] for key in row if key not in ("points", "paths", "times", "energies", "changes")},
             **{key: [point[key] for point in points] for key in points[0] if key != "a"}}
 
 

@@ -150,13 +150,19 @@ def half_width(values):
     return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
+def judge(differences, half=None):
+    """A difference that a statement says is positive."""
+    mean, half = mean_of(differences).mean, half_width(differences) if half is None else half
+    return "holds" if mean - half > 0 else "does not hold" if mean + half < 0 else "not decided"
+
+
 def printed_verdict(found, capped):
     """Whether a detail explains the printed void ratio of discs before shaking. With one seed: judged by the scatter of
     the runs with (2.16) alone."""
-    mean, wanted = mean_of(found).mean, NUMBERS["discs, void ratio before"]
     half = half_width(capped) * math.sqrt(len(capped)) if len(found) == 1 else half_width(found)
-    return ("not decided" if not math.isfinite(half) else "does not explain it, too loose" if mean - half > wanted else
-            "does not explain it, too dense" if mean + half < wanted else "agrees with it within the scatter")
+    looser = judge([value - NUMBERS["discs, void ratio before"] for value in found], half)
+    return {"holds": "does not explain it, too loose", "does not hold": "does not explain it, too dense"}.get(
+        looser, "agrees with it within the scatter" if math.isfinite(half) else "not decided")
 
 
 def fastest(radius):
@@ -167,16 +173,10 @@ def fastest(radius):
 
 # ---- sloshing
 
-def sloshing_period(width, depth, mode=1):
-    """By linear theory: omega² = g k tanh(k h), k = n pi/l."""
+def sloshing_period(width, depth, mode=1, printed=1):
+    """By linear theory: omega² = g k tanh(k h), k = n pi/l; printed = 2: (7.2) as printed, (pi g/l) tanh(2 pi h/l)."""
     k = mode * math.pi / width
-    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(k * depth))
-
-
-def printed_formula_period(width, depth):
-    """(7.2) as printed: omega² = (pi g/l) tanh(2 pi h/l)."""
-    k = math.pi / width
-    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(2 * k * depth))
+    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(printed * k * depth))
 
 
 def liquid_amplification(period, width, depth):
@@ -193,26 +193,17 @@ def amplification_of(run, width):
     return run.swing_m / tilted
 
 
-def resonance_text(page, runs, width):
+def around_resonance(runs, width):
+    """The runs below, at and above the printed period, with their amplifications, where there are such."""
     found = runs.resonance()
     nearest = min(range(len(found)), key=lambda k: abs(1 / found[k].frequency_Hz - PERIOD), default=0)
-    if not 0 < nearest < len(found) - 1 or abs(1 / found[nearest].frequency_Hz - PERIOD) > 0.01:
-        return ""
-    left, here, right = found[nearest - 1:nearest + 2]
-    return page.text("resonance", left=left, right=right, amplitude=[amplification_of(run, width)
-                                                                    for run in (left, here, right)])
+    if 0 < nearest < len(found) - 1 and abs(1 / found[nearest].frequency_Hz - PERIOD) < 0.01:
+        return [Row(period=1 / run.frequency_Hz, amplitude=amplification_of(run, width))
+                for run in found[nearest - 1:nearest + 2]]
+    return []
 
 
 # ---- verdicts
-
-def judge(differences):
-    """A difference that a statement says is positive."""
-    half = half_width(differences)
-    if math.isnan(half):
-        return "not decided"
-    mean = mean_of(differences).mean
-    return "holds" if mean - half > 0 else "does not hold" if mean + half < 0 else "not decided"
-
 
 def interval(values):
     if len(values) == 1:
@@ -235,43 +226,40 @@ def sides(runs, told):
 def compared(runs, told):
     """Over the seeds that both sides have; nothing where there are none."""
     smaller, larger = sides(runs, told)
-    both = [(smaller[seed], larger[seed]) for seed in smaller if seed in larger]
-    differences = [b - a for a, b in both]
-    return both and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
-                        smaller=mean_of(a for a, _ in both).mean, larger=mean_of(b for _, b in both).mean)
+    seeds = [seed for seed in smaller if seed in larger]
+    differences = [larger[seed] - smaller[seed] for seed in seeds]
+    return seeds and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
+                         smaller=mean_of(smaller[seed] for seed in seeds).mean,
+                         larger=mean_of(larger[seed] for seed in seeds).mean)
 
 
-def statement(page, runs, told, stored):
-    """Holds where all its comparisons do, and does not where one of them does not."""
-    rows = rows_of("sukegawa2010/filling") if stored and "stored" in told else [
-        compared(runs, one) for one in told["compared"]]
-    if not all(rows):
-        return ""
-    verdict = next(one for one in ("does not hold", "not decided", "holds") if one in [row.verdict for row in rows])
-    return f"  {told['section']} {told['says']}: {verdict.upper()}\n" + page.lines("comparison", rows)
+def decided(runs, statements, stored):
+    """Statements with their comparisons: one holds where all of these do, and does not where one of them does not."""
+    for told in statements:
+        rows = rows_of("sukegawa2010/filling") if stored and "stored" in told else [
+            compared(runs, one) for one in told["compared"]]
+        verdicts = [row and row.verdict for row in rows]
+        if all(verdicts):
+            yield {**told, "rows": rows, "verdict": next(
+                one for one in ("does not hold", "not decided", "holds") if one in verdicts)}
 
 
-def best_shakings(runs, shape):
-    """Section 9.2: the shaking after which the void ratio is smallest, and those that scatter does not tell from it."""
-    found = [(run.title, runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
-             for run in runs.mapped(shape)]
-    found = sorted((one for one in found if one[1]), key=lambda one: len(one[1]))
-    if len(found) < 2:
-        return ""
-    seeds = len(found[len(found) // 2][1])  # that half of the shakings have
-    found = sorted((one for one in found if len(one[1]) >= seeds), key=lambda one: mean_of(one[1].values()).mean)
-    name, best = found[0]
-    text = (f"  {words(shape)}: densest after {name}, e = {interval(list(best.values()))}, of {len(found)} shakings of "
-            f"{seeds} filling")
-    if seeds == 1:
-        return text + ": no scatter is known\n"
-    rivals = ""
-    for other, values in found[1:]:
-        more = [values[seed] - best[seed] for seed in best if seed in values]
-        if judge(more) != "holds":
-            rivals += f"    {other:<16} by {interval(more)}\n"
-    return text + "s; " + ("NOT DECIDED within the scatter against\n" + rivals if rivals else
-                           "no other is as good within the scatter\n")
+def best_shakings(runs):
+    """Section 9.2: for each shape the shaking after which the void ratio is smallest, and those that scatter does not
+    tell from it; of the shakings that at least as many seeds have as half of all."""
+    for shape in ("discs", "bonded_pairs"):
+        found = [Row(title=run.title, values=runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
+                 for run in runs.mapped(shape)]
+        found = sorted((one for one in found if one["values"]), key=lambda one: len(one["values"]))
+        seeds = len(found[len(found) // 2]["values"]) if len(found) > 1 else math.inf
+        found = sorted((one for one in found if len(one["values"]) >= seeds),
+                       key=lambda one: mean_of(one["values"].values()).mean)
+        if found:
+            best = found[0]["values"]
+            for one in found:
+                one["more"] = [value - best[seed] for seed, value in one["values"].items() if seed in best]
+            yield {"shape": shape, "best": found[0], "count": len(found), "seeds": seeds, "rivals": [
+                one for one in found[1:] if seeds > 1 and judge(one.more) != "holds"]}
 
 
 # ---- plots
@@ -370,9 +358,8 @@ def reproduce(options, page):
         capped=runs.values(WHOLE[0], variant="printed_cap"),
         radius=0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
         depth=runs.of_seeds("surface_height_before_m")[1.0])
-    names = {"resonance": resonance_text(page, runs, fill.width), "statements": "".join(
-        statement(page, runs, told, options.stored) for told in page.told["statements"]), "best": "".join(
-            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs"))}
+    names = {"resonance": around_resonance(runs, fill.width), "best": [*best_shakings(runs)],
+             "decided": [*decided(runs, page.told["statements"], options.stored)]}
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
     return Output(names, {"runs": rows}, {"runs": rows}, sheets(runs))
 
