@@ -39,7 +39,8 @@ class Run(Row):
 
     def __init__(self, row, numbers=(), **more):
         text = ("run", "shape", "variant")
-        super().__init__({key: value if key in text else float(value) for key, value in {**row, **dict(numbers)}.items()})
+        super().__init__({key: value if key in text else float(value)
+                          for key, value in {**row, **dict(numbers)}.items()})
         vars(self).update(more)
 
     def number(self, key):
@@ -88,7 +89,8 @@ def plan(options, told):
         name = "_".join(filter(None, (own.shape, own.variant, str(own.seed), f"{own.acceleration_gal:g}gal",
                                       f"{own.frequency_Hz:.3g}Hz")))
         name += f"_{own.cycles}cycles" if own.cycles > usual_cycles(own.frequency_Hz) else ""
-        found.append((Row(run=name, **own), Fill(own.shape, own.seed, **{**options.size, **told["variants"][own.variant]})))
+        settings = {**options.size, **told["variants"][own.variant]}
+        found.append((Row(run=name, **own), Fill(own.shape, own.seed, **settings)))
     return found
 
 

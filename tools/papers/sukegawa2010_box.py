@@ -294,10 +294,11 @@ def run_box(fill, gal, frequency, cycles):
         steps=run.step - round(fill.fall / step), time_s=run.time - fill.fall,
         energy_error=energy["error"] / abs(energy["potential"]), seconds=time.monotonic() - begun)
     if bonds:
-        apart, rolled = ([np.array([getattr(at, what)[1::2] - getattr(at, what)[::2] for at in (falling.first, after)])
-                          for what in ("places", "angles")])
-        numbers["bond_creep"] = np.mean(np.abs(np.diff(np.linalg.norm(apart, axis=2), axis=0)) / (2 * bodies.radii[::2]))
-        numbers["bond_roll_rad"] = np.mean(np.abs(np.diff(rolled, axis=0)))
+        (before, rolled), (now, rolled_now) = (
+            (np.linalg.norm(at.places[1::2] - at.places[::2], axis=1), at.angles[1::2] - at.angles[::2])
+            for at in (falling.first, after))
+        numbers["bond_creep"] = np.mean(np.abs(now - before) / (2 * bodies.radii[::2]))
+        numbers["bond_roll_rad"] = np.mean(np.abs(rolled_now - rolled))
     layers = np.tile(bodies.layers, len(bodies.offsets))
     histories = ({key: column.tolist() for key, column in stage.history().items()} for stage in (falling, shaken))
     return {"numbers": {key: float(value) for key, value in numbers.items()}, "filling": falling.moved(),

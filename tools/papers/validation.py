@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-from common import (Output, Random, disc_stresses, eq, fit_line, hexagonal_moduli, main, mean_columns, mean_of, moduli_of,
-                    moved_discs, power, rows_of, seeds_of, tracked, turned, unit_motions)
+from common import (Output, Random, disc_stresses, eq, fit_line, hexagonal_moduli, main, mean_columns, mean_of,
+                    moduli_of, moved_discs, power, rows_of, seeds_of, tracked, turned, unit_motions)
 from shown import Row
 from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
