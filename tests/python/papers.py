@@ -2,6 +2,7 @@
 """The scripts of tools/papers, as a user runs them."""
 import csv
 import json
+import os
 import pathlib
 import signal
 import subprocess
@@ -39,13 +40,19 @@ def check_help(name):
     assert refused.returncode == 2 and "--rows" in refused.stderr and refused.stdout == ""
 
 
-def check_interrupt(name, out):
-    """It stops soon, with exit code 130."""
+def check_interrupt(name, out, whole_group=False):
+    """It stops soon, with exit code 130; the signal goes to it alone or, as that of `timeout`, to its workers too."""
     with subprocess.Popen([sys.executable, "-B", PAPERS / f"{name}.py", "--out", out, "--quiet"], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as started:
+                          stderr=subprocess.PIPE, text=True, start_new_session=True) as started:
         while not out.exists():  # the computation begins
             time.sleep(0.1)
-        time.sleep(3)
-        started.send_signal(signal.SIGINT)
-        stdout, stderr = started.communicate(timeout=60)
+        time.sleep(8 if whole_group else 3)
+        if whole_group:
+            os.killpg(started.pid, signal.SIGTERM)
+        else:
+            started.send_signal(signal.SIGINT)
+        try:
+            stdout, stderr = started.communicate(timeout=60)
+        finally:
+            started.kill()
     assert (started.returncode, stdout) == (130, ""), stderr

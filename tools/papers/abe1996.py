@@ -12,8 +12,9 @@ import math
 
 import numpy as np
 
-from common import Output, Progress, components, counted, disc_stresses, eq, main, mean_of, vectors_of
-from shown import Page, Row, save
+from common import (Output, affine_motions, disc_stresses, eq, hexagonal_moduli, main, means_of, power, tracked,
+                    unit_motions, vectors_of)
+from shown import Row, save
 
 SQRT3 = math.sqrt(3)
 STRESS = 1e6  # Pa
@@ -21,9 +22,6 @@ KN = 1e9  # Pa
 RADIUS = 0.005  # m
 SHOWN_RATIO = 0.5  # kT/kN of the picture
 UNEQUAL_RATIO, UNEQUAL_DISCS = 0.25, 400
-# The block; a large one; those of the error against size (n rows of n discs); random cells of each range of radii.
-FULL = Row(rows=21, columns=21, large=129, sizes=(9, 17, 33, 65, 129), samples=12)
-QUICK = Row(rows=17, columns=17, large=33, sizes=(9, 17, 33), samples=4)
 
 
 # ---- Abe's relations between springs and continuum, r = kT/kN
@@ -72,19 +70,18 @@ def error_of_size(rows, ratio):
                stiffness_ratio_error=abs(point.stiffness_ratio / theory_stiffness(ratio) - 1))
 
 
-def affine_forces(cell, kN, kT, h, rotation=0.0):
-    """Normal (tension positive) and tangential forces of the contacts where all discs follow the gradient
-    h = [[u1,1, u1,2], [u2,1, u2,2]] and turn by the rotation."""
+def affine_forces(cell, ratio, h, rotation=0.0):
+    """Normal (tension positive) and tangential forces of contacts with kN = 1 where all discs follow the gradient h and
+    turn by the rotation."""
     lengths = cell.levers.sum(axis=1)
-    moved = components(lengths[:, None] * (cell.normals @ np.array(h).T), cell.normals)
-    return (moved - np.stack([0 * lengths, rotation * lengths], axis=1)) * (kN, kT)
+    return (affine_motions(cell, h) - np.stack([0 * lengths, rotation * lengths], axis=1)) * (1, ratio)
 
 
 def uniform_state(block, ratio):
     """nu of the test under the loads that a uniform state needs in place of equal ones, and these loads on the right
     side over the mean load of a row."""
-    e11 = STRESS / (KN * theory_stiffness(ratio))
-    forces = affine_forces(block, KN, ratio * KN, np.diag([e11, -in_plane_stress(theory_nu(ratio)) * e11]))
+    e11 = STRESS / theory_stiffness(ratio)
+    forces = affine_forces(block, ratio, np.diag([e11, -in_plane_stress(theory_nu(ratio)) * e11]))
     missing, on_first = np.zeros((len(block), 3)), vectors_of(forces, block.normals)
     for side, sign in ((0, -1), (1, 1)):
         np.add.at(missing[:, :2], block.contacts[:, side], sign * on_first)
@@ -105,12 +102,12 @@ def explain_error(size, ratio=1):
     def nu(columns, rows=size.rows):
         return tension(block_of(columns, rows), ratio).poisson_ratio
     block = f"{size.rows} rows of {{}} discs".format
-    found = {block(size.columns) + ", equal loads (Fig. 6)": nu(size.columns)}
-    found.update({block(times * size.columns): nu(times * size.columns) for times in (2, 4, 8)})
-    found[f"{size.large} rows of {size.large} discs"] = nu(size.large, size.large)
-    found[block(size.columns) + ", loads of the uniform state"], edges = uniform_state(
-        block_of(size.columns, size.rows), ratio)
-    found["periodic cell, homogenized"] = eq.homogenize(periodic(), (1.0, float(ratio))).poisson_ratio.plane_strain
+    uniform, edges = uniform_state(block_of(size.columns, size.rows), ratio)
+    found = {block(size.columns) + ", equal loads (Fig. 6)": nu(size.columns),
+             **{block(times * size.columns): nu(times * size.columns) for times in (2, 4, 8)},
+             f"{size.large} rows of {size.large} discs": nu(size.large, size.large),
+             block(size.columns) + ", loads of the uniform state": uniform,
+             "periodic cell, homogenized": eq.homogenize(periodic(), (1.0, float(ratio))).poisson_ratio.plane_strain}
     return [Row(block=name, poisson_ratio=nu) for name, nu in found.items()], edges
 
 
@@ -122,19 +119,18 @@ def check_stress(size):
     cell, worst = periodic(), {"free": 0.0, "restrained": 0.0}
     gradients = [[[1e-3, 0], [0, 0]], [[0, 0], [0, 1e-3]], [[0, 1e-3], [0, 0]], [[0, 0], [1e-3, 0]],
                  [[7e-4, -3e-4], [9e-4, 2e-4]]]
-    for kN, kT in ((KN, ratio * KN) for ratio in (-0.3, -0.1, 0.0, 0.25, 0.5, 1.0)):
+    for ratio in (-0.3, -0.1, 0.0, 0.25, 0.5, 1.0):
+        bulk, shear = hexagonal_moduli(ratio)[:2]
         for h in map(np.array, gradients):
-            volume, spin = np.trace(h), h[1, 0] - h[0, 1]
-            shear, bulk = SQRT3 / 4 * (kN + kT), SQRT3 / 2 * kN  # (34)
-            continuum = (bulk - shear) * volume * np.eye(2) + shear * (h + h.T)  # (52)
-            # (55) over the cell 2 sqrt3 a^2, its first bracket completed by d_2i d_2j (u_1,1 + 3 u_2,2).
-            cosserat = SQRT3 / 4 * ((kN - kT) * volume * np.eye(2) + (kN + kT) * (h + h.T))
-            cosserat = cosserat + SQRT3 / 2 * kT * spin * np.array([[0, -1], [1, 0]])
+            spin = h[1, 0] - h[0, 1]
+            continuum = (bulk - shear) * np.trace(h) * np.eye(2) + shear * (h + h.T)  # (52)
+            # (55) over the cell 2 sqrt3 a^2, its first bracket completed by d_2i d_2j (u_1,1 + 3 u_2,2)
+            cosserat = continuum + SQRT3 / 2 * ratio * spin * np.array([[0, -1], [1, 0]])
             for name, rotation, expected in (("free", spin / 2, continuum), ("restrained", 0, cosserat)):
-                stresses = disc_stresses(cell, affine_forces(cell, kN, kT, h, rotation))
+                stresses = disc_stresses(cell, affine_forces(cell, ratio, h, rotation))
                 worst[name] = max(worst[name], np.abs(stresses - expected).max() / np.abs(expected).max())
     ratio, spin = 0.5, 1e-3
-    forces = affine_forces(cell, KN, ratio * KN, [[0, 0], [spin, 0]])
+    forces = KN * affine_forces(cell, ratio, [[0, 0], [spin, 0]])
     stress = np.tensordot(cell.cell_areas, disc_stresses(cell, forces), 1) / cell.area
     test = tension(block_of(size.columns, size.rows), ratio, effects={"rotation": "restrained"})
     return Row(free_rotation_deviation=worst["free"], restrained_rotation_deviation=worst["restrained"],
@@ -211,14 +207,8 @@ def unequal_sample(spread, seed):
     cell = eq.delaunay(discs=UNEQUAL_DISCS, points="poisson_disc", seed=seed, periodic=True,
                        radii={"smallest": RADIUS, "largest": spread * RADIUS})
     found = eq.homogenize(cell, (1.0, UNEQUAL_RATIO), homogenize={"bounds": "affine"})
-    compliance, (i, j) = np.linalg.inv(found.stiffness)[:, 0], cell.contacts.T
-    strain = [[compliance[0], compliance[2] / 2], [compliance[2] / 2, compliance[1]]]
-    forces = affine_forces(cell, 1, UNEQUAL_RATIO, strain)
-    for name, weight in zip(("xx", "yy", "xy"), compliance):
-        state = found.fluctuations[name]
-        moved = components(state.displacements[j] - state.displacements[i], cell.normals)
-        moved[:, 1] -= cell.levers[:, 0] * state.rotations[i] + cell.levers[:, 1] * state.rotations[j]
-        forces += weight * moved * (1, UNEQUAL_RATIO)
+    compliance = np.linalg.inv(found.stiffness)[:, 0]
+    forces = np.tensordot(compliance, sum(unit_motions(cell, found)), 1) * (1, UNEQUAL_RATIO)
     stresses = disc_stresses(cell, forces)
     # (50) as printed, with the area of the disc over the solid fraction of the assembly in place of the cell
     areas = math.pi * cell.radii ** 2 / cell.solid_fraction
@@ -233,37 +223,29 @@ def unequal_sample(spread, seed):
             "printed_scatter_xx": printed_scatter[0, 0]}
 
 
-def unequal_radii(spread, count):
-    samples = [unequal_sample(spread, seed) for seed in range(1, count + 1)]
-    return Row(spread=spread, **{key: mean_of(sample[key] for sample in samples) for key in samples[0]})
-
-
 # ---- the whole
 
 def compute(size):
-    progress = Progress("reproducing Abe 1996")
     block, large = block_of(size.columns, size.rows), block_of(size.large, size.large)
     test = tension(block, SHOWN_RATIO)
     lengths = [float(np.hypot(*(block.centres[b] - block.centres[a])))
                for a, b in (test.gauge.horizontal, test.gauge.vertical)]
-    r = Row(columns=size.columns, rows=size.rows, height=test.height, gauge_length=lengths[0], gauge_height=lengths[1],
-            critical_ratio_lattice=-1 / 3)
-    r["points"] = [ratio_point(block, step / 20) for step in range(-18, 21)]
-    progress.update(0.2)
-    r["large_points"] = [ratio_point(large, step / 10) for step in range(-2, 11)]
-    progress.update(0.4)
-    r["convergence"] = [error_of_size(rows, ratio) for ratio in (0.0, 0.1, 0.5, 1.0) for rows in size.sizes]
-    progress.update(0.6)
-    r["error_of_nu"], r["edges"] = explain_error(size)
     supported = eq.Case(assembly=block, springs=(KN, KN), test={"kind": "uniaxial_tension", "gauge": "centre"})
-    r["critical_ratio_block"] = supported.stability().critical_ratio
-    r["macroscopic_stress"] = check_stress(size)
-    r["square_lattice"] = [square_lattice(ratio) for ratio in (0.1, 0.25, 0.5, 1.0, 2.0)]
-    r["restrained_waves"] = [restrained_waves(nu) for nu in (-0.5, 0.0, 0.1, 0.2, 0.25)]
-    progress.update(0.75)
-    r["unequal_radii"] = [unequal_radii(spread, size.samples) for spread in (1.0, 1.25, 1.5, 2.0)]
-    progress.end()
-    return r
+    parts = {
+        "points": lambda: [ratio_point(block, step / 20) for step in range(-18, 21)],
+        "large_points": lambda: [ratio_point(large, step / 10) for step in range(-2, 11)],
+        "convergence": lambda: [error_of_size(rows, ratio) for ratio in (0.0, 0.1, 0.5, 1.0) for rows in size.sizes],
+        "error_of_nu": lambda: explain_error(size),
+        "critical_ratio_block": lambda: supported.stability().critical_ratio,
+        "macroscopic_stress": lambda: check_stress(size),
+        "square_lattice": lambda: [square_lattice(ratio) for ratio in (0.1, 0.25, 0.5, 1.0, 2.0)],
+        "restrained_waves": lambda: [restrained_waves(nu) for nu in (-0.5, 0.0, 0.1, 0.2, 0.25)],
+        "unequal_radii": lambda: [Row(spread=spread, **means_of([
+            unequal_sample(spread, seed) for seed in range(1, size.samples + 1)])) for spread in (1.0, 1.25, 1.5, 2.0)]}
+    found = {name: parts[name]() for name in tracked("reproducing Abe 1996", parts)}
+    found["error_of_nu"], edges = found["error_of_nu"]
+    return Row(columns=size.columns, rows=size.rows, height=test.height, gauge_length=lengths[0],
+               gauge_height=lengths[1], critical_ratio_lattice=-1 / 3, edges=edges, **found)
 
 
 def shown(value):
@@ -286,8 +268,8 @@ def errors_by_size(points, sizes):
     for ratio in sorted({p.ratio for p in points}):
         for key in ("poisson_ratio_error", "stiffness_ratio_error"):
             errors = [p[key] for p in points if p.ratio == ratio]
-            slope = math.log(errors[-1] / errors[-2]) / math.log(sizes[-1] / sizes[-2]) if ratio else 0
-            columns.append([*(f"{error:.1e}" for error in errors), f"{slope:.2f}" if ratio else "round-off"])
+            columns.append([*(f"{error:.1e}" for error in errors),
+                            f"{power(sizes, errors):.2f}" if ratio else "round-off"])
     return zip(*columns)
 
 
@@ -313,16 +295,13 @@ def draw_block(size, path):
     save(axes.figure, path)
 
 
-def reproduce(options):
-    size = QUICK if options.quick else FULL
-    r = compute(size)
-    page = Page("abe1996", globals(), r, {"size": size})
+def reproduce(options, _page):
+    r = compute(options.size)
     numbers = {key: value for key, value in r.items() if key not in ("edges", "large_points")}
     numbers["unequal_radii"] = [{key: value if key == "spread" else value.mean for key, value in p.items()}
                                 for p in r.unequal_radii]
-    return Output(page.text("report"), numbers,
-                  plots={**page.figures(), "figure6": lambda path: draw_block(size, path)})
+    return Output(r, numbers, drawings={"figure6": lambda path: draw_block(options.size, path)})
 
 
 if __name__ == "__main__":
-    main("abe1996", __doc__, reproduce)
+    main(reproduce)

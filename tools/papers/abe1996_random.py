@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from common import Output, columns_of, counted, eq, main, moduli_of, seeds_of
-from shown import Page, Row, aligned
+from common import Output, eq, main, mean_of, means_of, moduli_of, power, seeds_of
+from shown import Row, aligned
 
 WEIGHTINGS = ("uniform", "contact_density", "voronoi", "local_contact_density")
 RADIUS = 0.005  # m
@@ -28,38 +28,15 @@ class Family:
     stretch: float = 1.0
     geometry: Row | None = None
 
-    @property
-    def lattice(self):
-        return self.points == "perturbed_hexagonal"
-
-    @property
-    def random(self):
-        return not self.lattice or self.disorder > 0
-
-    @property
-    def isotropic(self):
-        return self.stretch == 1
+    def __post_init__(self):
+        self.lattice, self.isotropic = self.points == "perturbed_hexagonal", self.stretch == 1
+        self.random = not self.lattice or self.disorder > 0
 
     def cell(self, discs, seed):
         keys = {"disorder": self.disorder} if self.lattice else {}
         made = eq.delaunay(discs=discs, points=self.points, seed=seed, radius=RADIUS, periodic=True, **keys)
-        if self.isotropic:
-            return made
         by = np.array([self.stretch, 1 / self.stretch])
-        return eq.triangulated(made.centres * by, made.radii, cell=tuple(by * made.cell))
-
-
-class Plan:
-    def __init__(self, quick):
-        disorders = (0, 0.1, 0.2, 0.45) if quick else (0, 0.05, 0.1, 0.2, 0.3, 0.45)
-        self.families = [*(Family(f"hexagonal, disorder {d:g}", disorder=float(d)) for d in disorders),
-                         Family("Poisson-disc", "poisson_disc"), Family("random", "random"),
-                         Family("Poisson-disc, stretched", "poisson_disc", stretch=1.2)]
-        self.ratios = [0.0, 0.25, 1.0] if quick else [0.0, 0.05, 0.1, 0.25, 0.5, 0.75, 1.0]
-        self.discs, self.samples = (120, 4) if quick else (1600, 32)
-
-    def places(self):
-        return [(weighting, ratio) for weighting in WEIGHTINGS for ratio in self.ratios]
+        return made if self.isotropic else eq.triangulated(made.centres * by, made.radii, cell=tuple(by * made.cell))
 
 
 # ---- cells and their means
@@ -78,22 +55,21 @@ def compute_cell(arguments):
     a_4² + b_4²) of psi(theta), phi, z. Points: K and G in kN and nu of plane strain of each answer, errors of the mean
     field (G and K over the exact one, less 1; nu less the exact one), anisotropy of the exact tensor. Words where the
     cell has no moduli."""
-    plan, family, seed = arguments
+    family, discs, places, seed = arguments
     points = []
     try:
-        cell = family.cell(plan.discs, seed)
+        cell = family.cell(discs, seed)
         phi, z = cell.solid_fraction, cell.coordination_number
-        for weighting, ratio in plan.places():
+        for weighting, ratio in places:
             springs = eq.Springs(kN=1.0, kT=ratio, weighting=weighting)
             found = eq.homogenize(cell, springs, homogenize={"bounds": "affine"})
             answers = {"exact": moduli_of(found.stiffness), "mean_field": mean_field(ratio, weighting, phi, z),
                        "voigt": moduli_of(found.bounds.voigt),
                        "uniform_stress": moduli_of(found.bounds.uniform_stress_estimate)}
-            point = {f"{modulus}_{name}": values[k] for name, values in answers.items()
-                     for k, modulus in enumerate(("K", "G", "nu"))}
-            for modulus in "KG":
-                point[modulus + "_error"] = point[modulus + "_mean_field"] / point[modulus + "_exact"] - 1
-            points.append({**point, "nu_error": point["nu_mean_field"] - point["nu_exact"],
+            (K, G, nu), (K_field, G_field, nu_field) = answers["exact"], answers["mean_field"]
+            points.append({**{f"{modulus}_{name}": value for name, values in answers.items()
+                              for modulus, value in zip(("K", "G", "nu"), values)},
+                           "K_error": K_field / K - 1, "G_error": G_field / G - 1, "nu_error": nu_field - nu,
                            "anisotropy": found.anisotropy})
     except (eq.BadInput, eq.ComputationFailed) as error:
         return f"{family.name}, seed {seed}: {error}"
@@ -103,32 +79,32 @@ def compute_cell(arguments):
             "uneven": math.hypot(found.fabric.anisotropy_2, found.fabric.anisotropy_4)}, points
 
 
-def means_of(rows, measure=np.mean, **options):
-    return Row({key: measure([row[key] for row in rows], **options) for key in rows[0]})
-
-
 class Result:
     """`points`: mean over the cells, error (standard) and deviation of each family, weighting and ratio."""
-    def __init__(self, plan):
-        self.plan, self.refusals, self.points = plan, [], []
-        for family in plan.families:
-            found = seeds_of(f"homogenizing {family.name}:", compute_cell, plan.samples, plan, family)
+    def __init__(self, size):
+        self.refusals, self.points, self.ratios = [], [], size.ratios
+        self.families = [*(Family(f"hexagonal, disorder {d:g}", disorder=d) for d in size.disorders),
+                         Family("Poisson-disc", "poisson_disc"), Family("random", "random"),
+                         Family("Poisson-disc, stretched", "poisson_disc", stretch=1.2)]
+        places = [(weighting, ratio) for weighting in WEIGHTINGS for ratio in size.ratios]
+        for family in self.families:
+            found = seeds_of(f"homogenizing {family.name}:", compute_cell, size.samples, family, size.discs, places)
             self.refusals += [one for one in found if isinstance(one, str)]
             cells = [one for one in found if not isinstance(one, str)]
             if not cells:
                 raise eq.ComputationFailed(f"none of the cells of '{family.name}' has moduli",
                                            "the first: " + self.refusals[-1], "", "")
-            family.geometry = means_of([geometry for geometry, _ in cells])
-            for (weighting, ratio), samples in zip(plan.places(), zip(*(points for _, points in cells))):
-                deviation = means_of(samples, np.std, ddof=1)
-                error = Row({key: value / math.sqrt(len(samples)) for key, value in deviation.items()})
-                self.points.append(Row(family=family, weighting=weighting, ratio=ratio, mean=means_of(samples),
-                                       error=error, deviation=deviation))
+            family.geometry = Row({key: one.mean for key, one in means_of([cell[0] for cell in cells]).items()})
+            for (weighting, ratio), samples in zip(places, zip(*(points for _, points in cells))):
+                means = means_of(samples)
+                self.points.append(Row(family=family, weighting=weighting, ratio=ratio, **{
+                    name: Row({key: one[what] for key, one in means.items()}) for name, what in (
+                        ("mean", "mean"), ("error", "standard_error"), ("deviation", "standard_deviation"))}))
         # The two least disordered lattices; the isotropic family with the widest scatter of branch lengths.
-        self.small, self.large = [family for family in plan.families if family.lattice and family.random][:2]
-        self.widest = max((family for family in plan.families if family.isotropic),
+        self.small, self.large = [family for family in self.families if family.lattice and family.random][:2]
+        self.widest = max((family for family in self.families if family.isotropic),
                           key=lambda family: family.geometry.branches)
-        self.middle = plan.ratios[len(plan.ratios) // 2]
+        self.middle = size.ratios[len(size.ratios) // 2]
 
     def of(self, weighting, family=None, ratio=None, anisotropic=False):
         """The points of a weighting on isotropic random families, or on all random ones, or on one family."""
@@ -139,30 +115,32 @@ class Result:
 
     def grid(self, weighting, title, number):
         """Families downwards, kT/kN to the right; means over the cells."""
-        shares, rows = number != "nu_exact", [["kT/kN", *(f"{ratio:g}" for ratio in self.plan.ratios)]]
-        for family in self.plan.families:
-            points = self.of(weighting, family)
-            values = [0.0 if abs(p.mean[number]) < 5e-5 else p.mean[number] for p in points]  # without a sign
-            rows.append([family.name, *(f"{100 * x:+.2f} %" if shares else f"{x:.4f}" for x in values)])
-        if not shares:
-            rows.append(["mean field (1 - kT/kN)/4", *(f"{p.mean.nu_mean_field:.4f}" for p in points)])
+        def told(value):
+            return f"{value:.4f}" if number == "nu_exact" else f"{100 * value:+.2f} %"
+        rows = [["kT/kN", *(f"{ratio:g}" for ratio in self.ratios)]]
+        for family in self.families:
+            values = [p.mean[number] for p in self.of(weighting, family)]
+            rows.append([family.name, *(told(0.0 if abs(value) < 5e-5 else value) for value in values)])  # no sign
+        if number == "nu_exact":
+            rows.append(["mean field (1 - kT/kN)/4", *(told((1 - ratio) / 4) for ratio in self.ratios)])
         error = max(p.error[number] for p in self.points if p.weighting == weighting)
-        end = f"{100 * error:.2g} %" if shares else f"{error:.2g}"
+        end = f"{error:.2g}" if number == "nu_exact" else f"{100 * error:.2g} %"
         return f"{title} (standard errors up to {end})\n{aligned(rows)}\n"
 
     def range_of_error(self, weighting, modulus):
         points = sorted(self.of(weighting), key=lambda p: p.mean[modulus + "_error"])
-        values = [p.mean[modulus + "_error"] for p in points]
-        if clean(max(map(abs, values))) == 0:
-            return f"none: exact within {max(map(abs, values)):.0e}"
-        return "from {} to {}".format(*(
-            f"{f'{value:+.4f}' if modulus == 'nu' else percent(value)} ({place(p)})"
-            for value, p in ((values[0], points[0]), (values[-1], points[-1]))))
+        most = largest(points, modulus + "_error")
+        if clean(most) == 0:
+            return f"none: exact within {most:.0e}"
+        least, most = (p.mean[modulus + "_error"] for p in (points[0], points[-1]))
+        least, most = (f"{value:+.4f}" if modulus == "nu" else percent(value) for value in (least, most))
+        return f"from {least} ({place(points[0])}) to {most} ({place(points[-1])})"
 
     def growth(self, weighting, number):
         """The exponent p of |error| ~ disorder^p between the two least disordered lattices, at the least kT/kN."""
-        a, b = (self.of(weighting, family)[0].mean[number] for family in (self.small, self.large))
-        return math.log(b / a) / math.log(self.large.disorder / self.small.disorder)
+        families = self.small, self.large
+        return power([family.disorder for family in families],
+                     [self.of(weighting, family)[0].mean[number] for family in families])
 
     def change_of_G(self, weighting, first, second):
         """From one answer to another, at the middle kT/kN."""
@@ -170,7 +148,7 @@ class Result:
         return percent(mean["G_" + second] / mean["G_" + first] - 1)
 
     def summed_anisotropy(self, weighting):
-        return sum(p.mean.anisotropy for p in self.of(weighting, self.plan.families[-1]))
+        return sum(p.mean.anisotropy for p in self.of(weighting, self.families[-1]))
 
     def best(self, number):
         return min(WEIGHTINGS, key=lambda weighting: rms(self.of(weighting), number))
@@ -197,7 +175,7 @@ class Result:
 
     def table(self):
         """mean_field.csv: one row for each point."""
-        names = [(f"{modulus}_{answer}", "_over_kN" * (modulus != "nu"), answer == "exact")
+        names = [(f"{modulus}_{answer}", "" if modulus == "nu" else "_over_kN", answer == "exact")
                  for modulus in ("nu", "G", "K") for answer in ("exact", "mean_field", "voigt", "uniform_stress")
                  if (modulus, answer) != ("K", "uniform_stress")]
         names += [(name, "", True) for name in ("nu_error", "G_error", "K_error", "anisotropy")]
@@ -205,10 +183,9 @@ class Result:
         for p in self.points:
             row = {"points": p.family.points, "disorder": p.family.disorder, "stretch": p.family.stretch,
                    "weighting": p.weighting, "branch_scatter": p.family.geometry.branches, "kT_over_kN": p.ratio}
-            for name, unit, with_error in names:
+            for name, unit, has_error in names:
                 row[name + unit] = p.mean[name]
-                if with_error:
-                    row[name + unit + "_standard_error"] = p.error[name]
+                row.update({name + unit + "_standard_error": p.error[name]} if has_error else {})
             rows.append(row)
         return rows
 
@@ -227,7 +204,7 @@ def place(point):
 
 
 def rms(points, number):
-    return math.sqrt(np.mean([p.mean[number] ** 2 for p in points]))
+    return math.sqrt(mean_of(p.mean[number]**2 for p in points).mean)
 
 
 def largest(points, number):
@@ -236,7 +213,7 @@ def largest(points, number):
 
 def scatter_of_G(points):
     """Of one cell, relative."""
-    return math.sqrt(np.mean([(p.deviation.G_exact / p.mean.G_exact) ** 2 for p in points]))
+    return math.sqrt(mean_of((p.deviation.G_exact / p.mean.G_exact)**2 for p in points).mean)
 
 
 def errors_by(measure, points):
@@ -244,18 +221,18 @@ def errors_by(measure, points):
             f"{100 * measure(points, 'K_error'):.2g} % in K")
 
 
-def reproduce(options):
-    r = Result(Plan(options.quick))
-    rows = r.table()
-    page = Page("abe1996_random", globals(), vars(r.plan), {"r": r})
+def reproduce(options, page):
+    r = Result(options.size)
+    page.names.update(r=r, families=r.families)
     plots = page.figures()
     for name, plot in plots.items():  # room for the labels of the vertical lines
         if name.startswith("error"):
             values = [0.0, *(y for series in plot.series for y in series.y)]
-            plot.y.high = max(values) + 0.35 * (max(values) - min(values))
-    numbers = {"discs": r.plan.discs, "samples": r.plan.samples, "refusals": r.refusals, "points": rows}
-    return Output(page.text("report"), numbers, {"mean_field": columns_of(rows)}, plots)
+            plot.y["high"] = max(values) + 0.35 * (max(values) - min(values))
+    numbers = {"discs": options.size.discs, "samples": options.size.samples, "refusals": r.refusals,
+               "points": r.table()}
+    return Output({}, numbers, {"mean_field": r.table()}, plots=plots)
 
 
 if __name__ == "__main__":
-    main("abe1996_random", __doc__, reproduce)
+    main(reproduce)

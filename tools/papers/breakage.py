@@ -13,8 +13,8 @@ import time
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from common import Output, columns_of, eq, hexagonal_moduli, machine, main, mean_of, moved_discs, samples_of
-from shown import Page, Row
+from common import Output, eq, hexagonal_moduli, main, mean_of, moved_discs, power, samples_of
+from shown import Row
 
 # The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
 TEST_OVER, SCATTERED_TEST_OVER = 0.9, 0.7
@@ -90,32 +90,31 @@ def fit_shifted(half, y, slope=None):
     return Row(A=A, p=p, c=shift, A_error=error[0], p_error=error[1], c_error=error[-1])
 
 
-def fit_of(plates, columns, ratio, lattice):
+def fit_of(own, lattice):
     """sigma sqrt(sec(pi a/W)) against a, over the plates of one lattice and size."""
-    own = [one for one in plates if (one.columns, one.ratio) == (columns, ratio)]
     half = np.array([0.5 * one.notch_over_distance for one in own])
     y = np.log([one.toughness for one in own]) - 0.5 * np.log(math.pi * half)
     free, as_root = fit_shifted(half, y), fit_shifted(half, y, -0.5)
-    toughness = math.exp(as_root.A) * math.sqrt(math.pi)
-    fit = Row(columns=columns, ratio=ratio, exponent=free.p, exponent_error=free.p_error, shift=as_root.c,
-              shift_error=as_root.c_error, toughness=toughness, toughness_error=toughness * as_root.A_error,
-              plain_exponent=0.0, plain_exponent_error=0.0, lattice=lattice, griffith=griffith_toughness(ratio))
+    toughness, plain = math.exp(as_root.A) * math.sqrt(math.pi), (0.0, 0.0)
     long = half >= LEAST_LENGTH / 2
     if long.sum() >= 3:
         line, covariance = np.polyfit(np.log(half[long]), y[long], 1, cov=True)
-        fit.update(plain_exponent=line[0], plain_exponent_error=math.sqrt(covariance[0, 0]))
-    return fit
+        plain = line[0], math.sqrt(covariance[0, 0])
+    return Row(columns=own[0].columns, ratio=own[0].ratio, exponent=free.p, exponent_error=free.p_error,
+               shift=as_root.c, shift_error=as_root.c_error, toughness=toughness,
+               toughness_error=toughness * as_root.A_error, plain_exponent=plain[0], plain_exponent_error=plain[1],
+               lattice=lattice, griffith=griffith_toughness(own[0].ratio))
 
 
-def notches(quick):
-    sizes, cuts = [21, 41] if quick else [41, 81, 121], [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96]
-    places = [(columns, ratio, cut) for ratio in RATIOS for columns in sizes for cut in cuts
-              if cut <= LARGEST_SHARE * columns]
-    plates, fits, near = samples_of("notched plates:", notched_plate, places), [], 20 if quick else 40
+def notches(size):
+    places = [(columns, ratio, cut) for ratio in RATIOS for columns in size.widths
+              for cut in (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96) if cut <= LARGEST_SHARE * columns]
+    plates, fits = samples_of("notched plates:", notched_plate, places), []
     for ratio in RATIOS:
         # The field is that of a continuum at the rim: what it lacks there falls with the radius.
-        lattice = 2 * toughness_within(2 * near, ratio) - toughness_within(near, ratio)
-        fits += [fit_of(plates, columns, ratio, lattice) for columns in sizes]
+        lattice = 2 * toughness_within(2 * size.rim, ratio) - toughness_within(size.rim, ratio)
+        fits += [fit_of([one for one in plates if (one.columns, one.ratio) == (columns, ratio)], lattice)
+                 for columns in size.widths]
     return plates, fits
 
 
@@ -162,33 +161,26 @@ def scatter_over_mean(m):
     return math.sqrt(math.gamma(1 + 2 / m) / math.gamma(1 + 1 / m)**2 - 1)
 
 
-def with_error(value, error):
-    return f"{value:.4f} ± {error:.4f}" if math.isfinite(error) else f"{value:.4f}"
-
-
 def exponent(a, b, key):
     """Of a number of samples against their contacts, between two sizes."""
-    return f"{math.log(b[key] / a[key]) / math.log(b.contacts / a.contacts):.3f}"
+    return f"{power([a.contacts, b.contacts], [a[key], b[key]]):.3f}"
 
 
-def reproduce(options):
-    quick, times = options.quick, [time.monotonic()]
-    seeds, columns = (20, [6, 12]) if quick else (100, [6, 12, 24, 48])
-    plates, fits = notches(quick)
+def reproduce(options, _page):
+    size, times = options.size, [time.monotonic()]
+    plates, fits = notches(size)
     times.append(time.monotonic())
-    chains = weibull("chains", [1, 4, 16, 64, 256], 4 * seeds)  # which take no time
+    chains = weibull("chains", [1, 4, 16, 64, 256], 4 * size.seeds)  # which take no time
     times.append(time.monotonic())
-    samples = weibull("plates", columns, seeds)
+    samples = weibull("plates", size.columns, size.seeds)
     times.append(time.monotonic())
     error = max(one.energy_error for one in (*plates, *chains, *samples))
-    page = Page("breakage", globals(), locals(), {"seconds": np.diff(times), "by_modulus": [
-        (m, [one for one in samples if one.modulus == m]) for m in MODULI]})
-    text = page.text("page")
-    numbers = {"quick": quick, "fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}}
-    tables = {"notches": plates, "weibull_chains": chains, "weibull_plates": samples}
-    return Output(text, numbers, {f"{name}_values": columns_of(rows) for name, rows in tables.items()}, page.figures(),
-                  {"breakage.md": text})
+    names = {**locals(), "seconds": np.diff(times), "by_modulus": [
+        (m, [one for one in samples if one.modulus == m]) for m in MODULI]}
+    numbers = {"fits": fits, "chains": chains, "plates": samples, "energies": {"error": error}}
+    return Output(names, numbers, {"notches_values": plates, "weibull_chains_values": chains,
+                                   "weibull_plates_values": samples})
 
 
 if __name__ == "__main__":
-    main("breakage", __doc__, reproduce)
+    main(reproduce)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the scripts of papers share: command line, published numbers, samples side by side, the module equidem.
 
-A script computes an Output and hands main() the function that does. Files of one are written into --out: report.txt,
-result.json, NAME.csv of a table, NAME.csv, NAME.svg and NAME.png of a plot. shown.py makes texts and plots.
+A script hands main() the function that computes its Output; shown.py makes report and plots of that. Files that are
+written into --out: report.txt, result.json, NAME.csv of a table, NAME.csv, NAME.svg and NAME.png of a plot, and the
+script's page, if it has one.
 """
 import argparse
 import csv
@@ -10,6 +11,7 @@ import dataclasses
 import json
 import math
 import multiprocessing
+import os
 import pathlib
 import signal
 import sys
@@ -17,7 +19,7 @@ import time
 
 import numpy as np
 
-from shown import Plot, Row, csv_text
+from shown import Page, Row, csv_lines
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = ROOT / "data" / "papers"
@@ -42,16 +44,19 @@ Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad in
 @dataclasses.dataclass
 class Output:
     """Results of a paper."""
-    report: str
+    names: dict  # of results in NAME.toml
     numbers: dict  # of result.json
-    tables: dict = dataclasses.field(default_factory=dict)  # name: {column: list}
-    plots: dict = dataclasses.field(default_factory=dict)  # name: Plot, or a function of the path without its end
-    texts: dict = dataclasses.field(default_factory=dict)  # file name: text
+    tables: dict = dataclasses.field(default_factory=dict)  # name: rows
+    drawings: dict = dataclasses.field(default_factory=dict)  # name: function of the path without its end
+    plots: dict | None = None  # name: Plot; left out: the figures of NAME.toml
 
 
-def main(name, description, reproduce, add_options=lambda parser: None):
-    """Read the command line, reproduce (options -> Output), deliver, and end the process with its exit code."""
-    parser = argparse.ArgumentParser(prog=f"tools/papers/{name}.py", description=description, epilog=EXIT_CODES,
+def main(reproduce, add_options=lambda parser: None):
+    """Read the command line, reproduce (options, page -> Output), deliver, and end the process with its exit code.
+    options.size has the numbers of NAME.toml by which quick and full computations differ."""
+    script = sys.modules["__main__"]
+    name = pathlib.Path(script.__file__).stem
+    parser = argparse.ArgumentParser(prog=f"tools/papers/{name}.py", description=script.__doc__, epilog=EXIT_CODES,
                                      formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
     add_options(parser)
     parser.add_argument("--quick", action="store_true",
@@ -68,7 +73,7 @@ def main(name, description, reproduce, add_options=lambda parser: None):
         if options.threads is not None:
             eq.set_threads(options.threads)
         eq.show_progress(False)
-        Progress.shown = not options.quiet
+        tracked.shown = not options.quiet
         present = [pathlib.Path(options.json)] if options.json not in (None, "-") else []
         if options.out:
             options.out.mkdir(parents=True, exist_ok=True)
@@ -77,7 +82,9 @@ def main(name, description, reproduce, add_options=lambda parser: None):
             if path.exists() and not options.overwrite:
                 raise eq.BadInput(f"'{path}' exists", "files are not replaced unasked",
                                   "Give --overwrite, or another folder")
-        deliver(options, name, reproduce(options))
+        page = Page(name, {**globals(), **vars(script)}, vars(options))
+        options.size = page.names["size"] = Row(page.told["size"]["quick" if options.quick else "full"])
+        deliver(options, page, reproduce(options, page))
     except (eq.BadInput, OSError) as error:
         stop(error, 2)
     except (eq.Interrupted, KeyboardInterrupt):
@@ -102,52 +109,46 @@ def plain(value):
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def deliver(options, name, output):
+def deliver(options, page, output):
     """Write the files, and print the report."""
-    numbers = {"status": "done", "paper": name, "version": eq.__version__, **output.numbers}
-    numbers = json.dumps(plain(numbers), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    page.names.update(output.names)
+    numbers = {"status": "done", "paper": page.name, "version": eq.__version__, "quick": options.quick,
+               **output.numbers}
+    report, plots = page.text("report"), page.figures() if output.plots is None else output.plots
+    texts = {"report.txt": report, "result.json": json.dumps(plain(numbers), indent=2, ensure_ascii=False) + "\n"}
+    if "page" in page.told:
+        texts[f"{page.name}.md"] = page.text("page")
+    texts.update({f"{table}.csv": csv_lines([list(rows[0]), *(row.values() for row in rows)])
+                  for table, rows in output.tables.items()})
+    texts.update({f"{name}.csv": plot.csv() for name, plot in plots.items()})
     if options.out:
-        texts = {**output.texts, "report.txt": output.report, "result.json": numbers}
-        texts.update({f"{table}.csv": csv_text(columns) for table, columns in output.tables.items()})
-        for plot, drawn in output.plots.items():
-            if isinstance(drawn, Plot):
-                texts[plot + ".csv"] = drawn.csv()
-                drawn.draw(options.out / plot)
-            else:
-                drawn(options.out / plot)
         for file, text in texts.items():
             (options.out / file).write_text(text, encoding="utf-8")
-    if options.json == "-":
-        sys.stdout.write(numbers)
-        return
-    if options.json:
-        pathlib.Path(options.json).write_text(numbers, encoding="utf-8")
-    if not options.quiet:
-        sys.stdout.write(output.report)
+        for figure, draw in {**{name: plot.draw for name, plot in plots.items()}, **output.drawings}.items():
+            draw(options.out / figure)
+    if options.json and options.json != "-":
+        pathlib.Path(options.json).write_text(texts["result.json"], encoding="utf-8")
+    if options.json == "-" or not options.quiet:
+        sys.stdout.write(texts["result.json" if options.json == "-" else "report.txt"])
 
 
-class Progress:
-    """Share that is done and time left, on stderr: on a terminal in one line, elsewhere a line a minute."""
-    shown = True
+def tracked(task, items, count=None):
+    """The items, of which there are `count`, with the share that is done and the time left on stderr: on a terminal in
+    one line, elsewhere a line a minute."""
+    begun, last, terminal = time.monotonic(), -math.inf, sys.stderr.isatty()
+    first, every = (1, 0.2) if terminal else (3, 60)
+    for done, item in enumerate(items, 1):
+        yield item
+        elapsed, share = time.monotonic() - begun, done / (count or len(items))
+        if tracked.shown and elapsed >= first and elapsed - last >= every:
+            line = f"{task} {100 * share:.0f} %, {elapsed * (1 - share) / share:.0f} s left"
+            print("\r\033[K" + line if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
+            last = elapsed
+    if terminal and last >= 0:
+        sys.stderr.write("\r\033[K")
 
-    def __init__(self, task):
-        self.task, self.begun, self.last = task, time.monotonic(), None
-        self.terminal = sys.stderr.isatty()
 
-    def update(self, fraction):
-        first, every = (1, 0.2) if self.terminal else (3, 60)
-        elapsed = time.monotonic() - self.begun
-        if not Progress.shown or elapsed < first or (self.last is not None and elapsed - self.last < every):
-            return
-        left = f", {elapsed * (1 - fraction) / fraction:.0f} s left" if fraction > 0 else ""
-        line = f"{self.task} {100 * fraction:.0f} %{left}"
-        sys.stderr.write("\r\033[K" + line if self.terminal else line + "\n")
-        sys.stderr.flush()
-        self.last = elapsed
-
-    def end(self):
-        if self.terminal and self.last is not None:
-            sys.stderr.write("\r\033[K")
+tracked.shown = True
 
 
 # ---- data, words
@@ -163,13 +164,13 @@ def published(name):
     return {row.name: Row({**row, "value": float(row.value)}) for row in rows_of(name)}
 
 
-def columns_of(rows):
-    """Rows {key: value} as a table {column: list}."""
-    return {key: [row[key] for row in rows] for key in rows[0]}
-
-
 def counted(count, noun):
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def with_error(value, error, decimals=4):
+    """A number and its error, unless that is not known."""
+    return f"{value:.{decimals}f}" + (f" ± {error:.{decimals}f}" if math.isfinite(error) else "")
 
 
 def machine():
@@ -181,7 +182,9 @@ def machine():
 # ---- samples side by side, their means, lines of least squares
 
 def begin_worker():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Signals to all processes go to the first one, which ends the others: one that is killed while it takes a sample
+    keeps a lock for which the end would wait for ever."""
+    os.setpgrp()
     eq.set_threads(1)
     eq.show_progress(False)
 
@@ -193,12 +196,8 @@ def samples_of(task, function, arguments, at_once=0):
     """function of each argument, in processes side by side, `at_once` to a process, with progress; in order."""
     if not workers:
         workers.append(multiprocessing.get_context("spawn").Pool(eq.threads(), begin_worker))
-    progress, found = Progress(task), []
-    for one in workers[0].imap(function, arguments, at_once or max(1, len(arguments) // 50)):
-        found.append(one)
-        progress.update(len(found) / len(arguments))
-    progress.end()
-    return found
+    found = workers[0].imap(function, arguments, at_once or max(1, len(arguments) // 50))
+    return [*tracked(task, found, len(arguments))]
 
 
 def seeds_of(task, function, count, *arguments):
@@ -215,16 +214,29 @@ def mean_of(samples):
     return Row(mean=mean, standard_error=deviation / math.sqrt(len(samples)), standard_deviation=deviation)
 
 
-def fit_line(x, y, errors):
-    """The line y = intercept + slope x of least squares, each y weighted by the inverse square of its standard error,
-    with its own errors."""
-    weights = [1 / error**2 for error in errors]
-    total = sum(weights)
-    x_mean, y_mean = (sum(w * value for w, value in zip(weights, values)) / total for values in (x, y))
-    xx = sum(w * (at - x_mean)**2 for w, at in zip(weights, x))
-    slope = sum(w * (at - x_mean) * (value - y_mean) for w, at, value in zip(weights, x, y)) / xx
-    return Row(intercept=y_mean - slope * x_mean, slope=slope, intercept_error=math.sqrt(1 / total + x_mean**2 / xx),
-               slope_error=math.sqrt(1 / xx))
+def means_of(samples):
+    """mean_of each key of samples {key: number}."""
+    return Row({key: mean_of(sample[key] for sample in samples) for key in samples[0]})
+
+
+def mean_columns(samples):
+    """The same as columns of one row: means, and standard errors behind them."""
+    return {key + end: mean[what] for key, mean in means_of(samples).items()
+            for end, what in (("", "mean"), ("_standard_error", "standard_error"))}
+
+
+def power(x, y):
+    """The exponent p of y ~ x^p between the last two points."""
+    return math.log(y[-1] / y[-2]) / math.log(x[-1] / x[-2])
+
+
+def fit_line(points):
+    """The line y = intercept + slope x of least squares through points (x, y, standard error of y), each weighted by
+    the inverse square of that, with its own errors."""
+    x, y, errors = np.array([*points]).T
+    (slope, intercept), covariance = np.polyfit(x, y, 1, w=1 / errors, cov="unscaled")
+    slope_error, intercept_error = np.sqrt(np.diag(covariance))
+    return Row(intercept=intercept, slope=slope, intercept_error=intercept_error, slope_error=slope_error)
 
 
 class Random:
@@ -238,13 +250,10 @@ class Random:
             self.state.append(z ^ z >> 31)
 
     def bits(self):
-        def turned_left(x, k):
-            return (x << k | x >> 64 - k) % 2**64
         a, b, c, d = self.state
-        result = (turned_left((a + d) % 2**64, 23) + a) % 2**64
-        c, d = c ^ a, d ^ b
-        self.state = [a ^ d, b ^ c, c ^ (b << 17) % 2**64, turned_left(d, 45)]
-        return result
+        c, d, total = c ^ a, d ^ b, (a + d) % 2**64
+        self.state = [a ^ d, b ^ c, c ^ (b << 17) % 2**64, (d << 45 | d >> 19) % 2**64]
+        return ((total << 23 | total >> 41) + a) % 2**64
 
     def uniform(self):
         return (self.bits() >> 11) * 2.0**-53
@@ -258,6 +267,9 @@ class Random:
 
 
 # ---- contacts and moduli
+
+UNIT_STRAINS = {"xx": [[1, 0], [0, 0]], "yy": [[0, 0], [0, 1]], "xy": [[0, 0.5], [0.5, 0]]}
+
 
 def turned(vectors):
     """By 90 degrees counter-clockwise."""
@@ -281,6 +293,26 @@ def disc_stresses(assembly, forces):
     for end in (0, 1):  # on the second disc the opposite force, at the opposite arm
         np.add.at(stresses, assembly.contacts[:, end], assembly.levers[:, end, None, None] * dyad)
     return stresses / assembly.cell_areas[:, None, None]
+
+
+def affine_motions(assembly, gradient):
+    """Motions (contacts, 2) of the second disc of each contact against the first, along normal and tangent, where all
+    discs follow the gradient [[u1,1, u1,2], [u2,1, u2,2]] and do not turn."""
+    branches = assembly.levers.sum(axis=1)[:, None] * assembly.normals
+    return components(branches @ np.array(gradient).T, assembly.normals)
+
+
+def unit_motions(cell, found):
+    """The same under the unit strains xx, yy and xy of a homogenized cell, (3, contacts, 2): of the uniform strain, of
+    what displacements and of what rotations of the discs add to it."""
+    (i, j), parts = cell.contacts.T, []
+    for name, strain in UNIT_STRAINS.items():
+        state = found.fluctuations[name]
+        rolled = -(cell.levers[:, 0] * state.rotations[i] + cell.levers[:, 1] * state.rotations[j])
+        parts.append((affine_motions(cell, strain),
+                      components(state.displacements[j] - state.displacements[i], cell.normals),
+                      np.stack([0 * rolled, rolled], axis=1)))
+    return [np.array(part) for part in zip(*parts)]
 
 
 def moduli_of(c):

@@ -13,8 +13,8 @@ import time
 
 import numpy as np
 
-from common import Output, Progress, columns_of, eq, main, published
-from shown import Page, Row, told_of
+from common import Output, eq, main, published, tracked
+from shown import Row
 
 PRINTED = {name: row.value for name, row in published("fujioka2005").items()}
 SOURCE_OF_X = published("fujioka2005")["law_alone_X"].source
@@ -28,7 +28,6 @@ SOFT_HERTZ = 1.5  # stiffness with which T survives the fast impacts, in place o
 LETTERS = {"linear_dashpot": "C", "hertz_dashpot": "T", "five_case_map": "F", "energy_map": "P", "exact_flow": "X"}
 TABLE2_STEPS = (1e-3, 1e-4, 1e-5)  # s
 BALLS, DURATION = 16, 5.0  # of Table 1; s
-LOOKS = told_of("fujioka2005")["looks"]  # of each law in all figures
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,11 +47,8 @@ class Variant:
         """s by which velocities are behind places: half a step in semi-implicit Euler."""
         return 0.5 * STEP if self.of_paper else 0
 
-    def row(self, aside=(), **found):
-        """Results; `aside`: those that do not go into result.json."""
-        made = Row(law=self.law, letter=LETTERS[self.law], a=self.a, label=self.label, **found)
-        vars(made).update(aside, variant=self)
-        return made
+    def row(self, **found):
+        return Row(law=self.law, letter=LETTERS[self.law], a=self.a, label=self.label, **found)
 
     def alone(self):
         return eq._core.Law(self.law, self.a, E)
@@ -106,11 +102,9 @@ def samples_of_law(law):
     return np.ascontiguousarray(np.array(states[:4096]).T)
 
 
-def gravity_first(variant, step):
-    """Evaluations in the paper's run where gravity is added before the contact force; 0: not computed."""
-    if not variant.of_paper:
-        return 0
-    law, fall, depth, closing, count = variant.alone(), G * step * step / D, -DROP, 0.0, 0
+def gravity_first(law, step):
+    """Evaluations in the paper's run where gravity is added before the contact force."""
+    fall, depth, closing, count = G * step * step / D, -DROP, 0.0, 0
     for _ in range(round(DURATION / step)):
         closing += fall
         if depth > 0:
@@ -128,28 +122,26 @@ def seconds_of(work, clock=time.perf_counter):
     return clock() - begun
 
 
-def measure_table1(quick, progress):
+def measure_table1(size):
     """Time of the processor, by turns, of equal runs the least of each slice: other load of the machine has little
     effect."""
-    slices, rows, runs, samples = 50, [], [], []
+    slices, rows, laws, runs, samples = 50, [], [], [], []
     for variant in variants(VERY_STIFF):
-        step = STEP if variant.label == "X stiff" else 1e-5 if quick else 1e-6
+        step, law = STEP if variant.label == "X stiff" else size.table1_step, variant.alone()
         balls = [(1.5 * D * k, column(1)[0][1]) for k in range(BALLS)]
         rows.append(variant.row(time_step=step, run_seconds=0.0,
                                 law_alone_nanoseconds=math.inf if variant.of_paper else math.nan,
-                                evaluations_gravity_first=gravity_first(variant, step)))
+                                evaluations_gravity_first=gravity_first(law, step) if variant.of_paper else 0))
+        laws.append(law)
         runs.append([variant.spheres(balls, step) for _ in range(3)])
-        samples.append(samples_of_law(variant.alone()) if variant.of_paper else None)
-        progress.update(0.5 + 0.2 * len(rows) / 6)
-    for part in range(slices):
-        for row, own, states in zip(rows, runs, samples):
+        samples.append(samples_of_law(law) if variant.of_paper else None)
+    for part in tracked("Table 1:", range(slices)):
+        for row, law, own, states in zip(rows, laws, runs, samples):
             steps = round(DURATION / row.time_step) // slices
             row["run_seconds"] += min(seconds_of(lambda: run.advance(steps), time.process_time) for run in own)
-            if part % 5 == 0 and row.variant.of_paper:
-                law = row.variant.alone()
+            if part % 5 == 0 and states is not None:
                 seconds = seconds_of(lambda: law.sum(*states, 20))
                 row["law_alone_nanoseconds"] = min(row.law_alone_nanoseconds, seconds * 1e9 / (20 * 4096))
-        progress.update(0.7 + 0.3 * (part + 1) / slices)
     for row, own in zip(rows, runs):
         row["evaluations"] = own[0].counters.evaluations
     return rows
@@ -201,15 +193,8 @@ def watch_impacts(variant, fast):
         if fast:
             y, v = leap(variant, y, v)
             run = start()
-    return variant.row({"paths": paths}, energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest,
+    return variant.row(paths=paths, energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest,
                        ran_away=ran_away)
-
-
-def impacts(fast):
-    laws = variants(VERY_STIFF)
-    if fast:
-        laws.insert(2, Variant("hertz_dashpot", SOFT_HERTZ, "T soft"))
-    return [watch_impacts(variant, fast) for variant in laws]
 
 
 def compare_printed():
@@ -279,23 +264,18 @@ def slide_without_lag(step):
     return errors_of(step, vx, parting)
 
 
-def order(points, key):
-    """Slope of log(error) over log(step), least squares over steps up to 1e-4 s."""
-    fine = [p for p in points if p.time_step <= 1.01e-4 and p[key] > 0]
-    u, v = (np.log([p[name] for p in fine]) for name in ("time_step", key))
-    return float(((u - u.mean()) * v).sum() / ((u - u.mean()) ** 2).sum())
-
-
-def slide_stacked(quick, progress):
-    """1e-3 to 1e-6 s, four per decade; quick: to 1e-5 s, two per decade."""
-    steps, curves = [10 ** (-k / 4) for k in range(12, 21 if quick else 25, 2 if quick else 1)], []
-    for variant in variants(STIFF):
-        curves.append(variant.row({"points": [slide(variant, step) for step in steps]}))
-        progress.update(0.2 + 0.3 * len(curves) / 6)
+def slide_stacked(size):
+    """1e-3 s and less, by quarters of a decade; orders: slopes of log(error) over log(step) up to 1e-4 s."""
+    steps = [10 ** (-k / 4) for k in size.quarters]
+    curves = [variant.row(points=[slide(variant, step) for step in steps])
+              for variant in tracked("stacked spheres:", variants(STIFF))]
     without_lag = dataclasses.replace(variants(STIFF)[0], label="C, no lag")
-    curves.append(without_lag.row({"points": [slide_without_lag(step) for step in steps]}))
+    curves.append(without_lag.row(points=[slide_without_lag(step) for step in steps]))
     for one in curves:
-        one.update(speed_order=order(one.points, "speed_error"), parting_order=order(one.points, "parting_error"))
+        for what in ("speed", "parting"):
+            fine = [(p.time_step, p[what + "_error"]) for p in one.points
+                    if p.time_step <= 1.01e-4 and p[what + "_error"] > 0]
+            one[what + "_order"] = np.polyfit(*np.log(fine).T, 1)[0]
     return curves
 
 
@@ -325,14 +305,11 @@ def follow_ball(variant, a, step):
     return Row(time_step=step, a=a, error=math.sqrt(squares / 30) / (DROP * D), seconds=min(times))
 
 
-def cost_of_ball(quick, progress):
-    steps, curves = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4, *([] if quick else [5e-5, 2e-5, 1e-5])], []
+def cost_of_ball(size):
     one_step = Variant("exact_flow", 0.0, "X, step 0.1 s")
-    for variant in (*variants(STIFF)[:-1], one_step):
-        places = [(10.0 ** k, 0.1) for k in range(4, 13)] if variant == one_step else [(variant.a, at) for at in steps]
-        curves.append(variant.row({"points": [follow_ball(variant, a, step) for a, step in places]}))
-        progress.update(0.03 * len(curves))
-    return curves
+    curves = [variant.row(points=[follow_ball(variant, variant.a, step) for step in size.ball_steps])
+              for variant in tracked("a bouncing ball:", variants(STIFF)[:-1])]
+    return [*curves, one_step.row(points=[follow_ball(one_step, 10.0**k, 0.1) for k in range(4, 13)])]
 
 
 # ---- bodies that come to rest under gravity; not in the paper
@@ -340,63 +317,49 @@ def cost_of_ball(quick, progress):
 def settle(variant, balls, duration, e):
     run, hertz = variant.spheres(column(balls), STEP, e), variant.law == "hertz_dashpot"
     mass = 4 / 3 * math.pi * (D / 2) ** 3
+    weight, floor = balls * G * mass, variant.a * mass / (STEP * STEP) / (math.sqrt(D) if hertz else 1)
     # of two balls the reduced mass is half that of a ball and the floor
-    floor = variant.a * mass / (STEP * STEP) / (math.sqrt(D) if hertz else 1)
-    springs = [floor] + [0.5 * floor] * (balls - 1)
+    springs, power = np.array([floor] + [0.5 * floor] * (balls - 1)), 1.5 if hertz else 1
 
-    def overlap(k, force):
-        return (force / springs[k]) ** (2 / 3) if hertz else force / springs[k]
-
-    def elastic(k, pressed):
-        return springs[k] * (0.4 * pressed ** 2.5 if hertz else 0.5 * pressed * pressed) if pressed > 0 else 0.0
-    still, height = 0.0, -0.5 * D
-    for k in range(balls):
-        pressed = overlap(k, (balls - k) * mass * G)
-        height += D - pressed
-        still += mass * G * height + elastic(k, pressed)
-
-    def energy():
-        """At the instant of the velocities."""
-        total, below = 0.0, -0.5 * D
-        for k in range(balls):
-            _, y, _, v = run.sphere(k)
-            y -= variant.lag * v
-            total += 0.5 * mass * v * v + mass * G * y + elastic(k, below + D - y)
-            below = y
-        return total
-    weight, last, times, energies = balls * G * mass, round(duration / STEP), [], []
+    def energy(y, v=0.0):
+        overlaps = np.maximum(0, D - np.diff(y, prepend=-0.5 * D))
+        return (0.5 * mass * v**2 + mass * G * y + springs * overlaps**(power + 1) / (power + 1)).sum()
+    at_rest = (np.arange(balls, 0, -1) * mass * G / springs)**(1 / power)  # overlaps
+    still = energy(np.cumsum(D - at_rest) - 0.5 * D)
+    last, times, energies = round(duration / STEP), [], []
     every, late, speeds, overlaps, touched = last // 400, last - last // 10, 0.0, 0.0, 0
     while run.step < last:
         run.advance(1 if run.step >= late else every)
+        _, y, u, v = np.array([run.sphere(k) for k in range(balls)]).T
         if run.step % every == 0:
             times.append(run.step * STEP)
-            energies.append((energy() - still) / (weight * D))
+            energies.append((energy(y - variant.lag * v, v) - still) / (weight * D))  # at the instant of the velocities
         if run.step > late:
-            speeds += sum(run.sphere(k)[2] ** 2 + run.sphere(k)[3] ** 2 for k in range(balls)) / balls
-            overlaps += 0.5 * D - run.sphere(0)[1]
+            speeds += (u**2 + v**2).mean()
+            overlaps += 0.5 * D - y[0]
             touched += sum(j < 0 for _, j in run.contacts())
-    steps = last - late
-    return variant.row({"times": times, "energies": energies}, balls=balls, energy_above_rest=energies[-1],
-                       speed_of_g_dt=math.sqrt(speeds / steps) / (G * STEP), share_of_steps_in_contact=touched / steps,
-                       overlap_of_static=overlaps / steps / overlap(0, weight))
+    steps, changes = last - late, [energy / energies[0] - 1 for energy in energies]
+    return variant.row(
+        times=times, energies=energies, changes=changes, balls=balls, energy_above_rest=energies[-1],
+        speed_of_g_dt=math.sqrt(speeds / steps) / (G * STEP), share_of_steps_in_contact=touched / steps,
+        overlap_of_static=overlaps / steps / at_rest[0], energy_change=changes[-1])
 
 
 def come_to_rest(balls, duration, e=E):
-    return [settle(variant, balls, duration, e) for variant in variants(STIFF)]
+    return [settle(variant, balls, duration, e)
+            for variant in tracked(f"{balls} at rest:", variants(STIFF))]
 
 
-def compute(quick):
-    progress = Progress("reproducing Fujioka & Ushijima 2005")
-    r = Row(quick=quick, slow_impacts=impacts(False), fast_impacts=impacts(True), printed=compare_printed(),
-            table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS])
-                    for variant in variants(VERY_STIFF)],
-            ball=cost_of_ball(quick, progress), stacked=slide_stacked(quick, progress),
-            rest=come_to_rest(1, 6), column=come_to_rest(4 if quick else 10, 10 if quick else 40),
-            lossless=come_to_rest(5, 10 if quick else 40, 1.0))
-    progress.update(0.5)
-    r["table1"] = measure_table1(quick, progress)
-    progress.end()
-    return r
+def compute(size):
+    laws = variants(VERY_STIFF)
+    return Row(slow_impacts=[watch_impacts(variant, False) for variant in laws],
+               fast_impacts=[watch_impacts(variant, True) for variant in (
+                   *laws[:2], Variant("hertz_dashpot", SOFT_HERTZ, "T soft"), *laws[2:])],
+               printed=compare_printed(),
+               table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS]) for variant in laws],
+               bouncing_ball=cost_of_ball(size), stacked=slide_stacked(size), rest=come_to_rest(1, 6),
+               column=come_to_rest(size.balls, size.duration), lossless=come_to_rest(5, size.duration, 1.0),
+               table1=measure_table1(size))
 
 
 # ---- what the report says
@@ -428,11 +391,6 @@ def least_costs(points, key, wanted):
     return [min((p.seconds for p in points if p[key] <= accuracy), default=None) for accuracy in wanted]
 
 
-def changes(law):
-    """Relative change of the energy since the start."""
-    return [energy / law.energies[0] - 1 for energy in law.energies]
-
-
 def passages(law):
     """Percent of the impacts of P whose states pass through the modes 1, 2 and 4, and that part from mode 2."""
     border, share, found = math.sqrt(1 - law.a), 100 / len(law.paths), Row(by_124=0.0, from_2=0.0)
@@ -460,7 +418,7 @@ def conclusions(r):
         ten=worst_of("energy_ratios", 1), late=worst_of("energy_ratios", 6), fast=fast, passages=passages(fast.P),
         of_flights=worst_of("energy_ratios_of_flights", 1), points=points,
         worst_fast=Row({letter: worst(fast[letter].energy_ratios) for letter in "FP"}),
-        agree=sum(n == printed for row in r.table2 if row.variant.of_paper
+        agree=sum(n == printed for row in r.table2 if row.letter != "X"
                   for n, printed in zip(row.steps, printed_steps(row.letter))),
         better=Row({key: sum(max(p[key], f[key]) < min(c[key], t[key]) for c, t, f, p in zip(*points.values()))
                     for key in ("speed_error", "parting_error")}),
@@ -471,8 +429,8 @@ def conclusions(r):
 # ---- figures
 
 def name_of(law):
-    special = {"C, no lag": "C, no lag", "X, step 0.1 s": "X, step 0.1 s, a = 1e4 to 1e12"}
-    return special.get(law.label, f"{law.letter} (a = {law.a:g})")
+    steps = "X, step 0.1 s"
+    return {steps: steps + ", a = 1e4 to 1e12", "C, no lag": law.label}.get(law.label, f"{law.letter} (a = {law.a:g})")
 
 
 def f_over_p(laws):
@@ -491,28 +449,28 @@ def first_paths(law):
     return [state for path in law.paths[:8] for state in (*path, (math.nan, math.nan))]
 
 
-def reproduce(options):
-    r = compute(options.quick)
-    c, f, p = (of(r.table1, letter) for letter in "CFP")
-    page = Page("fujioka2005", globals(), r, conclusions(r), {
-        "c": c, "f": f, "p": p, "step": c.time_step,
-        "at_rest_from": math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)})
+def numbers_of(row):
+    """What result.json has of a row: without curves, the points as columns."""
+    points = row.get("points", [{}])
+    return {**{key: row[key] for key in row if key not in ("points", "paths", "times", "energies", "changes")},
+            **{key: [point[key] for point in points] for key in points[0] if key != "a"}}
 
-    def with_points(rows):
-        return [{**row, **{key: value for key, value in columns_of(row.points).items() if key != "a"}} for row in rows]
-    numbers = {"quick": options.quick, "exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING,
-               **{key: r[key] for key in ("table1", "table2", "slow_impacts", "fast_impacts", "rest", "column")},
-               "stacked": with_points(r.stacked), "bouncing_ball": with_points(r.ball),
-               "lossless": [{**law, "energy_change": changes(law)[-1]} for law in r.lossless]}
+
+def reproduce(options, _page):
+    r = compute(options.size)
+    c, f, p = (of(r.table1, letter) for letter in "CFP")
+    names = {**r, **conclusions(r), "c": c, "f": f, "p": p, "step": c.time_step,
+             "at_rest_from": math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)}
+    numbers = {"exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING,
+               **{key: [numbers_of(row) for row in rows] for key, rows in r.items() if key != "printed"}}
     of_table1 = {"law": "law", "letter": "letter", "a": "a", "time_step": "step_s", "evaluations": "evaluations",
                  "evaluations_gravity_first": "evaluations_gravity_first", "run_seconds": "run_s",
                  "law_alone_nanoseconds": "law_alone_ns"}
-    tables = {"table1": {name: [row[key] for row in r.table1] for key, name in of_table1.items()},
-              "table2": {name: [row[name] for row in r.table2] for name in ("law", "letter", "a")}}
-    for k, step in enumerate(TABLE2_STEPS):
-        tables["table2"][f"steps_at_{step:.0e}_s"] = [row.steps[k] for row in r.table2]
-    return Output(page.text("report"), numbers, tables, page.figures())
+    return Output(names, numbers, {
+        "table1": [{name: row[key] for key, name in of_table1.items()} for row in r.table1],
+        "table2": [{"law": row.law, "letter": row.letter, "a": row.a, **{
+            f"steps_at_{step:.0e}_s": steps for step, steps in zip(TABLE2_STEPS, row.steps)}} for row in r.table2]})
 
 
 if __name__ == "__main__":
-    main("fujioka2005", __doc__, reproduce)
+    main(reproduce)

@@ -44,29 +44,21 @@ class Series:
     marker: str = "circle"
     filled: bool = True
     column: str = ""  # name in the data file; empty: made of the label
-    errors: list = dataclasses.field(default_factory=list)  # bars to either side of each point; empty: none
+    error: list = dataclasses.field(default_factory=list)  # bars to either side of each point; empty: none
 
     def ends(self):
-        """Of the bars."""
-        return [[y + sign * error for y, error in zip(self.y, self.errors)] for sign in (-1, 1)]
-
-
-@dataclasses.dataclass
-class Axis:
-    label: str = ""
-    low: float | None = None
-    high: float | None = None
-    logarithmic: bool = False
+        """Of the bars, the lower and the upper ones."""
+        return [[y + sign * error for y, error in zip(self.y, self.error)] for sign in (-1, 1) if self.error]
 
 
 @dataclasses.dataclass
 class Plot:
     """Labels may hold formulas between dollars."""
     title: str
-    x: Axis
-    y: Axis
-    series: list = dataclasses.field(default_factory=list)  # later ones are drawn on top
-    vertical_lines: list = dataclasses.field(default_factory=list)  # (x, label, colour)
+    x: Row  # label, low, high (None: as far as there are points), logarithmic
+    y: Row
+    series: list  # later ones are drawn on top
+    vertical_lines: list  # (x, label, colour)
 
     def csv(self):
         """One row for each x where all series share them, else one row for each point."""
@@ -80,14 +72,12 @@ class Plot:
         if shared:
             columns = {x_name: self.series[0].x}
             for name, series in zip(names[1:], self.series):
-                columns[name] = series.y
-                if len(series.errors):
-                    columns[name + "_low"], columns[name + "_high"] = series.ends()
-            return csv_text(columns)
-        bars = any(len(series.errors) for series in self.series)
+                columns.update(zip((name, name + "_low", name + "_high"), (series.y, *series.ends())))
+            return csv_lines([list(columns), *zip(*columns.values())])
+        bars = any(series.error for series in self.series)
         rows = [["series", x_name, y_name, *["low", "high"] * bars]]
         for name, series in zip(names, self.series):
-            ends = series.ends() if len(series.errors) else [[""] * len(series.x)] * 2
+            ends = series.ends() or [[""] * len(series.x)] * 2
             rows += [[name, *row] for row in zip(series.x, series.y, *ends * bars)]
         return csv_lines(rows)
 
@@ -109,8 +99,8 @@ class Plot:
                     "linestyle": {"points": "", "dashed_line": "--"}.get(series.style, "-"),
                     "marker": MARKERS[series.marker] if series in shown else "",
                     "markerfacecolor": colour if series.filled else "none"}
-            if len(series.errors):
-                axes.errorbar(series.x, series.y, yerr=series.errors, capsize=2, elinewidth=0.9, **look)
+            if series.error:
+                axes.errorbar(series.x, series.y, yerr=series.error, capsize=2, elinewidth=0.9, **look)
             else:
                 axes.plot(series.x, series.y, **look)
         for axis, name in ((self.x, "x"), (self.y, "y")):
@@ -157,14 +147,10 @@ def shortest(value):
 
 
 def csv_lines(rows):
+    """Rows of cells as comma-separated values."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([[shortest(cell) for cell in row] for row in rows])
     return text.getvalue()
-
-
-def csv_text(columns):
-    """A table {column: list} as comma-separated values."""
-    return csv_lines([list(columns), *zip(*columns.values())])
 
 
 def aligned(rows):
@@ -183,25 +169,17 @@ def span(low, high):
     return [{"at": low + (high - low) * k / 100} for k in range(101)]
 
 
-class Expressions(string.Formatter):
-    """str.format whose places hold expressions."""
-    def get_field(self, field_name, args, kwargs):
-        return eval(field_name, dict(kwargs)), None  # pylint: disable=eval-used
+TEXTS, EXPRESSIONS = ("label", "column"), ("low", "high", "look")  # among the keys of figures
+NO_LIMITS = {"low": None, "high": None, "logarithmic": False}
 
 
-def told_of(name):
-    """tools/papers/NAME.toml."""
-    return tomllib.loads(pathlib.Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
-
-
-class Page:
-    """What NAME.toml says, over the names of results and of functions."""
-    def __init__(self, name, *names):
-        self.told = told_of(name)
+class Page(string.Formatter):
+    """What tools/papers/NAME.toml says, over the names of results and of functions."""
+    def __init__(self, name, functions, options):
+        self.name = name
+        self.told = tomllib.loads(pathlib.Path(__file__).with_name(f"{name}.toml").read_text(encoding="utf-8"))
         self.names = {"math": math, "span": span, "told": self.told, "table": self.table, "text": self.text,
-                      "lines": self.lines}
-        for more in names:
-            self.names.update(more)
+                      "lines": self.lines, **functions, **options}
 
     def text(self, name, /, **names):
         return self.fill(self.told[name], names)
@@ -216,7 +194,11 @@ class Page:
         return {"one": item, **(item if isinstance(item, dict) else {})}
 
     def fill(self, text, names=()):
-        return Expressions().vformat(text, (), {**self.names, **dict(names)})
+        return self.vformat(text, (), {**self.names, **dict(names)})
+
+    def get_field(self, field_name, args, kwargs):
+        """Of the formatter: places hold expressions."""
+        return self.value(field_name, kwargs), None
 
     def value(self, expression, names):
         """Of the text of an expression; what is no text stands for itself."""
@@ -224,14 +206,20 @@ class Page:
             return expression
         return eval(expression, {**self.names, **names})  # pylint: disable=eval-used
 
-    def each(self, told, names):
-        """The names inside each item of `each`, or those given where there is none."""
-        if "each" not in told:
-            return [names]
-        keys, expression = told["each"]
-        keys = keys.split(", ")
-        return [{**names, **dict(zip(keys, item if len(keys) > 1 else [item]))}
-                for item in self.value(expression, names)]
+    def filled(self, told, names):
+        """An entry with its texts and expressions filled in."""
+        return {key: self.fill(told[key], names) if key in TEXTS else
+                self.value(told[key], names) if key in EXPRESSIONS else told[key] for key in told}
+
+    def leaves(self, told, names):
+        """(entry, names inside it) of an entry, for each item of `each` and all its `parts`."""
+        keys, expression = told.get("each", ("one", [names.get("one")]))
+        for item in self.value(expression, names):
+            inside = {**names, **(dict(zip(keys.split(", "), item)) if ", " in keys else {keys: item})}
+            for part in told.get("parts", ()):
+                yield from self.leaves(part, inside)
+            if "parts" not in told:
+                yield told, inside
 
     def items(self, told, names):
         """The names inside each item of the list `of`, of those that `where` chooses."""
@@ -246,40 +234,24 @@ class Page:
             (told["head"], names), *((told["row"], inside) for inside in self.items(told, names)))]
         return markdown(head, rows) if told.get("markdown") else aligned([head, *rows])
 
-    def leaves(self, told, names):
-        """(entry, names inside it) of an entry, for each item of `each` and all its `parts`."""
-        for inside in self.each(told, names):
-            if "parts" in told:
-                yield from (one for part in told["parts"] for one in self.leaves(part, inside))
-            else:
-                yield told, inside
-
-    def series(self, parts, names):
-        for told, inside in self.leaves({"parts": parts}, names):
-            found = {key: told[key] for key in ("style", "colour", "marker", "filled") if key in told}
-            found.update({key: self.fill(told[key], inside) for key in ("label", "column") if key in told})
-            for key, member in (("x", "x"), ("y", "y"), ("error", "errors")):
-                if key in told:
-                    found[member] = list(self.value(told[key], inside)) if "of" not in told else [
-                        self.value(told[key], item) for item in self.items(told, inside)]
-            found.update(self.value(told.get("look", {}), inside))
-            if found["x"]:
-                yield Series(**found)
-
-    def axis(self, told, names):
-        return Axis(self.fill(told["label"], names), self.value(told.get("low"), names),
-                    self.value(told.get("high"), names), told.get("logarithmic", False))
+    def series(self, told, names):
+        found, items = self.filled(told, names), [*self.items(told, names)] if "of" in told else None
+        for key in {"x", "y", "error"} & told.keys():
+            found[key] = list(self.value(told[key], names)) if items is None else [
+                self.value(told[key], item) for item in items]
+        found.update(found.get("look", {}))
+        return Series(**{key: found[key] for key in found if key in Series.__annotations__})
 
     def figures(self, chosen=None, /, **names):
         """{name: Plot} of all figures, or of the entries that are chosen."""
         found = {}
         for key in self.told["figures"] if chosen is None else chosen:
-            told = self.told["figures"][key]
-            for inside in self.each(told, names):
+            for told, inside in self.leaves(self.told["figures"][key], names):
                 lines = told.get("lines", ())
                 lines = self.value(lines, inside) if isinstance(lines, str) else [
                     (self.value(x, inside), self.fill(label, inside), colour) for x, label, colour in lines]
+                axes = (Row({**NO_LIMITS, **self.filled(told[axis], inside)}) for axis in "xy")
+                series = [self.series(*leaf) for leaf in self.leaves({"parts": told["series"]}, inside)]
                 found[self.fill(told.get("name", key), inside)] = Plot(
-                    self.fill(told["title"], inside), self.axis(told["x"], inside), self.axis(told["y"], inside),
-                    [*self.series(told["series"], inside)], lines)
+                    self.fill(told["title"], inside), *axes, [one for one in series if one.x], lines)
         return found

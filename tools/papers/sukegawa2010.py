@@ -16,16 +16,14 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
-from common import Output, columns_of, eq, main, mean_of, rows_of, samples_of
-from shown import Page, Row, told_of
+from common import Output, eq, main, mean_of, rows_of, samples_of, with_error
+from shown import Row
 from sukegawa2010_box import NUMBERS, PICTURES, Fill, run_box
 
 STORED = Row(date="2026-11-23", commit="ca6078f8")
 SHAPES = ("discs", "ellipses", "bonded_pairs", "rigid_pairs")
 GRAVITY, PERIOD = NUMBERS["gravity"], NUMBERS["sloshing period"]
-TOLD = told_of("sukegawa2010")
 WHOLE, INNER = ("whole_void_ratio_before", "whole_void_ratio"), ("void_ratio_before", "void_ratio")
-KEPT = ("numbers", "filling", "falling", "shaking", "pictures")  # of a run
 
 
 # ---- runs
@@ -35,12 +33,15 @@ def usual_cycles(frequency):
 
 
 class Run(Row):
-    """A row of runs.csv: what was run, and its numbers. `filling`: the motion while the box was filled."""
+    """A row of runs.csv: what was run, and its numbers; beside them what a run of this day has: `filling`, the motion
+    while the box was filled, histories and pictures."""
     filling, falling, shaking, pictures = None, (), (), ()
 
-    def __init__(self, row):
+    def __init__(self, row, numbers=(), **more):
         text = ("run", "shape", "variant")
-        super().__init__({key: value if key in text else float(value) for key, value in row.items()})
+        super().__init__({key: value if key in text else float(value)
+                          for key, value in {**row, **dict(numbers)}.items()})
+        vars(self).update(more)
 
     def number(self, key):
         """key: a name, that of a number of the filling, or two whose difference is wanted."""
@@ -60,20 +61,15 @@ class Run(Row):
 
 
 class Runs(list):
-    def alike(self, shape, gal, frequency, variant=""):
-        return [run for run in self if (run.shape, run.variant, run.acceleration_gal, run.frequency_Hz) ==
-                (shape, variant, gal, frequency)]
-
-    def values(self, key, shape="discs", gal=400, variant="", cycles=10):
-        """Finite values over the runs at 10 Hz that differ only in the seed."""
-        numbers = [run.number(key) for run in self.alike(shape, gal, 10, variant) if run.cycles == cycles]
-        return [number for number in numbers if math.isfinite(number)]
-
-    def of_seeds(self, key, shape, gal=400, frequency=10):
-        """{seed: number} of the usual runs."""
-        found = {run.seed: run.number(key) for run in self.alike(shape, gal, frequency)
-                 if run.cycles <= usual_cycles(frequency)}
+    def of_seeds(self, key, shape="discs", gal=400, frequency=10, variant="", cycles=None):
+        """{seed: number} of the runs that differ in the seed alone, where it is finite."""
+        wanted = (shape, variant, gal, frequency, cycles or usual_cycles(frequency))
+        found = {run.seed: run.number(key) for run in self if wanted == (
+            run.shape, run.variant, run.acceleration_gal, run.frequency_Hz, run.cycles)}
         return {seed: value for seed, value in sorted(found.items()) if math.isfinite(value)}
+
+    def values(self, key, *chosen, **more):
+        return list(self.of_seeds(key, *chosen, **more).values())
 
     def mapped(self, shape, frequencies=None):
         return [run for run in self if run.mapped and run.shape == shape and
@@ -84,30 +80,28 @@ class Runs(list):
                       key=lambda run: -run.frequency_Hz)
 
 
-def plan(quick):
+def plan(options, told):
     """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
-    keys = ("shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
-    small = {"columns": 8, "rows": 24, "softness": 25.0, "fall": 1.0} if quick else {}
-    rows, found = TOLD["quick_runs"] if quick else rows_of("sukegawa2010/runs"), []
-    for row in (row for row in rows if row["variant"] in TOLD["variants"]):
-        shape, variant, seed, gal, frequency, cycles = (
-            kind(row[key]) for kind, key in zip((str, str, int, float, float, int), keys))
-        name = f"{shape}{'_' if variant else ''}{variant}_{seed}_{gal:g}gal_{frequency:.3g}Hz"
-        name += f"_{cycles}cycles" if cycles > usual_cycles(frequency) else ""
-        found.append((Row(run=name, **dict(zip(keys, (shape, variant, seed, gal, frequency, cycles)))),
-                      Fill(shape, seed, **{**small, **TOLD["variants"][variant]})))
+    kinds = {"shape": str, "variant": str, "seed": int, "acceleration_gal": float, "frequency_Hz": float, "cycles": int}
+    rows, found = told["quick_runs"] if options.quick else rows_of("sukegawa2010/runs"), []
+    for row in (row for row in rows if row["variant"] in told["variants"]):
+        own = Row({key: kind(row[key]) for key, kind in kinds.items()})
+        name = "_".join(filter(None, (own.shape, own.variant, str(own.seed), f"{own.acceleration_gal:g}gal",
+                                      f"{own.frequency_Hz:.3g}Hz")))
+        name += f"_{own.cycles}cycles" if own.cycles > usual_cycles(own.frequency_Hz) else ""
+        settings = {**options.size, **told["variants"][own.variant]}
+        found.append((Row(run=name, **own), Fill(own.shape, own.seed, **settings)))
     return found
 
 
 def kept_run(arguments):
-    """A run, kept in two files where a path is given."""
-    *given, path = arguments
-    found = {"fill": dataclasses.asdict(given[0]), **dict(zip(KEPT, run_box(given)))}
+    """A run, kept in a file where a path is given."""
+    fill, *shaking, path = arguments
+    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
-        np.savez_compressed(path.with_suffix(".npz"), *(array for one in found["pictures"] for array in one))
         part = path.with_suffix(".part")
-        part.write_text(json.dumps({**found, "pictures": []}, default=float), encoding="utf-8")
+        part.write_text(json.dumps(found), encoding="utf-8")
         part.rename(path)
     return found
 
@@ -117,25 +111,18 @@ def read_run(path, fill):
     if found["fill"] != dataclasses.asdict(fill):
         raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
                           "Choose another --out, or remove it")
-    with np.load(path.with_suffix(".npz")) as file:
-        arrays = list(file.values())
-    return {**found, "pictures": [arrays[k:k + 4] for k in range(0, len(arrays), 4)]}
+    return found
 
 
-def compute(options):
+def compute(options, planned):
     """The runs of the plan, those that are in --out already taken from there."""
     kept = options.out and options.out / "runs"
-    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in plan(options.quick)]
+    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
     runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
     todo = [one for one in wanted if one[0].run not in runs]
     runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
         (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
-    done = []
-    for row, _, _ in wanted:
-        done.append(Run({**row, **runs[row.run]["numbers"]}))
-        for key in KEPT[1:]:
-            setattr(done[-1], key, runs[row.run][key])
-    return done
+    return [Run(row, **runs[row.run]) for row, _, _ in wanted]
 
 
 # ---- words of tables
@@ -149,10 +136,9 @@ def figures(value, digits):
 
 
 def spread(values):
-    if not values:
-        return "-"
-    mean = mean_of(values)
-    return figures(mean.mean, 4) + (f" ± {mean.standard_deviation:.4f}" if len(values) > 1 else "")
+    """Mean and standard deviation."""
+    mean = mean_of(values) if values else None
+    return with_error(mean.mean, mean.standard_deviation) if values else "-"
 
 
 def printed(shape, *times):
@@ -166,13 +152,19 @@ def half_width(values):
     return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
+def judge(differences, half=None):
+    """A difference that a statement says is positive."""
+    mean, half = mean_of(differences).mean, half_width(differences) if half is None else half
+    return "holds" if mean - half > 0 else "does not hold" if mean + half < 0 else "not decided"
+
+
 def printed_verdict(found, capped):
     """Whether a detail explains the printed void ratio of discs before shaking. With one seed: judged by the scatter of
     the runs with (2.16) alone."""
-    mean, wanted = mean_of(found).mean, NUMBERS["discs, void ratio before"]
     half = half_width(capped) * math.sqrt(len(capped)) if len(found) == 1 else half_width(found)
-    return ("not decided" if not math.isfinite(half) else "does not explain it, too loose" if mean - half > wanted else
-            "does not explain it, too dense" if mean + half < wanted else "agrees with it within the scatter")
+    looser = judge([value - NUMBERS["discs, void ratio before"] for value in found], half)
+    return {"holds": "does not explain it, too loose", "does not hold": "does not explain it, too dense"}.get(
+        looser, "agrees with it within the scatter" if math.isfinite(half) else "not decided")
 
 
 def fastest(radius):
@@ -183,16 +175,10 @@ def fastest(radius):
 
 # ---- sloshing
 
-def sloshing_period(width, depth, mode=1):
-    """By linear theory: omega² = g k tanh(k h), k = n pi/l."""
+def sloshing_period(width, depth, mode=1, printed=1):
+    """By linear theory: omega² = g k tanh(k h), k = n pi/l; printed = 2: (7.2) as printed, (pi g/l) tanh(2 pi h/l)."""
     k = mode * math.pi / width
-    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(k * depth))
-
-
-def printed_formula_period(width, depth):
-    """(7.2) as printed: omega² = (pi g/l) tanh(2 pi h/l)."""
-    k = math.pi / width
-    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(2 * k * depth))
+    return 2 * math.pi / math.sqrt(GRAVITY * k * math.tanh(printed * k * depth))
 
 
 def liquid_amplification(period, width, depth):
@@ -209,26 +195,17 @@ def amplification_of(run, width):
     return run.swing_m / tilted
 
 
-def resonance_text(page, runs, width):
+def around_resonance(runs, width):
+    """The runs below, at and above the printed period, with their amplifications, where there are such."""
     found = runs.resonance()
     nearest = min(range(len(found)), key=lambda k: abs(1 / found[k].frequency_Hz - PERIOD), default=0)
-    if not 0 < nearest < len(found) - 1 or abs(1 / found[nearest].frequency_Hz - PERIOD) > 0.01:
-        return ""
-    left, here, right = found[nearest - 1:nearest + 2]
-    return page.text("resonance", left=left, right=right, amplitude=[amplification_of(run, width)
-                                                                    for run in (left, here, right)])
+    if 0 < nearest < len(found) - 1 and abs(1 / found[nearest].frequency_Hz - PERIOD) < 0.01:
+        return [Row(period=1 / run.frequency_Hz, amplitude=amplification_of(run, width))
+                for run in found[nearest - 1:nearest + 2]]
+    return []
 
 
 # ---- verdicts
-
-def judge(differences):
-    """A difference that a statement says is positive."""
-    half = half_width(differences)
-    if math.isnan(half):
-        return "not decided"
-    mean = mean_of(differences).mean
-    return "holds" if mean - half > 0 else "does not hold" if mean + half < 0 else "not decided"
-
 
 def interval(values):
     if len(values) == 1:
@@ -251,43 +228,40 @@ def sides(runs, told):
 def compared(runs, told):
     """Over the seeds that both sides have; nothing where there are none."""
     smaller, larger = sides(runs, told)
-    both = [(smaller[seed], larger[seed]) for seed in smaller if seed in larger]
-    differences = [b - a for a, b in both]
-    return both and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
-                        smaller=mean_of(a for a, _ in both).mean, larger=mean_of(b for _, b in both).mean)
+    seeds = [seed for seed in smaller if seed in larger]
+    differences = [larger[seed] - smaller[seed] for seed in seeds]
+    return seeds and Row(quantity=told["what"], difference=interval(differences), verdict=judge(differences),
+                         smaller=mean_of(smaller[seed] for seed in seeds).mean,
+                         larger=mean_of(larger[seed] for seed in seeds).mean)
 
 
-def statement(page, runs, told, stored):
-    """Holds where all its comparisons do, and does not where one of them does not."""
-    rows = rows_of("sukegawa2010/filling") if stored and "stored" in told else [
-        compared(runs, one) for one in told["compared"]]
-    if not all(rows):
-        return ""
-    verdict = next(one for one in ("does not hold", "not decided", "holds") if one in [row.verdict for row in rows])
-    return f"  {told['section']} {told['says']}: {verdict.upper()}\n" + page.lines("comparison", rows)
+def decided(runs, statements, stored):
+    """Statements with their comparisons: one holds where all of these do, and does not where one of them does not."""
+    for told in statements:
+        rows = rows_of("sukegawa2010/filling") if stored and "stored" in told else [
+            compared(runs, one) for one in told["compared"]]
+        verdicts = [row and row.verdict for row in rows]
+        if all(verdicts):
+            yield {**told, "rows": rows, "verdict": next(
+                one for one in ("does not hold", "not decided", "holds") if one in verdicts)}
 
 
-def best_shakings(runs, shape):
-    """Section 9.2: the shaking after which the void ratio is smallest, and those that scatter does not tell from it."""
-    found = [(run.title, runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
-             for run in runs.mapped(shape)]
-    found = sorted((one for one in found if one[1]), key=lambda one: len(one[1]))
-    if len(found) < 2:
-        return ""
-    seeds = len(found[len(found) // 2][1])  # that half of the shakings have
-    found = sorted((one for one in found if len(one[1]) >= seeds), key=lambda one: mean_of(one[1].values()).mean)
-    name, best = found[0]
-    text = (f"  {words(shape)}: densest after {name}, e = {interval(list(best.values()))}, of {len(found)} shakings of "
-            f"{seeds} filling")
-    if seeds == 1:
-        return text + ": no scatter is known\n"
-    rivals = ""
-    for other, values in found[1:]:
-        more = [values[seed] - best[seed] for seed in best if seed in values]
-        if judge(more) != "holds":
-            rivals += f"    {other:<16} by {interval(more)}\n"
-    return text + "s; " + ("NOT DECIDED within the scatter against\n" + rivals if rivals else
-                           "no other is as good within the scatter\n")
+def best_shakings(runs):
+    """Section 9.2: for each shape the shaking after which the void ratio is smallest, and those that scatter does not
+    tell from it; of the shakings that at least as many seeds have as half of all."""
+    for shape in ("discs", "bonded_pairs"):
+        found = [Row(title=run.title, values=runs.of_seeds("void_ratio", shape, run.acceleration_gal, run.frequency_Hz))
+                 for run in runs.mapped(shape)]
+        found = sorted((one for one in found if one["values"]), key=lambda one: len(one["values"]))
+        seeds = len(found[len(found) // 2]["values"]) if len(found) > 1 else math.inf
+        found = sorted((one for one in found if len(one["values"]) >= seeds),
+                       key=lambda one: mean_of(one["values"].values()).mean)
+        if found:
+            best = found[0]["values"]
+            for one in found:
+                one["more"] = [value - best[seed] for seed, value in one["values"].items() if seed in best]
+            yield {"shape": shape, "best": found[0], "count": len(found), "seeds": seeds, "rivals": [
+                one for one in found[1:] if seeds > 1 and judge(one.more) != "holds"]}
 
 
 # ---- plots
@@ -302,28 +276,23 @@ def void_ratio_points(runs, key, after, offset):
     return found
 
 
-def less_first(rows, name, k, scale):
-    """Of one of the nine grains. name: "time", "x", "y" or "angle"; scale of positions."""
-    if name == "time":
-        return [row["time_s"] for row in rows]
-    values = np.array([row[f"{name}{k}_{'rad' if name == 'angle' else 'm'}"] for row in rows])
-    return ((values - values[0]) * (1 if name == "angle" else scale)).tolist()
-
-
 def histories(runs, fill):
-    """Figures of the motion of nine grains: (name, title, labels, rows, abscissa, ordinate, scale, names of grains)."""
+    """Figures of the motion of nine grains from their start: (name, title, labels, abscissae, ordinates, names)."""
     found = []
-    for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and len(run.falling)):
-        shape, names = run.shape, dataclasses.replace(fill, shape=run.shape).followed()[1]
-        for stage, title, rows, box, unit, scale in (
+    for run in (run for shape in SHAPES for run in runs if run.run == f"{shape}_1_400gal_10Hz" and run.falling):
+        names = dataclasses.replace(fill, shape=run.shape).followed()[1]
+        for stage, title, history, box, unit, scale in (
                 ("falling", "falling", run.falling, "", "m", 1),
                 ("shaken", "400 gal, 10 Hz", run.shaking, " in the box", "mm", 1e3)):
-            for what, label in (("x", f"displacement along x{box}, {unit}"), ("y", f"displacement along y, {unit}"),
-                                ("angle", "rotation, rad")):
-                found.append((f"{shape}_{stage}_{what}", f"{words(shape)}, {title}", "time, s", label, rows, "time",
-                              what, scale, names))
-        found.append((f"{shape}_paths", f"Paths, {words(shape)}, 400 gal, 10 Hz", "displacement along x in the box, mm",
-                      "displacement along y, mm", run.shaking, "x", "y", 1e3, names))
+            x, y, angle = (factor * (np.array(history[key]) - history[key][0])
+                           for key, factor in (("x_m", scale), ("y_m", scale), ("angle_rad", 1)))
+            time = np.repeat(history["time_s"], x.shape[1]).reshape(x.shape)
+            for what, values, label in (("x", x, f"displacement along x{box}, {unit}"),
+                                        ("y", y, f"displacement along y, {unit}"), ("angle", angle, "rotation, rad")):
+                found.append((f"{run.shape}_{stage}_{what}", f"{words(run.shape)}, {title}", "time, s", label, time,
+                              values, names))
+        found.append((f"{run.shape}_paths", f"Paths, {words(run.shape)}, 400 gal, 10 Hz",
+                      "displacement along x in the box, mm", "displacement along y, mm", x, y, names))
     return found
 
 
@@ -335,7 +304,7 @@ def compaction_curves(runs):
               for name in dict.fromkeys(row.series for row in rows)}
     for run in runs:
         if run.run == "discs_1_400gal_10Hz_200cycles" and run.shaking:
-            curves[next(iter(curves))] = [(row["time_s"], row["whole_void_ratio"]) for row in run.shaking]
+            curves[next(iter(curves))] = [*zip(run.shaking["time_s"], run.shaking["whole_void_ratio"])]
     return curves
 
 
@@ -352,6 +321,7 @@ def draw_sheet(pictures, title):
         for one in axes.flat:
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
+            centres, half_axes = np.array(centres), np.array(half_axes)
             one.add_collection(EllipseCollection(
                 *(2 * half_axes.T), np.degrees(angles), units="xy", offsets=centres, transOffset=one.transData,
                 array=layers, cmap="viridis", edgecolors="black", linewidths=0.2))
@@ -367,7 +337,7 @@ def sheets(runs):
     found = {}
     for shape in SHAPES:
         own = [run for run in runs if run.shape == shape and run.seed == 1 and not run.variant and run.cycles <= 10 and
-               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and len(run.pictures)]
+               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and run.pictures]
         own.sort(key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
         for run in own:
             if run.title == "400 gal, 10 Hz":
@@ -379,25 +349,23 @@ def sheets(runs):
     return found
 
 
-def reproduce(options):
-    old, fill = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options.quick)[0][1]
-    new = [] if options.stored else compute(options)
-    by_name = {run.run: run for run in new}
-    missing = [] if options.quick else [run for run in old if run.run not in by_name]
-    runs = Runs(new if options.quick else [by_name.get(run.run, run) for run in old])
-    page = Page("sukegawa2010", globals(), vars(options), {
-        "runs": runs, "fill": fill, "width": fill.width, "missing": missing, "before": runs.values(WHOLE[0]),
-        "capped": runs.values(WHOLE[0], variant="printed_cap"),
-        "radius": 0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
-        "depth": runs.of_seeds("surface_height_before_m", "discs")[1.0]})
-    text = page.text("report", resonance=resonance_text(page, runs, fill.width), statements="".join(
-        statement(page, runs, told, options.stored) for told in TOLD["statements"]), best="".join(
-            best_shakings(runs, shape) for shape in ("discs", "bonded_pairs")))
+def reproduce(options, page):
+    old, planned = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options, page.told)
+    new = {} if options.stored else {run.run: run for run in compute(options, planned)}
+    fill = planned[0][1]
+    missing = [] if options.quick else [run for run in old if run.run not in new]
+    runs = Runs(new.values() if options.quick else [new.get(run.run, run) for run in old])
+    page.names.update(
+        runs=runs, fill=fill, width=fill.width, missing=missing, before=runs.values(WHOLE[0]),
+        capped=runs.values(WHOLE[0], variant="printed_cap"),
+        radius=0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
+        depth=runs.of_seeds("surface_height_before_m")[1.0])
+    names = {"resonance": around_resonance(runs, fill.width), "best": [*best_shakings(runs)],
+             "decided": [*decided(runs, page.told["statements"], options.stored)]}
     rows = [{**run, "source": "stored" if run in missing else "computed"} for run in runs]
-    return Output(text, {"quick": options.quick, "runs": rows}, {"runs": columns_of(rows)},
-                  {**page.figures(), **sheets(runs)})
+    return Output(names, {"runs": rows}, {"runs": rows}, sheets(runs))
 
 
 if __name__ == "__main__":
-    main("sukegawa2010", __doc__, reproduce, lambda parser: parser.add_argument(
+    main(reproduce, lambda parser: parser.add_argument(
         "--stored", action="store_true", help="tables and figures of the stored runs; nothing is computed"))

@@ -80,25 +80,21 @@ class Bodies:
         places = np.stack([(column + 0.5) * wide + np.where(row % 2 == 1, CELL / 2, 0.0),
                            (row + 0.5) * high * fill.row_share], axis=1)
         self.radii, angles = np.array(radii), 2 * math.pi * np.array(turns)
-        self.offsets = np.zeros((1, n, 2))
+        self.offsets, self.layers = np.zeros((1, n, 2)), np.arange(n) * 5 // n
         if fill.pairs:
             self.offsets = np.stack([np.stack([sign * self.radii, np.zeros(n)], axis=1) for sign in (-1, 1)])
         if fill.shape == "bonded_pairs":
             along = self.radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
             places = np.stack([places - along, places + along], axis=1).reshape(-1, 2)
-            self.radii, angles, self.offsets = np.repeat(self.radii, 2), np.repeat(angles, 2), np.zeros((1, 2 * n, 2))
+            self.radii, angles, self.layers = (np.repeat(one, 2) for one in (self.radii, angles, self.layers))
+            self.offsets = np.zeros((1, 2 * n, 2))
         self.places, self.angles = places, angles
-        self.half_axes = np.stack([self.radii, self.radii], axis=1)
-        if fill.shape == "ellipses":  # of the areas of the discs
-            self.half_axes = self.radii[:, None] * np.array([math.sqrt(2), 1 / math.sqrt(2)])
+        aspect = math.sqrt(2) if fill.shape == "ellipses" else 1.0  # ellipses have the areas of the discs
+        self.half_axes = self.radii[:, None] * np.array([aspect, 1 / aspect])
         self.area = len(self.offsets) * math.pi * self.half_axes.prod(axis=1)
         self.mass, self.reach = fill.density * self.area, self.half_axes[:, 0] * len(self.offsets)
-        gyration = (self.half_axes**2).sum(axis=1) / 4 + (self.offsets[0]**2).sum(axis=1)
-        self.moment = self.mass * gyration
+        self.moment = self.mass * ((self.half_axes**2).sum(axis=1) / 4 + (self.offsets[0]**2).sum(axis=1))
         self.diameter = 2 * np.mean(np.sqrt(self.area / math.pi))
-        self.layers = np.arange(n) * 5 // n
-        if fill.shape == "bonded_pairs":
-            self.layers = np.repeat(self.layers, 2)
 
     def step(self):
         """The one given, else step_share of the limit of a contact of the two lightest bodies (semi-implicit)."""
@@ -121,12 +117,12 @@ class Bodies:
         for place, angle, axes, r in zip(*(array.tolist() for array in arrays)):
             body = {"ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}}
             grains.append({"position": place, "angle": angle, **body.get(self.fill.shape, {"radius": r})})
-        walls = [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [0.0, 0.0], [1.0, 0.0]),
-                 ("right", [self.fill.width, 0.0], [-1.0, 0.0])]
+        walls = {"floor": ([0.0, 0.0], [0.0, 1.0]), "left": ([0.0, 0.0], [1.0, 0.0]),
+                 "right": ([self.fill.width, 0.0], [-1.0, 0.0])}
         tables = {"grains": {"density": self.fill.density}, "grain": grains, "springs": {"kN": kN, "kT": kT},
                   "collisions": {"law": "linear_dashpot", "damping": self.fill.damping, "friction": self.fill.friction,
                                  "walls": {"friction": NUMBERS["wall friction"]}},
-                  "wall": [dict(zip(("name", "point", "normal"), wall)) for wall in walls]}
+                  "wall": [{"name": name, "point": at, "normal": normal} for name, (at, normal) in walls.items()]}
         if self.fill.shape == "ellipses":
             tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
         if self.fill.shape == "bonded_pairs":
@@ -154,10 +150,9 @@ class Moment:
         self.roughness = math.sqrt(((heights - level - self.slope * x)**2).sum() / len(x))
         self.whole = width * self.height / bodies.area[self.heap].sum() - 1
         self.centre = (bodies.mass[:, None] * self.places).sum(axis=0) / bodies.mass.sum()
-        self.centre_height = self.centre[1]
         self.inner = self.inner_void_ratio() if inner else math.nan
 
-    def parts(self, chosen):
+    def parts(self, chosen=slice(None)):
         """Centres, angles and half-axes of discs and ellipses."""
         axis = np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
         centres = [self.places + offset[:, :1] * axis for offset in self.bodies.offsets]
@@ -192,7 +187,7 @@ class Moment:
         if min(high - low) < strip:
             return math.nan
         solid, step = np.zeros(count, bool), (high - low) / count
-        for centre, angle, axes in zip(*self.parts(np.ones(len(self.heap), bool))):
+        for centre, angle, axes in zip(*self.parts()):
             first = np.clip(((centre - axes[0] - low) / step).astype(int), 0, count)
             last = np.clip(((centre + axes[0] - low) / step).astype(int) + 1, 0, count)
             if (first >= last).any():
@@ -208,9 +203,10 @@ class Moment:
 class Stage:
     """Samples of the filling or of the shaking, and the motion of grains in the box between them."""
     def __init__(self, first):
-        self.rows, self.first, self.last, self.thrown, self.slope = [], first, first, ~first.heap, abs(first.slope)
+        self.rows, self.first, self.last, self.farthest = [], first, first, first
+        self.thrown, self.slope = ~first.heap, abs(first.slope)
         self.ways = np.zeros((4, len(first.places)))  # all, along x, in the first 0.1 s, rotation
-        self.farthest = first
+        self.add(0.0, first)
 
     def add(self, t, moment):
         moved = moment.places - self.last.places
@@ -219,14 +215,14 @@ class Stage:
         self.last, self.thrown, self.slope = moment, self.thrown | ~moment.heap, max(self.slope, abs(moment.slope))
         if abs(moment.centre[0] - self.first.centre[0]) > abs(self.farthest.centre[0] - self.first.centre[0]):
             self.farthest = moment
-        self.record(t, moment)
+        grains = moment.bodies.fill.followed()[0]
+        self.rows.append({"time_s": t, "whole_void_ratio": moment.whole, "centre_x_m": moment.centre[0],
+                          "slope": moment.slope, "x_m": moment.places[grains, 0], "y_m": moment.places[grains, 1],
+                          "angle_rad": moment.angles[grains]})
 
-    def record(self, t, moment):
-        row = {"time_s": t, "whole_void_ratio": moment.whole, "centre_x_m": moment.centre[0], "slope": moment.slope}
-        for k, grain in enumerate(moment.bodies.fill.followed()[0]):
-            (x, y), angle = moment.places[grain], moment.angles[grain]
-            row.update({f"x{k}_m": x, f"y{k}_m": y, f"angle{k}_rad": angle})
-        self.rows.append(row)
+    def history(self):
+        """Columns over the samples, of nine grains each."""
+        return {key: np.array([row[key] for row in self.rows]) for key in self.rows[0]}
 
     def moved(self):
         """Means over all grains."""
@@ -244,10 +240,10 @@ class Stage:
                 "layered": (sums**2 / members).sum() / squares if squares > 0 else 0.0}
 
 
-def swing_of(rows, frequency, cycles):
+def swing_of(history, frequency, cycles):
     """Amplitude of the centre of mass along x in the box at the frequency of shaking, over its last two cycles: least
     squares with a constant."""
-    t, x = (np.array([row[name] for row in rows]) for name in ("time_s", "centre_x_m"))
+    t, x = history["time_s"], history["centre_x_m"]
     chosen = (t * frequency >= cycles - 2) & (t * frequency <= cycles)
     if chosen.sum() < 8:
         return math.nan
@@ -256,16 +252,14 @@ def swing_of(rows, frequency, cycles):
     return math.hypot(*np.linalg.lstsq(columns, x[chosen], rcond=None)[0][1:])
 
 
-def run_box(arguments):
-    """Fill the box and shake it by a cos(2 pi f t) along x. Returns the numbers, those of the filling, the histories of
-    both stages and the moments PICTURES."""
-    fill, gal, frequency, cycles = arguments
+def run_box(fill, gal, frequency, cycles):
+    """Fill the box and shake it by a cos(2 pi f t) along x: the numbers, those of the filling, the histories of both
+    stages and the moments PICTURES, as lists that JSON can hold."""
     begun, bodies = time.monotonic(), Bodies(fill)
     step, duration, a = bodies.step(), cycles / frequency, 0.01 * gal / (2 * math.pi * frequency)**2
-    shaken = {"name": "shake", "duration": duration}
-    if gal:
-        shaken["shaking"] = {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": cycles}
-    stages = [{"name": "fall", "duration": fill.fall}, shaken, {"name": "rest", "duration": REST}]
+    shaking = {"shaking": {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": cycles}} if gal else {}
+    stages = [{"name": "fall", "duration": fill.fall}, {"name": "shake", "duration": duration, **shaking},
+              {"name": "rest", "duration": REST}]
     run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],
                                                               "integrator": "velocity_verlet"})
 
@@ -275,39 +269,39 @@ def run_box(arguments):
 
     def advance(stage, end):
         zero, block = run.time, max(1, round(SAMPLE / step))
-        stage.record(0.0, stage.first)
         while run.time < end - 0.5 * step:
             run.advance(min(block, max(1, round((end - run.time) / step))))
             stage.add(run.time - zero, moment())
         return stage
 
-    falling = Stage(moment())
-    pictures = [falling.first]
-    advance(falling, fill.fall)
+    falling = advance(Stage(moment()), fill.fall)
     filled = moment(inner=True)
-    shaking = advance(Stage(filled), fill.fall + duration + REST)
+    shaken = advance(Stage(filled), fill.fall + duration + REST)
     after = moment(inner=True)
-    pictures += [filled, shaking.farthest, after]
-    contacts, energy = run.contacts, run.energy
+    contacts, energy, bonds = run.contacts, run.energy, fill.shape == "bonded_pairs"
     i, j = contacts["bodies"].T
-    bonded = (i // 2 == j // 2) & (j >= 0) if fill.shape == "bonded_pairs" else np.zeros(len(i), bool)
-    numbers = {name.format(when): getattr(moment_, member) for name, member in (
-        ("void_ratio{}", "inner"), ("whole_void_ratio{}", "whole"), ("surface_height{}_m", "height"),
-        ("roughness{}_m", "roughness"), ("centre_height{}_m", "centre_height"))
-               for when, moment_ in (("_before", filled), ("", after))}
-    grains = len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)
+    bonded = bonds & (i // 2 == j // 2) & (j >= 0)
     overlap = contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0]
+    numbers = {}
+    for when, at in (("_before", filled), ("", after)):
+        numbers.update({f"void_ratio{when}": at.inner, f"whole_void_ratio{when}": at.whole,
+                        f"surface_height{when}_m": at.height, f"roughness{when}_m": at.roughness,
+                        f"centre_height{when}_m": at.centre[1]})
     numbers.update(
-        largest_slope=shaking.slope, swing_m=swing_of(shaking.rows, frequency, cycles), thrown=shaking.thrown.sum(),
-        coordination=(1 + (j >= 0))[~bonded].sum() / grains, **shaking.moved(), bond_creep=math.nan,
-        bond_roll_rad=math.nan, largest_overlap=overlap / bodies.radii.min(), time_step_s=step,
+        largest_slope=shaken.slope, swing_m=swing_of(shaken.history(), frequency, cycles), thrown=shaken.thrown.sum(),
+        coordination=(1 + (j >= 0))[~bonded].sum() / len(bodies.mass) * (2 if bonds else 1), **shaken.moved(),
+        bond_creep=math.nan, bond_roll_rad=math.nan, largest_overlap=overlap / bodies.radii.min(), time_step_s=step,
         steps=run.step - round(fill.fall / step), time_s=run.time - fill.fall,
         energy_error=energy["error"] / abs(energy["potential"]), seconds=time.monotonic() - begun)
-    if fill.shape == "bonded_pairs":
-        apart = [np.linalg.norm(m.places[1::2] - m.places[::2], axis=1) for m in (falling.first, after)]
-        rolled = [m.angles[1::2] - m.angles[::2] for m in (falling.first, after)]
-        numbers["bond_creep"] = np.mean(np.abs(apart[1] - apart[0]) / (2 * bodies.radii[::2]))
-        numbers["bond_roll_rad"] = np.mean(np.abs(rolled[1] - rolled[0]))
+    if bonds:
+        (before, rolled), (now, rolled_now) = (
+            (np.linalg.norm(at.places[1::2] - at.places[::2], axis=1), at.angles[1::2] - at.angles[::2])
+            for at in (falling.first, after))
+        numbers["bond_creep"] = np.mean(np.abs(now - before) / (2 * bodies.radii[::2]))
+        numbers["bond_roll_rad"] = np.mean(np.abs(rolled_now - rolled))
     layers = np.tile(bodies.layers, len(bodies.offsets))
-    drawn = [(*one.parts(np.ones(len(one.heap), bool)), layers) for one in pictures]
-    return {key: float(value) for key, value in numbers.items()}, falling.moved(), falling.rows, shaking.rows, drawn
+    histories = ({key: column.tolist() for key, column in stage.history().items()} for stage in (falling, shaken))
+    return {"numbers": {key: float(value) for key, value in numbers.items()}, "filling": falling.moved(),
+            **dict(zip(("falling", "shaking"), histories)), "pictures": [
+                [part.tolist() for part in (*at.parts(), layers)]
+                for at in (falling.first, filled, shaken.farthest, after)]}

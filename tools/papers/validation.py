@@ -11,9 +11,9 @@ import time
 
 import numpy as np
 
-from common import (Output, Progress, Random, columns_of, components, counted, disc_stresses, eq, fit_line,
-                    hexagonal_moduli, machine, main, mean_of, moduli_of, moved_discs, rows_of, seeds_of, turned)
-from shown import Page, Row
+from common import (Output, Random, disc_stresses, eq, fit_line, hexagonal_moduli, main, mean_columns, mean_of,
+                    moduli_of, moved_discs, power, rows_of, seeds_of, tracked, turned, unit_motions)
+from shown import Row
 from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
 SOURCES = rows_of("validation/sources")
@@ -44,23 +44,14 @@ def stiffnesses(cell, bonds, order, kept, removed=REMAINDERS[0]):
     return np.where(there if bonds else there[cell.contacts].all(axis=1), 1.0, removed)
 
 
-def branches(cell):
-    i, j = cell.contacts.T
-    return cell.centres[j] + cell.shifts * np.array(cell.cell) - cell.centres[i]
-
-
 def share_in_removed(cell, kN):
     """Share of the remainders in the energy of the softest strain: 1 of a floppy cell, whose stiffness is proportional
     to the remainder, 0 of a rigid one."""
     result = eq.homogenize(cell, eq.Springs(kN, 0 * kN))
     scale = np.array([1, 1, math.sqrt(2)])
     softest = scale * np.linalg.eigh(np.outer(scale, scale) * np.array(result.stiffness))[1][:, 0]
-    (i, j), branch, stretch = cell.contacts.T, branches(cell), 0
-    strains = {"xx": [[1, 0], [0, 0]], "yy": [[0, 0], [0, 1]], "xy": [[0, 0.5], [0.5, 0]]}
-    for amount, (name, strain) in zip(softest, strains.items()):
-        moved = result.fluctuations[name].displacements
-        stretch += amount * ((branch @ np.array(strain) + moved[j] - moved[i]) * cell.normals).sum(axis=1)
-    energy = kN * stretch**2
+    uniform, displaced, _ = unit_motions(cell, result)
+    energy = kN * np.tensordot(softest, uniform + displaced, 1)[:, 0]**2
     return energy[kN < 1].sum() / energy.sum()
 
 
@@ -84,33 +75,29 @@ def onset(arguments):
     return rigid / len(order)
 
 
-def dilution(bonds, quick):
+def dilution(bonds, size):
     """Thresholds of rigidity, from onsets of cells of several sizes."""
     what, name = ("bonds", "bond") if bonds else ("discs", "site")
-    exponent = NUMBERS["rigidity exponent"].value
-    sizes = [(8, 48), (12, 48), (20, 32)] if quick else [(8, 400), (12, 400), (18, 300), (26, 240), (38, 160)]
-    rows, onsets = [], []
-    for side, count in sizes:
+    exponent, rows, onsets = NUMBERS["rigidity exponent"].value, [], []
+    for side, count in size.cells:
         shares = sorted(seeds_of(f"removing {what} of {side} x {side} discs:", onset, count, bonds, side))
         mean = mean_of(shares)
         rows.append(Row(side_discs=side, samples=count, mean_onset=mean.mean, standard_error=mean.standard_error,
                         standard_deviation=mean.standard_deviation))
         onsets.append(Row(side=side, shares=shares))
-    fit = fit_line(*zip(*((row.side_discs**(-1 / exponent), row.mean_onset, row.standard_error) for row in rows)))
+    fit = fit_line((row.side_discs**(-1 / exponent), row.mean_onset, row.standard_error) for row in rows)
     # Where the curves "share of cells that are rigid" of both sizes cross, both normal distributions of the onsets.
-    small, large = rows[0], rows[-1]
-    m1, m2, s1, s2 = small.mean_onset, large.mean_onset, small.standard_deviation, large.standard_deviation
-    wide = s1 - s2
-    t1, t2 = (row.standard_deviation / math.sqrt(2 * (row.samples - 1)) for row in (small, large))
-    error = math.sqrt((s2 / wide * small.standard_error)**2 + (s1 / wide * large.standard_error)**2 +
-                      (s2 * (m1 - m2) / wide**2 * t1)**2 + (s1 * (m2 - m1) / wide**2 * t2)**2)
+    (m1, e1, s1, n1), (m2, e2, s2, n2) = ((row.mean_onset, row.standard_error, row.standard_deviation, row.samples)
+                                          for row in (rows[0], rows[-1]))
+    wide, t1, t2 = s1 - s2, s1 / math.sqrt(2 * (n1 - 1)), s2 / math.sqrt(2 * (n2 - 1))
+    error = math.hypot(s2 / wide * e1, s1 / wide * e2, s2 * (m1 - m2) / wide**2 * t1, s1 * (m2 - m1) / wide**2 * t2)
     return {"exponent": exponent, "onsets": onsets, "name": name, "what": what, "fit": fit,
             "crossing": ((m2 * s1 - m1 * s2) / wide, error), "threshold": NUMBERS[name + " threshold"]}, {
                 name + "_onsets": rows}
 
 
-def site_dilution(quick):
-    return dilution(False, quick)
+def site_dilution(size):
+    return dilution(False, size)
 
 
 def effective_medium(p):
@@ -129,18 +116,16 @@ def relative_moduli(arguments):
     return diluted.bulk_modulus_2d / full.bulk_modulus_2d, diluted.shear_modulus / full.shear_modulus
 
 
-def bond_dilution(quick):
-    found, tables = dilution(True, quick)
-    side, count = (16, 8) if quick else (48, 24)
+def bond_dilution(size):
+    found, tables = dilution(True, size)
     rows = tables["bond_moduli"] = []
-    for p in [0.98, 0.94, 0.9, 0.8, 0.7] if quick else [0.98, 0.96, 0.94, 0.9, 0.85, 0.8, 0.75, 0.7, 0.68, 0.66]:
-        samples = seeds_of(f"moduli at p = {p:g}:", relative_moduli, count, side, p)
-        (K, K_error), (G, G_error) = (estimate(mean_of(own)) for own in zip(*samples))
-        rows.append(Row(p=p, K_over_full=K, K_standard_error=K_error, G_over_full=G, G_standard_error=G_error,
-                        effective_medium=effective_medium(p)))
-    found["slopes"] = [fit_line(*zip(*(
+    for p in size.shares:
+        K, G = map(mean_of, zip(*seeds_of(f"moduli at p = {p:g}:", relative_moduli, size.count, size.side, p)))
+        rows.append(Row(p=p, K_over_full=K.mean, K_standard_error=K.standard_error, G_over_full=G.mean,
+                        G_standard_error=G.standard_error, effective_medium=effective_medium(p)))
+    found["slopes"] = [fit_line(
         (1 - row.p, (1 - row[name + "_over_full"]) / (1 - row.p), row[name + "_standard_error"] / (1 - row.p))
-        for row in rows if row.p >= 0.9))) for name in "KG"]
+        for row in rows if row.p >= 0.9) for name in "KG"]
     return found, tables
 
 
@@ -155,26 +140,22 @@ def coverage_after(arguments):
     return len(packing.assembly) * disc / (side * side)
 
 
-def adsorption(quick):
-    side, count = (40.0, 8) if quick else (80.0, 24)
-    times = [4, 8, 16, 32, 64, 128, 256] + ([] if quick else [512])
-    coverage = [seeds_of(f"adsorbing until t = {t}:", coverage_after, count, t, side) for t in times]
+def adsorption(size):
+    times = size.times
+    coverage = [seeds_of(f"adsorbing until t = {t}:", coverage_after, size.count, t, size.side) for t in times]
     # The coverages of one sample at several times are correlated: a line through those of each sample, then the mean.
     roots, late = [1 / math.sqrt(t) for t in times], list(zip(*coverage[-4:]))
-    limit = mean_of([fit_line(roots[-4:], sample, [1] * 4).intercept for sample in late])
+    limit = mean_of(fit_line(zip(roots[-4:], sample, [1] * 4)).intercept for sample in late)
     # theta(4t) - theta(t) falls as t^a: a from two such differences a factor of two in t apart.
-    exponent = mean_of([math.log2((d - b) / (c - a)) for a, b, c, d in late])
-    rows = []
-    for t, samples in zip(times, coverage):
-        mean, error = estimate(mean_of(samples))
-        rows.append(Row(t=t, coverage=mean, standard_error=error))
+    exponent = mean_of(math.log2((d - b) / (c - a)) for a, b, c, d in late)
+    means = map(mean_of, coverage)
+    rows = [Row(t=t, coverage=mean.mean, standard_error=mean.standard_error) for t, mean in zip(times, means)]
     slope = (rows[-1].coverage - limit.mean) / roots[-1]
-    return {"side": side, "count": count, "first": times[-4], "last": times[-1], "limit": limit, "slope": slope,
-            "exponent": exponent}, {"adsorption": rows}
+    return {"first": times[-4], "last": times[-1], "limit": limit, "slope": slope, "exponent": exponent}, {
+        "adsorption": rows}
 
 
 JAMMING_OVERLAP = 1e-7  # mean, of the mean radius
-JAMMED = ("solid_fraction", "z_without_rattlers", "contacts_beyond_isostatic", "share_of_rattlers")
 
 
 def jam(arguments):
@@ -188,33 +169,24 @@ def jam(arguments):
     except eq.ComputationFailed:
         return None
     held, z = discs - packing.rattlers, packing.coordination_number_without_rattlers
-    return packing.solid_fraction, z, 0.5 * z * held - (2 * held - 1), packing.rattlers / discs
+    return {"solid_fraction": packing.solid_fraction, "z_without_rattlers": z,
+            "contacts_beyond_isostatic": 0.5 * z * held - (2 * held - 1), "share_of_rattlers": packing.rattlers / discs}
 
 
-def mean_columns(names, samples):
-    """Means and standard errors of samples, each a tuple of numbers, as columns of a row."""
-    means = [mean_of(own) for own in zip(*samples)]
-    return {key: value for name, mean in zip(names, means)
-            for key, value in ((name, mean.mean), (name + "_standard_error", mean.standard_error))}
-
-
-def line_of(rows, name, x):
-    """Through the means of that name."""
-    return fit_line(*zip(*((x(row), row[name], row[name + "_standard_error"]) for row in rows)))
-
-
-def jamming(quick):
+def jamming(size):
     # Excess of z at that overlap: 3.6 (phi - phi_J)^(1/2) (O'Hern et al. 2003), phi - phi_J about the overlap.
     nu, excess = NUMBERS["jamming exponent"].value, NUMBERS["excess coordination"].value * math.sqrt(JAMMING_OVERLAP)
-    sizes = [(64, 60), (128, 40), (256, 16)] if quick else [(64, 400), (128, 300), (256, 200), (512, 80), (1024, 30)]
     rows, refused = [], 0
-    for n, count in sizes:
+    for n, count in size.cells:
         samples = seeds_of(f"jamming {n} discs:", jam, count, n)
-        rows.append(Row(discs=n, samples=count, **mean_columns(JAMMED, [one for one in samples if one])))
+        rows.append(Row(discs=n, samples=count, **mean_columns([one for one in samples if one])))
         refused += samples.count(None)
+
+    def line_of(name, x):
+        return fit_line((x(row.discs), row[name], row[name + "_standard_error"]) for row in rows)
     return {"overlap": JAMMING_OVERLAP, "exponent": nu, "excess": excess, "refused": refused,
-            "line": line_of(rows, "solid_fraction", lambda row: row.discs**(-0.5 / nu)),
-            "z": line_of(rows, "z_without_rattlers", lambda row: 1 / row.discs)}, {"jamming": rows}
+            "line": line_of("solid_fraction", lambda n: n**(-0.5 / nu)),
+            "z": line_of("z_without_rattlers", lambda n: 1 / n)}, {"jamming": rows}
 
 
 def settled(arguments):
@@ -227,28 +199,27 @@ def settled(arguments):
     return packing.coordination_number_without_rattlers, math.sqrt(packing.largest_overlap)
 
 
-def friction(quick):
-    discs, count, soft, decades = (150, 2, 1e7, 1) if quick else (500, 4, 1e7, 2)
+def friction(size):
+    soft = 1e7
 
     def settle(mu, stiffness, damping=1.0):
-        found = seeds_of(f"settling with friction {mu:g}, kN = {1e-6 * stiffness:g} MPa:", settled, count, mu,
-                         stiffness, discs, damping)
+        found = seeds_of(f"settling with friction {mu:g}, kN = {1e-6 * stiffness:g} MPa:", settled, size.count,
+                         mu, stiffness, size.discs, damping)
         z, depth = (mean_of(own) for own in zip(*found))
         return Row(friction=mu, kN_Pa=stiffness, z_without_rattlers=z.mean, standard_error=z.standard_error,
                    root_of_largest_overlap=depth.mean)
 
-    over_friction = [settle(mu, soft) for mu in ([0, 0.3, 10] if quick else [0, 0.1, 0.3, 1, 10])]
-    over_stiffness = [over_friction[-1]] + [settle(10, soft * 10**k) for k in range(1, decades + 1)]
-    line = fit_line(*zip(*((row.root_of_largest_overlap, row.z_without_rattlers, row.standard_error)
-                           for row in over_stiffness)))
+    over_friction = [settle(mu, soft) for mu in size.coefficients]
+    over_stiffness = [over_friction[-1]] + [settle(10, soft * 10**k) for k in range(1, size.decades + 1)]
+    line = fit_line((row.root_of_largest_overlap, row.z_without_rattlers, row.standard_error)
+                    for row in over_stiffness)
     z = [row.z_without_rattlers for row in over_friction]
     falls = all(b.z_without_rattlers < a.z_without_rattlers + 2.6 * math.hypot(a.standard_error, b.standard_error)
                 for a, b in zip(over_friction, over_friction[1:]))
     braked = [(damping, over_stiffness[1] if damping == 1 else settle(10, 10 * soft, damping))
-              for damping in ((0.1, 1.0) if quick else (0.1, 0.3, 1.0, 3.0))]
-    return {"discs": discs, "count": count, "line": line, "stiffer": over_stiffness, "over_friction": over_friction,
-            "falls": falls and 3 < z[-1] < 3.25 and z[0] > 3.75, "braked": braked}, {
-                "friction": over_friction + over_stiffness[1:]}
+              for damping in size.dampings]
+    return {"line": line, "stiffer": over_stiffness, "over_friction": over_friction, "braked": braked,
+            "falls": falls and 3 < z[-1] < 3.25 and z[0] > 3.75}, {"friction": over_friction + over_stiffness[1:]}
 
 
 def shown_z(row):
@@ -308,65 +279,55 @@ def loaded_block(depth, kT):
         displacement_difference=root((((motions[ring] - displacement(places[ring])) * young)**2).sum(axis=1)))
 
 
-def point_load(quick):
-    progress, rows = Progress("a point load:"), []
-    depths = [12, 24, 48] if quick else [16, 32, 64, 128, 256]
-    for ratio in (0.0, 0.5):
-        for depth in depths:
-            rows.append(loaded_block(depth, ratio))
-            progress.update(len(rows) / (2 * len(depths)))
-    progress.end()
-    orders = []
-    for blocks in (rows[:len(depths)], rows[len(depths):]):
+def point_load(size):
+    places = [(depth, ratio) for ratio in (0.0, 0.5) for depth in size.depths]
+    rows, orders = [loaded_block(*place) for place in tracked("a point load:", places)], []
+    lattices = rows[:len(size.depths)], rows[len(size.depths):]
+    for blocks in lattices:
         for what in ("stress", "displacement"):
             errors = [block[what + "_difference"] for block in blocks]
-            order = [math.log(a / b) / math.log(y / x) for a, b, x, y in zip(errors, errors[1:], depths, depths[1:])]
-            orders.append(Row(ratio=blocks[0].kT_over_kN, what=what, first=errors[0], last=errors[-1], order=order[-1],
-                              change=abs(order[-1] - order[-2])))
+            order, before = -power(size.depths, errors), -power(size.depths[:-1], errors[:-1])
+            orders.append(Row(ratio=blocks[0].kT_over_kN, what=what, first=errors[0], last=errors[-1], order=order,
+                              change=abs(order - before)))
     kept = ("kT_over_kN", "rows", "stress_difference", "other_stresses", "displacement_difference")
-    return {"orders": orders, "depth": depths[-1], "finest": [rows[k - 2:k] for k in (len(depths), len(rows))]}, {
+    return {"orders": orders, "depth": size.depths[-1], "finest": [blocks[-2:] for blocks in lattices]}, {
         "point_load": [Row({key: row[key] for key in kept}) for row in rows]}
 
 
 # ---- moduli of packings
 
 RATIOS = (0.05, 0.25, 0.5, 1)
-MODULI = ("z_without_rattlers", "K_over_kN", "G_over_kN", "K_over_uniform_strain", "G_over_uniform_strain",
-          "slip_by_displacements", "slip_by_rotations")
 
 
 def packed_moduli(arguments):
-    """The numbers MODULI of a packing for each kT/kN."""
+    """The numbers of a packing for each kT/kN."""
     discs, overlap, seed = arguments
     radii = 0.4 + 0.3 * np.arange(discs) / discs
     side = math.sqrt(sum(math.pi * r * r for r in radii) / 0.85)
     packing = eq.pack_discs(radii, (side, side), overlap=overlap, seed=seed)
     network, found = packing.assembly, []
-    (i, j), (x, y) = network.contacts.T, branches(network).T
-    # Of the branch in the unit strains xx, yy, xy, along normals and tangents.
-    normal, tangential = (np.stack([a * x, b * y, 0.5 * (a * y + b * x)], axis=1)
-                          for a, b in (network.normals.T, turned(network.normals).T))
     for ratio in RATIOS:
         exact = eq.homogenize(network, eq.Springs(1.0, float(ratio)))
-        K, G, _ = moduli_of((normal.T @ normal + ratio * tangential.T @ tangential) / network.area)
+        uniform, displaced, rolled = unit_motions(network, exact)
+        K, G, _ = moduli_of(np.einsum("ikc,jkc,c->ij", uniform, uniform, (1, ratio)) / network.area)
         # Slip of the contacts under the unit shear strain: that of uniform strain, and what displacements and rotations
         # of the discs add to it, each summed with the uniform one and over its square.
-        slip, moved = tangential[:, 2], exact.fluctuations.xy
-        displaced = components(moved.displacements[j] - moved.displacements[i], network.normals)[:, 1]
-        rolled = -(network.levers[:, 0] * moved.rotations[i] + network.levers[:, 1] * moved.rotations[j])
-        found.append((packing.coordination_number_without_rattlers, exact.bulk_modulus_2d, exact.shear_modulus,
-                      exact.bulk_modulus_2d / K, exact.shear_modulus / G, slip @ displaced / (slip @ slip),
-                      slip @ rolled / (slip @ slip)))
+        slip, displaced, rolled = (motions[2, :, 1] for motions in (uniform, displaced, rolled))
+        found.append({"z_without_rattlers": packing.coordination_number_without_rattlers,
+                      "K_over_kN": exact.bulk_modulus_2d, "G_over_kN": exact.shear_modulus,
+                      "K_over_uniform_strain": exact.bulk_modulus_2d / K,
+                      "G_over_uniform_strain": exact.shear_modulus / G,
+                      "slip_by_displacements": slip @ displaced / (slip @ slip),
+                      "slip_by_rotations": slip @ rolled / (slip @ slip)})
     return found
 
 
-def disc_moduli(quick):
-    discs, count, overlaps = (150, 4, [1e-4, 5e-3, 0.04]) if quick else (800, 12, [1e-5, 1e-3, 5e-3, 0.02, 0.05])
+def disc_moduli(size):
     rows = []
-    for overlap in overlaps:
-        found = seeds_of(f"packings of overlap {overlap:g}:", packed_moduli, count, discs, overlap)
-        rows += [Row(kT_over_kN=ratio, **mean_columns(MODULI, own)) for ratio, own in zip(RATIOS, zip(*found))]
-    return {"discs": discs, "least": overlaps[0], "most": overlaps[-1], "count": count}, {"disc_moduli": rows}
+    for overlap in size.overlaps:
+        found = seeds_of(f"packings of overlap {overlap:g}:", packed_moduli, size.count, size.discs, overlap)
+        rows += [Row(kT_over_kN=ratio, **mean_columns(own)) for ratio, own in zip(RATIOS, zip(*found))]
+    return {"least": size.overlaps[0], "most": size.overlaps[-1]}, {"disc_moduli": rows}
 
 
 def grows(rows, key):
@@ -415,11 +376,11 @@ def decided(page, told, names):
                holds=bool(page.value(told["holds"], names)), evidence=page.fill(told["evidence"], names))
 
 
-def section(page, name, quick):
+def section(page, name, size):
     """What an item found, and what its entry in validation.toml says of that."""
     begun, told = time.monotonic(), page.told[name]
-    values, tables = ITEMS[name](quick)
-    names = {**values, **tables}
+    values, tables = ITEMS[name](size)
+    names = {**size, **values, **tables}
     comparisons, trends = ([judge(page, *leaf) for leaf in page.leaves({"parts": told.get(kind, [])}, names)]
                            for kind, judge in (("comparisons", judged), ("trends", decided)))
     stored = [row for row in STORED if row.item == name]
@@ -431,22 +392,20 @@ def section(page, name, quick):
                seconds=time.monotonic() - begun)
 
 
-def reproduce(options):
+def reproduce(options, page):
     def command(only=""):
         return f"tools/papers/validation.py{only}{' --quick' if options.quick else ''} --out DIR"
-    page = Page("validation", globals(), {"command": command})
-    page.names["sections"] = sections = [section(page, name, options.quick) for name in options.only]
-    tables = {f"{name}_values": columns_of(rows) for one in sections for name, rows in one.tables.items()}
-    tables["comparisons"] = columns_of([{"item": one.name, **row} for one in sections for row in one.comparisons])
-    del tables["comparisons"]["agrees"]
+    sections = [section(page, name, Row(options.size.get(name, {}))) for name in options.only]
+    tables = {f"{name}_values": rows for one in sections for name, rows in one.tables.items()}
+    tables["comparisons"] = [{"item": one.name, **{key: row[key] for key in row if key != "agrees"}}
+                             for one in sections for row in one.comparisons]
     items = [{"item": one.name, **{key: one[key] for key in ("seconds", "comparisons", "trends", "stored")}}
              for one in sections]
-    return Output(page.lines("report", sections), {"quick": options.quick, "items": items}, tables,
-                  {name: plot for one in sections for name, plot in one.plots.items()},
-                  {"validation.md": page.text("page")})
+    return Output({"sections": sections, "command": command}, {"items": items}, tables,
+                  plots={name: plot for one in sections for name, plot in one.plots.items()})
 
 
 if __name__ == "__main__":
-    main("validation", __doc__, reproduce, lambda parser: parser.add_argument(
+    main(reproduce, lambda parser: parser.add_argument(
         "--only", choices=ITEMS, nargs="+", default=list(ITEMS), metavar="ITEM",
         help="items to compute, of " + ", ".join(ITEMS)))

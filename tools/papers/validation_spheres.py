@@ -5,7 +5,7 @@ import tomllib
 
 import numpy as np
 
-from common import DATA, Progress, eq, published, rows_of
+from common import DATA, eq, published, rows_of, tracked
 from shown import Row
 
 MATERIALS = {row.name: Row(young=float(row.young_Pa), poisson=float(row.poisson), density=float(row.density_kg_per_m3))
@@ -144,22 +144,20 @@ def force_rows(material):
     return rows, [Row(time=0.5e6 * duration, force=1e-3 * largest), Row(time=1e6 * duration, force=0)]
 
 
-def impacts(quick):
-    progress, floor, found = Progress("eight impacts:"), impact_on_floor, {"elastic": [], "restitutions": []}
+def impacts(size):
+    floor, found, surface = impact_on_floor, {"elastic": [], "restitutions": []}, OBLIQUE.mu * OBLIQUE.normal
     for material in ("glass", "limestone"):
         found["elastic"] += elastic(f"test 1, {material}", meeting_spheres(material), 20)
     for material in ("aluminium alloy", "magnesium alloy"):
         found["elastic"] += elastic(f"test 2, {material}", floor(material, 0.1, 0.2)[0], 0.2)
-    progress.update(0.3)
     for material, e in zip(("aluminium oxide", "cast iron", "aluminium oxide", "cast iron", "aluminium oxide"),
                            (0.2, 0.4, 0.6, 0.8, 1.0)):
         for name, hertz in (("Hertz", True), ("linear", False)):
             scene, duration = floor(material, 0.0025, 3.9, restitution=e, hertz=hertz)
             ours, = scene.measured(duration, lambda c: (c.velocities[0, 1] / 3.9,))
             found["restitutions"].append(Row(name=f"{material}, {name}", theory=e, ours=ours))
-    progress.update(0.6)
-    scene, duration = oblique(2 * OBLIQUE.mu * OBLIQUE.normal, hertz=False)
-    found["stuck"], = scene.measured(duration, lambda c: (surface_after(c) / (2 * OBLIQUE.mu * OBLIQUE.normal),))
+    scene, duration = oblique(2 * surface, hertz=False)
+    found["stuck"], = scene.measured(duration, lambda c: (surface_after(c) / (2 * surface),))
     # Test 7: equal spheres that spin against each other do not slip, and nothing acts across the contact.
     stiffness = hertz_stiffness("aluminium alloy of test 6", 0.05, True)
     contact = {"stiffness": stiffness, "restitution": 0.5, "friction": 0.4, "tangential_ratio": 2 / 7}
@@ -169,14 +167,13 @@ def impacts(quick):
                                                     lambda c: (c.spins[0], c.velocities[0, 1]))
     found["forces"] = {material: force_rows(material) for material in ("glass", "limestone")}
     rows = []
-    for before in np.arange(0.5, 14.01, 1.5 if quick else 0.5) * OBLIQUE.mu * OBLIQUE.normal:
-        row = Row(surface_before=before / (OBLIQUE.mu * OBLIQUE.normal))
+    for before in tracked("oblique impacts:", np.arange(0.5, 14.01, size.apart) * surface):
+        row = Row(surface_before=before / surface)
         for name, hertz in (("hertz", True), ("linear", False)):
             scene, duration = oblique(before, hertz)
             after = scene.collide(duration / STEPS_PER_CONTACT)
             row["surface_after_" + name] = surface_after(after) / (OBLIQUE.mu * after.velocities[0, 1])
         rows.append(row)
-    progress.end()
     found["slides"] = [abs(row.surface_after_hertz - (row.surface_before - 7)) < 1e-3 for row in rows]
     found["first"] = rows[found["slides"].index(True)].surface_before
     return found, {"impacts_oblique": rows}
@@ -255,20 +252,17 @@ def replayed(name, step, steps):
     return run
 
 
-def lammps(_quick):
-    progress, readings = Progress("programs of LAMMPS:"), []
-    for row in rows_of("validation/readings"):
+def lammps(_size):
+    readings = []
+    for row in tracked("programs of LAMMPS:", rows_of("validation/readings")):
         numbers = getattr(replayed(row.system, float(row.step_s), int(row.steps)), row.quantity)[int(row.body)]
         ours = float(row.sign) * (numbers if row.quantity == "spins" else numbers["xy".index(row.axis)])
         readings.append(Row(name=row.name, ours=ours, why=row.why))
-        progress.update(0.05 * len(readings))
     # The closed form of a program whose recorded numbers could not be had, with numbers of our own.
     wall = Scene([sphere(0.0025, 2700, (0, 0.0025), (0, -2.0))], "linear_dashpot",
                  {"stiffness": 1e10, "restitution": 0.7}, [FLOOR])
     duration = math.pi * math.sqrt(wall.reduced_mass / 1e10)
-    found = {"readings": readings, "apart": max(map(abs, differences_by_their_rules())),
-             "fall": step_error(*(replayed("alone", step, steps).positions[0, 1]
-                                  for step, steps in ((1e-4, 1000), (5e-5, 2000)))),
-             "wall": step_error(*(wall.collide(share * duration).velocities[0, 1] for share in (1e-3, 5e-4, 2.5e-4)))}
-    progress.end()
-    return found, {}
+    return {"readings": readings, "apart": max(map(abs, differences_by_their_rules())),
+            "fall": step_error(*(replayed("alone", step, steps).positions[0, 1]
+                                 for step, steps in ((1e-4, 1000), (5e-5, 2000)))),
+            "wall": wall.measured(duration, lambda c: (c.velocities[0, 1],))[0]}, {}
