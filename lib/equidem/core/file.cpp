@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -171,30 +172,38 @@ void check_writable(const fs::path& path, bool overwrite) {
 }
 
 void write_file(const fs::path& path, std::string_view content, bool overwrite) {
+  write_file(
+      path, [&](const TextSink& to) { to(content); }, overwrite);
+}
+
+void write_file(const fs::path& path, const std::function<void(const TextSink&)>& make, bool overwrite) {
   check_writable(path, overwrite);
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
   if (failed) cannot_write(path, failed.value());
-  const auto write_to = [&](const fs::path& place) {
-    errno = 0;
-    std::ofstream file(place, std::ios::binary | std::ios::trunc);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    return file ? 0 : errno == 0 ? EIO : errno;
+  const bool kept = is_kept(path);
+  const fs::path place = kept ? path : fs::path(path.string() + temporary_suffix());
+  const auto remove = [&](const fs::path* unfinished) {
+    std::error_code ignored;
+    fs::remove(*unfinished, ignored);
   };
-  if (is_kept(path)) {
-    if (const int error = write_to(path); error != 0) cannot_write(path, error);
-    return;
-  }
-  const fs::path temporary = path.string() + temporary_suffix();
-  int error = write_to(temporary);
-  if (error == 0) {
-    fs::rename(temporary, path, failed);
-    error = failed.value();
-  }
-  if (error == 0) return;
-  fs::remove(temporary, failed);
-  cannot_write(path, error);
+  const std::unique_ptr<const fs::path, decltype(remove)> unfinished(kept ? nullptr : &place, remove);
+  errno = 0;
+  std::ofstream file(place, std::ios::binary | std::ios::trunc);
+  const auto check = [&] {
+    if (!file) cannot_write(path, errno == 0 ? EIO : errno);
+  };
+  check();
+  make([&](std::string_view part) {
+    errno = 0;
+    file.write(part.data(), static_cast<std::streamsize>(part.size()));
+    check();
+  });
+  errno = 0;
+  file.close();
+  check();
+  if (!kept) fs::rename(place, path, failed);
+  if (failed) cannot_write(path, failed.value());
 }
 
 void remove_abandoned_files(const fs::path& folder) {

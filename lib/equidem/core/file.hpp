@@ -4,7 +4,9 @@
 /// Lock of a folder against other processes.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,18 @@ std::string read_file(const std::filesystem::path& path);
 /// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the
 ///         reason); (computation_failed) where the disk is full or fails
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);
+
+/// Takes a text part by part.
+using TextSink = std::function<void(std::string_view part)>;
+/// The same for a content that is made while it is written, so that it is never whole in memory.
+/// \param make passes the parts on in their order; what it throws leaves the file as it was
+void write_file(const std::filesystem::path& path, const std::function<void(const TextSink&)>& make, bool overwrite);
+/// Passes on and clears a text that has grown to a block.
+inline void pass_block(std::string& text, const TextSink& to, std::size_t block = 1 << 16) {
+  if (text.size() < block) return;
+  to(text);
+  text.clear();
+}
 
 /// Remove the temporary files that processes which have ended since, killed in the middle of write_file, left in a
 /// folder (not below it).

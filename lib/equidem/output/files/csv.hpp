@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "equidem/core/checksum.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/checkpoint.hpp"
@@ -28,13 +29,19 @@ namespace equidem {
 /// The text of a table, row by row. Every row must have as many cells as there are columns.
 class CsvText {
  public:
-  explicit CsvText(const std::vector<std::string>& columns, std::size_t expected_rows = 0);
+  explicit CsvText(const std::vector<std::string>& columns);
 
   void cell(double value);  ///< "nan", "inf" and "-inf" where not finite
   void cell(std::int64_t value);
   void cell(std::string_view value);  ///< quoted where it holds a comma, a quote or a line break
+  template <class Value>
+  void cell(const std::optional<Value>& value) {
+    value ? cell(*value) : empty_cell();
+  }
   void empty_cell() { separate(); }
   void end_row();
+  /// Passes on what has come together, where it is a block, or all.
+  void pass_on(const TextSink& to, bool all) { pass_block(text_, to, all ? 0 : std::size_t{1} << 16); }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
@@ -53,7 +60,7 @@ class Table {
                               std::vector<std::optional<double>>, std::vector<std::optional<std::int64_t>>>;
   struct Column {
     std::string name;
-    Values values;
+    std::function<void(CsvText&, std::size_t row)> cell;
   };
 
   /// Add a column to the right of the others.
@@ -62,20 +69,33 @@ class Table {
   /// Add a column of the projection of each element of a range, a member or a function of the element.
   template <std::ranges::input_range Range, class Projection>
   Table& add(std::string name, const Range& range, const Projection& projection) {
-    using Cell =
-        std::remove_cvref_t<std::invoke_result_t<const Projection&, std::ranges::range_reference_t<const Range>>>;
-    using Stored = std::conditional_t<std::integral<Cell>, std::int64_t, Cell>;
-    std::vector<Stored> cells;
-    for (const auto& element : range) cells.push_back(static_cast<Stored>(std::invoke(projection, element)));
+    std::vector<Stored<Range, Projection>> cells;
+    for (const auto& element : range)
+      cells.push_back(static_cast<Stored<Range, Projection>>(std::invoke(projection, element)));
     return add(std::move(name), Values(std::move(cells)));
   }
+  /// The same without a copy: the range and what the projection refers to outlive the table.
+  template <std::ranges::random_access_range Range, class Projection>
+  Table& view(std::string name, const Range& range, const Projection& projection) {
+    return add(std::move(name), std::ranges::size(range), [&range, projection](CsvText& text, std::size_t row) {
+      text.cell(static_cast<Stored<Range, Projection>>(std::invoke(projection, range[row])));
+    });
+  }
 
-  [[nodiscard]] std::size_t rows() const;
+  [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  void write(const TextSink& to) const;
   [[nodiscard]] std::string csv() const;
 
  private:
+  template <class Range, class Projection>
+  using Cell = std::remove_cvref_t<std::invoke_result_t<const Projection&, std::ranges::range_reference_t<const Range>>>;
+  template <class Range, class Projection>
+  using Stored = std::conditional_t<std::integral<Cell<Range, Projection>>, std::int64_t, Cell<Range, Projection>>;
+  Table& add(std::string name, std::size_t rows, std::function<void(CsvText&, std::size_t row)> cell);
+
   std::vector<Column> columns_;
+  std::size_t rows_ = 0;
 };
 
 /// \throws Error (bad_input) as write_file does

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
@@ -39,9 +38,14 @@ std::string_view between(std::string_view text, std::string_view begin, std::str
 }
 
 /// A file that is there as a whole or not at all. \throws Error (computation_failed) where the disk is full
-void replace_file(const std::filesystem::path& path, std::string_view text) {
+void replace_file(const std::filesystem::path& path, const std::function<void(const TextSink&)>& make) {
   Replacement replacement(path);
-  OpenFile(replacement.path(), OpenFile::Mode::create).write_at(0, std::as_bytes(std::span(text)));
+  OpenFile file(replacement.path(), OpenFile::Mode::create);
+  std::uint64_t end = 0;
+  make([&](std::string_view part) {
+    file.write_at(end, std::as_bytes(std::span(part)));
+    end += part.size();
+  });
   replacement.commit();
 }
 
@@ -66,8 +70,8 @@ MovingDiscs discs_there(std::size_t count, std::span<const FramePart> parts, std
   return shown;
 }
 
-std::string frame_discs_text(const Assembly& assembly, const FrameOptions& options, double time,
-                             const MovingDiscs& shown) {
+void write_frame_discs(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
+                       const MovingDiscs& shown) {
   const std::vector<std::size_t>& discs = shown.discs;
   PolyData data(discs.size(), discs.size(), 0);
   data.point_numbers("radius", [&](std::size_t k) { return assembly.radii[discs[k]]; });
@@ -80,15 +84,15 @@ std::string frame_discs_text(const Assembly& assembly, const FrameOptions& optio
   data.point_vectors("velocity", [&](std::size_t k) { return shown.velocities[k].u; });
   data.point_numbers("spin", [&](std::size_t k) { return shown.velocities[k].theta; });
   data.places([&](std::size_t k) { return options.travelling ? shown.motions[k].u : assembly.centres[discs[k]]; });
-  return data.text(&time);
+  data.write(to, &time);
 }
 
 /// The contacts of the bodies, which are the discs where none has parts.
-std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& options, double time,
-                                std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
+void write_frame_contacts(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
+                          std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
   const ContactLoads loads{.forces = true, .moments = options.moments};
   if (!options.travelling)
-    return contacts_text({.places = assembly.centres, .motions = motions}, contacts, loads, &time);
+    return write_contacts(to, {.places = assembly.centres, .motions = motions}, contacts, loads, &time);
   std::vector<Vec2> places;
   std::vector<std::size_t> numbers;
   for (std::size_t body = 0; body < motions.size(); ++body) {
@@ -97,7 +101,7 @@ std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& op
     numbers.push_back(body);
   }
   if (places.size() == motions.size()) numbers.clear();
-  return contacts_text({.places = places, .numbers = numbers}, contacts, loads, &time);
+  write_contacts(to, {.places = places, .numbers = numbers}, contacts, loads, &time);
 }
 
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
@@ -135,11 +139,12 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
 void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities, std::span<const BodyContact> contacts, bool regular) {
   assert(step > last_step());
-  write(
-      file_name(discs_stem, step),
-      frame_discs_text(assembly_, options_, time, discs_there(assembly_.size(), options_.parts, motions, velocities)));
+  const MovingDiscs shown = discs_there(assembly_.size(), options_.parts, motions, velocities);
+  write(file_name(discs_stem, step),
+        [&](const TextSink& to) { write_frame_discs(to, assembly_, options_, time, shown); });
   if (options_.contacts)
-    write(file_name(contacts_stem, step), frame_contacts_text(assembly_, options_, time, motions, contacts));
+    write(file_name(contacts_stem, step),
+          [&](const TextSink& to) { write_frame_contacts(to, assembly_, options_, time, motions, contacts); });
   list_frame(step, fmt::format("{}", time));
   if (regular) marked_ = {marked_.name, steps_.size(), sum_.value()};
   if (steps_.size() % (1 + steps_.size() / 200) == 0) write_index();
@@ -212,9 +217,13 @@ void FrameWriter::go_on(const FileMark& mark) {
   marked_ = mark;
 }
 
-void FrameWriter::write(const std::string& name, const std::string& text) {
-  replace_file(folder_ / name, text);
-  sum_.add(std::as_bytes(std::span(text)));
+void FrameWriter::write(const std::string& name, const std::function<void(const TextSink&)>& make) {
+  replace_file(folder_ / name, [&](const TextSink& to) {
+    make([&](std::string_view part) {
+      to(part);
+      sum_.add(std::as_bytes(std::span(part)));
+    });
+  });
   unsynced_.push_back(folder_ / name);
 }
 
@@ -231,7 +240,7 @@ void FrameWriter::list_frame(std::int64_t step, const std::string& time) {
 }
 
 void FrameWriter::write_index() const {
-  replace_file(folder_ / (name_ + ".pvd"), list_head + index_ + list_tail);
+  replace_file(folder_ / (name_ + ".pvd"), [&](const TextSink& to) { to(list_head + index_ + list_tail); });
 }
 
 Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,
