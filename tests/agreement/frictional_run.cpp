@@ -34,7 +34,7 @@ struct FrictionalLevel {
 };
 
 FrictionalLevel level_of(const HeldDiscs& held, const Push& load, const std::vector<double>& legs,
-                      const SlowGrains::Forces& moved) {
+                         const SlowGrains::Forces& moved) {
   LoadPathOptions path;
   path.supports = {{"walls", 0, 0, 0}, {"lid", load.lid.x, load.lid.y, 0}};
   path.control = load.lid == Vec2{} ? LoadControl::load : LoadControl::motion;
@@ -107,7 +107,7 @@ struct CrackedBlock {
 
 /// Both go to the levels one after another, from where the motion is.
 std::vector<FrictionalLevel> follow(SlowGrains& slow, const HeldDiscs& held, const Push& load,
-                                 std::span<const double> to) {
+                                    std::span<const double> to) {
   const Push from = slow.at();
   std::vector<double> legs;
   std::vector<FrictionalLevel> levels;

@@ -72,7 +72,8 @@ TEST_CASE("discs_without_a_bond_and_without_a_force_open_or_close_at_once") {
     CAPTURE(strain, told(scene.run()));
     CHECK(std::ranges::count(status, ContactStatus::open) == (strain > 0 ? std::ssize(status) : 0));
     CHECK(std::abs(scene.run().leg_points().back().load) > (strain > 0 ? -1.0 : 1.0));
-    table.note(strain > 0 ? "quasistatic, frictional, pulled from all sides" : "quasistatic, frictional, pressed from all sides",
+    table.note(strain > 0 ? "quasistatic, frictional, pulled from all sides"
+                          : "quasistatic, frictional, pressed from all sides",
                strain > 0 ? "all open, no load" : "no contact opens", told(scene.run()));
   }
 }

@@ -31,7 +31,7 @@ struct EnumNames<BondLength> {
 
 /// The behaviour of a contact without a bond.
 enum class AfterBreaking {
-  gone,  ///< it carries nothing
+  gone,        ///< it carries nothing
   frictional,  ///< it opens, closes, sticks and slips
 };
 

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -171,6 +170,19 @@ void check_writable(const fs::path& path, bool overwrite) {
   fs::remove(trial, ignored);
 }
 
+Replacement::Replacement(fs::path path) : path_(std::move(path)), part_(path_.string() + temporary_suffix()) {}
+
+Replacement::~Replacement() {
+  std::error_code ignored;
+  fs::remove(part_, ignored);
+}
+
+void Replacement::commit() {
+  std::error_code failed;
+  fs::rename(part_, path_, failed);
+  if (failed) cannot_write(path_, failed.value());
+}
+
 void write_file(const fs::path& path, std::string_view content, bool overwrite) {
   write_file(
       path, [&](const TextSink& to) { to(content); }, overwrite);
@@ -181,15 +193,10 @@ void write_file(const fs::path& path, const std::function<void(const TextSink&)>
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
   if (failed) cannot_write(path, failed.value());
-  const bool kept = is_kept(path);
-  const fs::path place = kept ? path : fs::path(path.string() + temporary_suffix());
-  const auto remove = [&](const fs::path* unfinished) {
-    std::error_code ignored;
-    fs::remove(*unfinished, ignored);
-  };
-  const std::unique_ptr<const fs::path, decltype(remove)> unfinished(kept ? nullptr : &place, remove);
+  std::optional<Replacement> replacement;
+  if (!is_kept(path)) replacement.emplace(path);
   errno = 0;
-  std::ofstream file(place, std::ios::binary | std::ios::trunc);
+  std::ofstream file(replacement ? replacement->path() : path, std::ios::binary | std::ios::trunc);
   const auto check = [&] {
     if (!file) cannot_write(path, errno == 0 ? EIO : errno);
   };
@@ -202,8 +209,7 @@ void write_file(const fs::path& path, const std::function<void(const TextSink&)>
   errno = 0;
   file.close();
   check();
-  if (!kept) fs::rename(place, path, failed);
-  if (failed) cannot_write(path, failed.value());
+  if (replacement) replacement->commit();
 }
 
 void remove_abandoned_files(const fs::path& folder) {

@@ -20,6 +20,24 @@ void check_readable(const std::filesystem::path& path);
 /// \throws Error (bad_input) as check_readable, or where the file cannot be read
 std::string read_file(const std::filesystem::path& path);
 
+/// A temporary file that replaces another atomically: a reader finds the old or the new file.
+class Replacement {
+ public:
+  explicit Replacement(std::filesystem::path path);
+  /// Removes a file that was not committed.
+  ~Replacement();
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  /// Name of the temporary file: the final name, that of this process and ".part".
+  [[nodiscard]] const std::filesystem::path& path() const { return part_; }
+  /// \throws Error as write_file where that fails
+  void commit();
+
+ private:
+  std::filesystem::path path_, part_;
+};
+
 /// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made. Devices,
 /// pipes and links are written into.
 /// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the

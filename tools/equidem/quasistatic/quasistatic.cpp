@@ -82,9 +82,9 @@ struct Sequence {
                              .loads = problem.load_cases.front().loads,
                              .dead_loads = resolved.dead_loads,
                              .strain = resolved.strain,
-                             .control = wanted.control.value_or(!frictional()  ? LoadControl::path
-                                                                : loaded ? LoadControl::load
-                                                                         : LoadControl::motion),
+                             .control = wanted.control.value_or(!frictional() ? LoadControl::path
+                                                                : loaded      ? LoadControl::load
+                                                                              : LoadControl::motion),
                              .legs = wanted.legs,
                              .max_events = wanted.max_events});
     });
@@ -171,8 +171,8 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   return 0;
 }
 
-/// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend on
-/// the path, and frames are written of states on it.
+/// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend
+/// on the path, and frames are written of states on it.
 bool keeps_state(const Case& resolved) {
   const bool frictional = resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
   return frictional || resolved.quasistatic.frame_every != 0;

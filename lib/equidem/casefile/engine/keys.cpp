@@ -403,10 +403,6 @@ std::span<const RemovedKey> removed_keys() {
   return keys_of_earlier_versions;
 }
 
-std::span<const RemovedWord> removed_words() {
-  return words_of_earlier_versions;
-}
-
 const RemovedKey* removed_key(std::string_view table, std::string_view name, std::string_view value) {
   const auto found = std::ranges::find_if(keys_of_earlier_versions, [&](const RemovedKey& row) {
     return (row.table == table || row.table == of_the_case(table)) && row.name == name && row.value == value;

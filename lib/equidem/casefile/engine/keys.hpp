@@ -183,7 +183,6 @@ struct RemovedWord {
 };
 
 std::span<const RemovedKey> removed_keys();
-std::span<const RemovedWord> removed_words();
 
 /// The row of a key, or of one of its words; null where there is none.
 const RemovedKey* removed_key(std::string_view table, std::string_view name, std::string_view value = "");

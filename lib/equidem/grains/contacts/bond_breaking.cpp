@@ -91,15 +91,6 @@ std::vector<std::size_t> suspects_of(const GrainSystem& system) {
 
 }  // namespace
 
-std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks) {
-  std::vector<char> broken(bonds.size(), 0);
-  for (const BondBreak& event : breaks) broken[event.bond] = 1;
-  std::vector<GrainBond> left;
-  for (std::size_t b = 0; b < bonds.size(); ++b)
-    if (broken[b] == 0) left.push_back(bonds[b]);
-  return left;
-}
-
 ContactStrengths bond_strengths(const GrainScene& scene, const StrengthOptions& options) {
   for (const GrainBond& bond : scene.bonds) {
     if (std::max(bond.i, bond.j) < scene.grains.size()) continue;

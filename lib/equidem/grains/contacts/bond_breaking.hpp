@@ -5,7 +5,7 @@
 /// A bond carries N (tension positive), T and M, the forces and the moment of its springs. A parallel bond of the width
 /// w, with kM = kN w²/12, has its largest tension at the outer fibre, N/w + 6 |M|/w² (Potyondy & Cundall 2004, Int. J.
 /// Rock Mech. Min. Sci. 41, 1329). It breaks where N + 6 |M|/w >= f_t, in bending where the moment has the larger share
-/// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others, with friction
+/// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others,
 /// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
 /// and an unstretched tangential spring.
 ///
@@ -40,9 +40,6 @@ inline constexpr auto break_numbers = [](auto& event, const auto& visit) {
   visit(event.step), visit(event.bond), visit(event.mode), visit(event.place.x), visit(event.place.y);
   visit(event.energy);
 };
-
-/// The bonds that have not broken, in their order.
-std::vector<GrainBond> bonds_left(std::span<const GrainBond> bonds, std::span<const BondBreak> breaks);
 
 /// Strengths of the bonds of a scene, scattered in their order as those of the contacts of an assembly.
 /// \throws Error (bad_input) as contact_strengths

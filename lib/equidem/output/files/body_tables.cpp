@@ -111,7 +111,7 @@ void write_grain_contact_csv(const std::filesystem::path& path, std::span<const 
   Table table;
   table.view("i", contacts, &GrainContact::i);
   table.view("j", contacts,
-            [](const GrainContact& c) { return c.j >= 0 ? std::optional<std::int64_t>(c.j) : std::nullopt; });
+             [](const GrainContact& c) { return c.j >= 0 ? std::optional<std::int64_t>(c.j) : std::nullopt; });
   table.view("wall", contacts, [&](const GrainContact& c) {
     return c.j >= 0 ? std::string() : walls[static_cast<std::size_t>(~c.j)].name;
   });

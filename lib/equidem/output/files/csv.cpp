@@ -43,7 +43,7 @@ void CsvText::cell(double value) {
   append_number(text_, value);
 }
 
-void CsvText::cell(std::int64_t value) {
+void CsvText::cell_of(std::int64_t value) {
   separate();
   append_number(text_, value);
 }
@@ -77,8 +77,9 @@ Table& Table::add(std::string name, std::size_t rows, std::function<void(CsvText
               "Rename one of them");
   }
   if (!columns_.empty() && rows != rows_) {
-    bad_input(fmt::format("column '{}' has {} but the table has {}", name, counted(rows, "value"), counted(rows_, "row")),
-              "columns of a table are equally long", "Give one value per row");
+    bad_input(
+        fmt::format("column '{}' has {} but the table has {}", name, counted(rows, "value"), counted(rows_, "row")),
+        "columns of a table are equally long", "Give one value per row");
   }
   rows_ = rows;
   columns_.push_back({std::move(name), std::move(cell)});
@@ -228,11 +229,8 @@ std::string read_marked(const std::filesystem::path& path, const FileMark& mark)
 }
 
 GrowingCsv::GrowingCsv(std::filesystem::path path, std::vector<std::string> columns, const GrowingCsvOptions& options)
-    : path_(std::move(path)),
-      interval_(options.interval),
-      columns_(std::move(columns)),
-      header_(CsvText(columns_).text()),
-      rows_(columns_) {
+    : path_(std::move(path)), interval_(options.interval), columns_(std::move(columns)), rows_(columns_) {
+  rows_.pass_on([&](std::string_view line) { header_ = line; }, true);
   check_writable(path_, options.overwrite || options.continue_from);
   if (options.continue_from) {
     go_on(*options.continue_from);
@@ -245,7 +243,7 @@ GrowingCsv::GrowingCsv(std::filesystem::path path, std::vector<std::string> colu
 }
 
 GrowingCsv::~GrowingCsv() {
-  if (rows_.text().size() == header_.size()) return;
+  if (rows_.text().empty()) return;
   try {
     flush();
   } catch (const Error&) {
@@ -268,11 +266,12 @@ void GrowingCsv::add(std::int64_t step, const std::vector<double>& cells, bool r
 }
 
 void GrowingCsv::flush() {
-  const auto rows = std::string_view(rows_.text()).substr(header_.size());
-  file_->write_at(end_, bytes_of(rows));
-  end_ += rows.size();
+  const auto write = [&](std::string_view rows) {
+    file_->write_at(end_, bytes_of(rows));
+    end_ += rows.size();
+  };
+  rows_.pass_on(write, true);
   file_->truncate(end_);  // what an earlier run left behind
-  rows_ = CsvText(columns_);
   since_flush_.lap();
 }
 

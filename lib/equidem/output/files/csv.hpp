@@ -32,7 +32,7 @@ class CsvText {
   explicit CsvText(const std::vector<std::string>& columns);
 
   void cell(double value);  ///< "nan", "inf" and "-inf" where not finite
-  void cell(std::int64_t value);
+  void cell(std::integral auto value) { cell_of(static_cast<std::int64_t>(value)); }
   void cell(std::string_view value);  ///< quoted where it holds a comma, a quote or a line break
   template <class Value>
   void cell(const std::optional<Value>& value) {
@@ -46,6 +46,7 @@ class CsvText {
 
  private:
   void separate();
+  void cell_of(std::int64_t value);
 
   std::string text_;
   std::size_t columns_;
@@ -69,17 +70,20 @@ class Table {
   /// Add a column of the projection of each element of a range, a member or a function of the element.
   template <std::ranges::input_range Range, class Projection>
   Table& add(std::string name, const Range& range, const Projection& projection) {
-    std::vector<Stored<Range, Projection>> cells;
-    for (const auto& element : range)
-      cells.push_back(static_cast<Stored<Range, Projection>>(std::invoke(projection, element)));
+    using Cell =
+        std::remove_cvref_t<std::invoke_result_t<const Projection&, std::ranges::range_reference_t<const Range>>>;
+    using Stored = std::conditional_t<std::integral<Cell>, std::int64_t, Cell>;
+    std::vector<Stored> cells;
+    for (const auto& element : range) cells.push_back(static_cast<Stored>(std::invoke(projection, element)));
     return add(std::move(name), Values(std::move(cells)));
   }
   /// The same without a copy: the range and what the projection refers to outlive the table.
   template <std::ranges::random_access_range Range, class Projection>
   Table& view(std::string name, const Range& range, const Projection& projection) {
-    return add(std::move(name), std::ranges::size(range), [&range, projection](CsvText& text, std::size_t row) {
-      text.cell(static_cast<Stored<Range, Projection>>(std::invoke(projection, range[row])));
-    });
+    const auto cell = [&range, projection](CsvText& text, std::size_t k) {
+      text.cell(std::invoke(projection, range[k]));
+    };
+    return add(std::move(name), std::ranges::size(range), cell);
   }
 
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -88,10 +92,6 @@ class Table {
   [[nodiscard]] std::string csv() const;
 
  private:
-  template <class Range, class Projection>
-  using Cell = std::remove_cvref_t<std::invoke_result_t<const Projection&, std::ranges::range_reference_t<const Range>>>;
-  template <class Range, class Projection>
-  using Stored = std::conditional_t<std::integral<Cell<Range, Projection>>, std::int64_t, Cell<Range, Projection>>;
   Table& add(std::string name, std::size_t rows, std::function<void(CsvText&, std::size_t row)> cell);
 
   std::vector<Column> columns_;
@@ -193,7 +193,7 @@ class GrowingCsv {
   double interval_;
   std::vector<std::string> columns_;
   std::string header_;
-  CsvText rows_;  ///< the header, and rows that are not yet written
+  CsvText rows_;  ///< that are not yet written
   std::optional<OpenFile> file_;
   std::uint64_t end_ = 0;     ///< end of the written data
   std::uint64_t marked_ = 0;  ///< end of the regular rows, written or not

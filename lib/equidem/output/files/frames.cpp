@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/motion/any_simulation.hpp"
@@ -35,18 +34,6 @@ std::string_view between(std::string_view text, std::string_view begin, std::str
   if (at == std::string_view::npos) return {};
   text.remove_prefix(at + begin.size());
   return text.substr(0, text.find(end));
-}
-
-/// A file that is there as a whole or not at all. \throws Error (computation_failed) where the disk is full
-void replace_file(const std::filesystem::path& path, const std::function<void(const TextSink&)>& make) {
-  Replacement replacement(path);
-  OpenFile file(replacement.path(), OpenFile::Mode::create);
-  std::uint64_t end = 0;
-  make([&](std::string_view part) {
-    file.write_at(end, std::as_bytes(std::span(part)));
-    end += part.size();
-  });
-  replacement.commit();
 }
 
 /// The discs of bodies that are there.
@@ -174,7 +161,7 @@ std::vector<std::filesystem::path> FrameWriter::other_files() const {
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / name_, ignored)) {
     const std::string file = entry.path().filename().string();
     const bool whole = file.ends_with(vtp_extension);
-    if (!whole && !file.ends_with(".vtp.part")) continue;
+    if (!whole && !file.ends_with(".part")) continue;
     for (const std::string_view stem : {discs_stem, contacts_stem}) {
       const auto step = number_from<std::int64_t>(file.starts_with(stem) ? between(file, stem, vtp_extension) : "");
       const bool listed = step && std::ranges::binary_search(steps_, *step);
@@ -218,12 +205,15 @@ void FrameWriter::go_on(const FileMark& mark) {
 }
 
 void FrameWriter::write(const std::string& name, const std::function<void(const TextSink&)>& make) {
-  replace_file(folder_ / name, [&](const TextSink& to) {
+  Checksum sum = sum_;
+  const auto write_and_sum = [&](const TextSink& to) {
     make([&](std::string_view part) {
       to(part);
-      sum_.add(std::as_bytes(std::span(part)));
+      sum.add(std::as_bytes(std::span(part)));
     });
-  });
+  };
+  write_file(folder_ / name, write_and_sum, true);
+  sum_ = sum;
   unsynced_.push_back(folder_ / name);
 }
 
@@ -240,7 +230,7 @@ void FrameWriter::list_frame(std::int64_t step, const std::string& time) {
 }
 
 void FrameWriter::write_index() const {
-  replace_file(folder_ / (name_ + ".pvd"), [&](const TextSink& to) { to(list_head + index_ + list_tail); });
+  write_file(folder_ / (name_ + ".pvd"), list_head + index_ + list_tail, true);
 }
 
 Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,

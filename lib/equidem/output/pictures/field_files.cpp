@@ -2,7 +2,6 @@
 #include "equidem/output/pictures/field_files.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/canvas.hpp"
 
 namespace equidem {
@@ -63,8 +63,7 @@ std::string image_text(const CoarseFields& fields) {
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
       "  <ImageData WholeExtent=\"{}\" Origin=\"{} {} 0\" Spacing=\"{} {} 1\">\n    <Piece Extent=\"{}\">\n      "
       "<CellData>\n",
-      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", extent, grid.region.low.x,
-      grid.region.low.y, size.x, size.y, extent);
+      vtk_byte_order(), extent, grid.region.low.x, grid.region.low.y, size.x, size.y, extent);
   std::string numbers;
   const auto append = [&](auto number) {
     char bytes[sizeof number];
@@ -72,8 +71,8 @@ std::string image_text(const CoarseFields& fields) {
     numbers.append(bytes, sizeof number);
   };
   for (const auto& [name, values] : fields_of(fields)) {
-    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                        name, numbers.size());
+    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", name,
+                        numbers.size());
     append(std::uint64_t{8 * values.size()});
     for (const double value : values) append(value);
   }
