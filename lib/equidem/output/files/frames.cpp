@@ -78,8 +78,10 @@ void write_frame_discs(const TextSink& to, const Assembly& assembly, const Frame
 void write_frame_contacts(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
                           std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
   const ContactLoads loads{.forces = true, .moments = options.moments};
+  const auto contact_of = [&](std::size_t c) { return contacts[c]; };
   if (!options.travelling)
-    return write_contacts(to, {.places = assembly.centres, .motions = motions}, contacts, loads, &time);
+    return write_contacts(to, {.places = assembly.centres, .motions = motions}, contacts.size(), contact_of, loads,
+                          &time);
   std::vector<Vec2> places;
   std::vector<std::size_t> numbers;
   for (std::size_t body = 0; body < motions.size(); ++body) {
@@ -88,7 +90,7 @@ void write_frame_contacts(const TextSink& to, const Assembly& assembly, const Fr
     numbers.push_back(body);
   }
   if (places.size() == motions.size()) numbers.clear();
-  write_contacts(to, {.places = places, .numbers = numbers}, contacts, loads, &time);
+  write_contacts(to, {.places = places, .numbers = numbers}, contacts.size(), contact_of, loads, &time);
 }
 
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {

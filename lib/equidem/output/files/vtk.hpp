@@ -37,9 +37,11 @@ struct ContactLoads {
 /// or to the contact point at a wall. Arrays of lines: i, j (negative: wall -1 - j), contact_point (m), and as `loads`
 /// say force (3-vector, on i), normal_force, tangential_force, bending_moment (body_contact.hpp); of points:
 /// displacement, and a radius of zero, so that Glyph draws circles of discs only.
+/// \param contact_of the k-th of `count` contacts, asked for by each array
 /// \param time see PolyData::write
-void write_contacts(const TextSink& to, const BodyPlaces& bodies, std::span<const BodyContact> contacts,
-                    ContactLoads loads, const double* time = nullptr);
+void write_contacts(const TextSink& to, const BodyPlaces& bodies, std::size_t count,
+                    const std::function<BodyContact(std::size_t k)>& contact_of, ContactLoads loads,
+                    const double* time = nullptr);
 
 /// Write NAME.vtm, the index to open, and beside it NAME_discs.vtp and NAME_contacts.vtp (VTK XML PolyData, appended
 /// raw binary, Float64). SI units; arrays of what the state does not contain are left out.
