@@ -160,7 +160,7 @@ class Quasistatic(ProgramTest):
         self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
         self.check_same_events(self.events_of(whole), self.events_of(part))
 
-    def frictional(self, discs, contacts, groups, actions, friction):
+    def unbonded(self, discs, contacts, groups, actions, friction):
         """The result of three or more discs without bonds, kN = 1e9 Pa, kT half of it."""
         (self.folder / "discs.json").write_text(json.dumps({
             "schema": "equidem-assembly/1", "discs": discs, "contacts": [[i, j, 0, 0] for i, j in contacts],
@@ -192,7 +192,7 @@ class Quasistatic(ProgramTest):
         moved = self.slow_run([(-x, r, r), (x, r, r), (0, top, r)],
                               '[[wall]]\nname = "floor"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n', friction,
                               "duration = 0.02\ngravity = [0.0, -9.81]\n")
-        still = self.frictional([[-x, r, r], [x, r, r], [0, top, r], [-x, -r, r], [x, -r, r]],
+        still = self.unbonded([[-x, r, r], [x, r, r], [0, top, r], [-x, -r, r], [x, -r, r]],
                              [(3, 0), (4, 1), (0, 2), (1, 2)], {"floor": [3, 4], "discs": [0, 1, 2]},
                              '[[support]]\ngroup = "floor"\nux = true\nuy = true\nrotation = true\n'
                              f'[[load]]\ngroup = "discs"\nforce = [0.0, {-weight}]\n', friction)
@@ -212,7 +212,7 @@ class Quasistatic(ProgramTest):
                                  f'displacement = {way}\ndirection = [{along[0]}, {along[1]}]\nschedule = "push"\n')))
             moved = self.slow_run([(r, r, r)], walls + '[[schedule]]\nname = "push"\nkind = "ramp"\nstart = 0.0\n'
                                   "end = 0.2\n", friction, "duration = 0.21\n")
-            still = self.frictional([[r, r, r], [r, -r, r], [-r, r, r], [r - 2 * r * normal[0], r - 2 * r * normal[1], r]],
+            still = self.unbonded([[r, r, r], [r, -r, r], [-r, r, r], [r - 2 * r * normal[0], r - 2 * r * normal[1], r]],
                                  [(1, 0), (2, 0), (3, 0)], {"walls": [1, 2], "piston": [3]},
                                  '[[support]]\ngroup = "walls"\nux = true\nuy = true\nrotation = true\n'
                                  f'[[support]]\ngroup = "piston"\nux = {way * along[0]}\nuy = {way * along[1]}\n'
