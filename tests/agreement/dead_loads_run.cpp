@@ -25,7 +25,7 @@ Unbonded under_gravity(const HeldDiscs& held, const Push& push) {
   path.legs = {1};
   for (std::size_t k = 0; k < held.masses.size(); ++k)
     path.dead_loads.push_back({fmt::format("disc {}", k), LoadKind::per_disc, held.masses[k] * push.gravity, 0});
-  return {held.assembly, ContactSprings(rubbing_springs), held.strengths, path, held.options};
+  return {held.assembly, ContactSprings(frictional_springs), held.strengths, path, held.options};
 }
 
 /// The largest difference of a force over the largest force.
@@ -55,7 +55,7 @@ struct Pile {
 
   Pile() {
     for (const Vec2& at : {Vec2{r, r}, Vec2{3 * r, r}, Vec2{2 * r, r + std::sqrt(3.0) * r}})
-      discs.push_back({.position = at, .radius = r, .inertia = inertia_of(r, rubbing_density, Body::disc)});
+      discs.push_back({.position = at, .radius = r, .inertia = inertia_of(r, frictional_density, Body::disc)});
   }
 };
 

@@ -23,8 +23,8 @@
 
 namespace equidem::test {
 
-inline constexpr SpringConstants rubbing_springs{1e8, 5e7};
-inline constexpr double rubbing_friction = 0.3, rubbing_density = 2500;
+inline constexpr SpringConstants frictional_springs{1e8, 5e7};
+inline constexpr double sliding_friction = 0.3, frictional_density = 2500;
 
 /// Displacement of the lid, m, and gravity, m/s².
 struct Push {
@@ -40,9 +40,9 @@ class SlowGrains {
   /// \param steps from one push to the next
   SlowGrains(std::vector<Grain> grains, Vec2 box, std::vector<GrainBond> bonds, double steps) : box_(box) {
     SettlingOptions options;
-    options.springs = rubbing_springs;
+    options.springs = frictional_springs;
     options.damping = 0.5;
-    options.friction = options.wall_friction = rubbing_friction;
+    options.friction = options.wall_friction = sliding_friction;
     scene_ = scene_of_box(box.x, options);
     scene_.walls = walls_of({box, PackingBox::Sides::walls});
     scene_.grains = std::move(grains);
@@ -121,7 +121,7 @@ class SlowGrains {
 struct HeldDiscs {
   Assembly assembly;
   ContactStrengths strengths;
-  UnbondedOptions options{rubbing_friction, {}};
+  UnbondedOptions options{sliding_friction, {}};
   std::vector<std::pair<std::int32_t, std::int32_t>> bodies;  // of contacts
   std::vector<double> masses;                                 // of the discs that are no walls
 };
@@ -130,7 +130,7 @@ struct HeldDiscs {
 /// \param bonds contacts of other discs have none
 inline HeldDiscs held_discs(const GrainPacking& packing, double gaps, std::span<const GrainBond> bonds) {
   HeldDiscs held;
-  const HeldNetwork network = held_network_of(packing, {.springs = rubbing_springs, .gap_tolerance = gaps});
+  const HeldNetwork network = held_network_of(packing, {.springs = frictional_springs, .gap_tolerance = gaps});
   Assembly& assembly = held.assembly = network.assembly;
   std::vector<std::int32_t> body(network.bodies);
   for (const std::int32_t k : network.bodies) {
@@ -161,7 +161,7 @@ inline HeldDiscs held_discs(const GrainPacking& packing, double gaps, std::span<
       held.strengths.tension[c] = held.strengths.shear[c] = 1e9;
     } else if (force.normal == 0) {
       const double gap = norm(assembly.branch(assembly.contacts[c])) - assembly.radii[i] - assembly.radii[j];
-      force.normal = rubbing_springs.kN * std::max(0.0, body[j] < 0 ? gap / 2 : gap);
+      force.normal = frictional_springs.kN * std::max(0.0, body[j] < 0 ? gap / 2 : gap);
     }
     held.options.rest.push_back(force);
   }
@@ -177,7 +177,7 @@ inline std::vector<Grain> jammed_discs(std::int64_t discs, double overlap, Vec2&
   options.box = {box = {side, side}, PackingBox::Sides::walls};
   options.as_dense_as_possible = true;
   options.overlap = overlap;
-  options.settling.density = rubbing_density;
+  options.settling.density = frictional_density;
   const GrainPacking packing = pack(options);
   std::vector<Grain> grains;
   for (const std::int32_t body : held_network_of(packing, {}).bodies)

@@ -82,11 +82,11 @@ TEST_CASE("a_chain_breaks_at_one_load_and_elongation_at_any_angle_and_whichever_
       strengths.tension[1] = weakest;
       const ContactSprings springs(SpringConstants{kN, 0.3e6});
       Broken gone(chain, springs, strengths, options);
-      Unbonded rubs(chain, springs, strengths, options, {0.4, {}});
+      Unbonded frictional(chain, springs, strengths, options, {0.4, {}});
       CAPTURE(degrees, share);
       REQUIRE(gone.all().events().size() == 1);
-      REQUIRE(!rubs.all().events().empty());
-      for (const BreakEvent& event : {gone.event(0), rubs.event(0)}) {
+      REQUIRE(!frictional.all().events().empty());
+      for (const BreakEvent& event : {gone.event(0), frictional.event(0)}) {
         CHECK(event.load == Approx(weakest).epsilon(1e-9));
         CHECK(event.motion == Approx(elongation).epsilon(1e-9));
         CHECK(event.lambda == Approx(elongation / 1e-5).epsilon(1e-9));

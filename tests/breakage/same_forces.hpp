@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Paths of rubbing contacts against those by dense matrices: the bonds that break, and the forces of all contacts.
+/// Paths of frictional contacts against those by dense matrices: the bonds that break, and the forces of all contacts.
 ///
 /// Statuses of contacts are not compared: those of a contact that touches without a force are names, as are those that
 /// a contact passes through without anything moving, and events at one lambda have no order. Whatever of them matters

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Paths of contacts that rub, saved between two events and restored.
+// Paths of frictional contacts, saved between two events and restored.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States of contacts that rub are in equilibrium, and the residual that is told of them is that of the forces told.
+// States of frictional contacts are in equilibrium, and the residual that is told of them is that of the forces told.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -77,7 +77,7 @@ class Imbalance {
 
 // In these cells hardly anything holds some discs: they move by 1e5 times the deformation that their forces need, and
 // contacts that slip without a force change sides.
-TEST_CASE("forces_of_contacts_that_rub_balance_where_discs_move_far_and_hardly_anything_holds_them") {
+TEST_CASE("forces_of_frictional_contacts_balance_where_discs_move_far_and_hardly_anything_holds_them") {
   std::int64_t states = 0, events = 0;
   double largest = 0;
   for (const std::uint64_t seed : {360,  697,  744,  1194, 1417, 1641, 2274, 2361, 2393, 2664, 2691, 3264, 3459,
@@ -113,7 +113,7 @@ TEST_CASE("forces_of_contacts_that_rub_balance_where_discs_move_far_and_hardly_a
 // one a contact closes that overlaps by 1e-10 of the largest force. Contacts change their state while their force is
 // below what UnbondedState calls negligible: the work of such forces on the way is missing. A ledger calls negligible
 // 1e5 times the work of rounded forces on the whole way.
-TEST_CASE("energies_of_contacts_that_rub_close_where_all_forces_were_round_off_or_have_vanished") {
+TEST_CASE("energies_of_frictional_contacts_close_where_all_forces_were_round_off_or_have_vanished") {
   for (const std::uint64_t seed : {321, 4089, 4104, 5328, 1665, 4505}) {
     const DrawnPacking d = draw_packing(seed);
     Unbonded path(d.assembly, d.springs, d.strengths, d.path, d.unbonded, d.rotation);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Paths with contacts that rub are those of the same network turned, mirrored or in other units: round-off decides on
-/// no event. The last forces of a part that comes loose vanish exactly with that of the bond that held it, so that
+/// Paths with frictional contacts are those of the same network turned, mirrored or in other units: round-off decides
+/// on no event. The last forces of a part that comes loose vanish exactly with that of the bond that held it, so that
 /// round-off alone says which of them is gone first.
 #include <algorithm>
 #include <cmath>
@@ -169,7 +169,7 @@ TEST_CASE("a_disc_that_is_left_on_one_bond_ends_no_path_however_the_scene_lies")
   CHECK(pressed > 0.09);
 }
 
-TEST_CASE("paths_with_contacts_that_rub_are_those_of_the_scene_turned_mirrored_and_in_other_units") {
+TEST_CASE("paths_with_frictional_contacts_are_those_of_the_scene_turned_mirrored_and_in_other_units") {
   struct Kind {
     double kT, friction;
   };

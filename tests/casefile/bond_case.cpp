@@ -156,7 +156,7 @@ TEST_CASE("the_strength_file_of_a_calibration_gives_bonds_the_strengths_of_its_t
   CHECK(
       parse_grain_case(to_toml(by_file.document, folder.path()), "echo.toml", folder.path()).scene.strengths->tension ==
       by_table.scene.strengths->tension);
-  // Broken bonds of bodies that collide always rub: the key is none of theirs.
+  // Broken bonds of bodies that collide always slide with friction: the key is none of theirs.
   write_file(folder / "cs.toml",
              "schema = \"equidem-strength/1\"\n[strength]\ntension = 1.0\nshear = 1.0\n"
              "after_breaking = \"gone\"\n",

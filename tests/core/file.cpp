@@ -87,6 +87,31 @@ TEST_CASE("a_write_that_fails_halfway_leaves_nothing_new_and_the_old_file_whole"
   if (existed) CHECK(read_file(folder / "file") == "old");
 }
 
+TEST_CASE("a_content_made_in_blocks_is_written_whole_or_not_at_all") {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "old", false);
+  const auto fails = [](const TextSink& to) {
+    to(std::string(1 << 20, 'x'));
+    computation_failed("the third part is missing", "", "");
+  };
+  CHECK_THROWS_WITH(write_file(folder / "file", fails, true), Catch::Contains("third part"));
+  CHECK(read_file(folder / "file") == "old");
+  CHECK(folder.files() == 1);
+  std::string all;
+  const auto counts = [&](const TextSink& to) {
+    std::string text;
+    for (int k = 0; k < 200000; ++k) {
+      text += std::to_string(k) + "\n";
+      all += std::to_string(k) + "\n";
+      pass_block(text, to);
+      REQUIRE(text.size() < 1 << 16);
+    }
+    to(text);
+  };
+  write_file(folder / "file", counts, true);
+  CHECK(read_file(folder / "file") == all);
+}
+
 TEST_CASE("a_folder_is_no_file") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(read_file(folder.path()), Catch::Contains("it is a folder"));

@@ -126,7 +126,7 @@ TEST_CASE("opposite_spins_of_an_unbreakable_bond_swing_with_its_bending_frequenc
   CHECK(std::abs(simulation.grains()[1].angle) < 3e-4 * 1e-3 / omega);
 }
 
-TEST_CASE("discs_whose_bond_broke_under_compression_rebound_and_rub") {
+TEST_CASE("discs_whose_bond_broke_under_compression_rebound_and_slide_with_friction") {
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   std::vector<double> errors;
   for (const double step : {4e-5, 1e-5}) {

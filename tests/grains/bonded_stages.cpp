@@ -144,7 +144,7 @@ TEST_CASE("grains_tied_by_dashpots_are_as_many_bodies_as_groups_of_bonds_that_ar
   CHECK(off(2) == Approx(1.0 / 2).epsilon(1e-9));
 }
 
-TEST_CASE("a_disc_that_only_spins_between_plates_that_rub_is_not_at_rest") {
+TEST_CASE("a_disc_that_only_spins_between_plates_with_friction_is_not_at_rest") {
   // The forces of the plates cancel; their moments do not.
   const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
   const double friction = 0.3, pressed = 1e-3;

@@ -364,6 +364,39 @@ TEST_CASE("a_sheared_cell_of_bonds_that_break_heats_by_the_work_of_its_cell") {
   CHECK(errors[1] < 0.6 * errors[0]);
 }
 
+TEST_CASE("contacts_and_bonds_across_the_sides_of_a_cell_do_not_depend_on_which_body_has_the_lower_number") {
+  GrainBond like = sprung();
+  like.normal_dashpot = like.tangential_dashpot = 1;
+  GrainScene scene = bonded_cell(NormalLaw::linear_dashpot, 6, 6, 24, like);
+  scene.cell->rate_xy = {.value = 0.5};
+  GrainScene reversed = scene;
+  std::ranges::reverse(reversed.grains);
+  const std::size_t last = scene.grains.size() - 1;
+  for (GrainBond& bond : reversed.bonds) bond.i = last - bond.i, bond.j = last - bond.j;
+  GrainSimulation one(scene, verlet_options(0.002)), other(reversed, verlet_options(0.002));
+  one.advance(100);
+  other.advance(100);
+  const std::vector<Grain> grains = one.grains();
+  const std::vector<BodyContact> contacts = one.body_contacts(), swapped = other.body_contacts();
+  REQUIRE(contacts.size() == swapped.size());
+  CHECK(contacts.size() >= scene.bonds.size());
+  std::ptrdiff_t across = 0;
+  for (const BodyContact& c : contacts) {
+    const auto i = static_cast<std::int32_t>(last) - c.i, j = static_cast<std::int32_t>(last) - c.j;
+    const auto same = std::ranges::find_if(swapped, [&](const BodyContact& d) { return d.i == j && d.j == i; });
+    CAPTURE(c.i, c.j, c.shift.x, c.shift.y);
+    REQUIRE(same != swapped.end());
+    CHECK(norm(same->shift + c.shift) < 1e-12);
+    CHECK(norm(same->force + c.force) < 1e-8);
+    CHECK(std::abs(same->bending_moment + c.bending_moment) < 1e-8);
+    const Vec2 branch = grains[c.j].position + c.shift - grains[c.i].position;
+    CHECK(norm(branch) < 1.5);                         // the nearest image, of a cell of 6 by 6
+    CHECK(norm(same->arm - (c.arm - branch)) < 1e-9);  // both lead to one point
+    across += static_cast<std::ptrdiff_t>(norm(c.shift) > 0);
+  }
+  CHECK(across >= 5);
+}
+
 TEST_CASE("work_of_a_cell_is_stress_times_rate_times_area") {
   GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 6, 6, 25);
   scene.cell->rate_xy = {.value = 1};

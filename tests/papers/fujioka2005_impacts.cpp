@@ -7,8 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "equidem/study/fujioka2005_scenes.hpp"
-
+#include "papers/fujioka2005_scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

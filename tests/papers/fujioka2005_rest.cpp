@@ -3,8 +3,7 @@
 /// Limits of the laws of Fujioka & Ushijima (2005): rest and clusters, beside exact_flow.
 #include <cmath>
 
-#include "equidem/study/fujioka2005_scenes.hpp"
-
+#include "papers/fujioka2005_scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

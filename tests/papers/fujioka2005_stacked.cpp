@@ -3,8 +3,7 @@
 /// Fujioka & Ushijima (2005), section 5.6: a sphere slides down between two others, without friction.
 #include <cmath>
 
-#include "equidem/study/fujioka2005_scenes.hpp"
-
+#include "papers/fujioka2005_scenes.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

@@ -38,7 +38,7 @@ def jobs_of(cases):
                                      "run.step_rule=bound"], "run.checkpoint.h5"),
         "run, colliding bodies": (None, ["run", cases / "grains_shaken.toml", *often, "--set", "shaking.start=0.02", "--set",
                                          "run.duration=0.1", "--set", "output.probe_interval=4e-3"], "run.checkpoint.h5"),
-        "quasistatic, contacts that rub": (None, ["quasistatic", cases / "rubbing_notch.toml", *often, "--set",
+        "quasistatic, frictional contacts": (None, ["quasistatic", cases / "frictional_notch.toml", *often, "--set",
                                                   "quasistatic.max_events=200", "--set", "quasistatic.frame_every=30"],
                                            "quasistatic.checkpoint.h5"),
         "pack, growth": (None, ["pack", cases / "pack_jammed.toml", "--set", "packing.grains=150"], None),

@@ -160,14 +160,14 @@ class Quasistatic(ProgramTest):
         self.check_done(equidem("quasistatic", NOTCH, "--out", part, *larger, "--resume"))
         self.check_same_events(self.events_of(whole), self.events_of(part))
 
-    def rubbing(self, discs, contacts, groups, actions, friction):
+    def unbonded(self, discs, contacts, groups, actions, friction):
         """The result of three or more discs without bonds, kN = 1e9 Pa, kT half of it."""
         (self.folder / "discs.json").write_text(json.dumps({
             "schema": "equidem-assembly/1", "discs": discs, "contacts": [[i, j, 0, 0] for i, j in contacts],
             "springs": [[1e9, 0.5e9]] * len(contacts), "strengths": [[0, 0]] * len(contacts), "groups": groups}))
         case = self.folder / "static.toml"
         case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "discs.json"\n[strength]\n'
-                        f'friction = {friction}\nafter_breaking = "rubs"\n{actions}[quasistatic]\nlegs = [1.0]\n')
+                        f'friction = {friction}\nafter_breaking = "frictional"\n{actions}[quasistatic]\nlegs = [1.0]\n')
         done = equidem("quasistatic", case, "--json", "-")
         self.assertEqual(done.returncode, 0, done.stderr)
         result = parse_json(done.stdout)
@@ -192,7 +192,7 @@ class Quasistatic(ProgramTest):
         moved = self.slow_run([(-x, r, r), (x, r, r), (0, top, r)],
                               '[[wall]]\nname = "floor"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n', friction,
                               "duration = 0.02\ngravity = [0.0, -9.81]\n")
-        still = self.rubbing([[-x, r, r], [x, r, r], [0, top, r], [-x, -r, r], [x, -r, r]],
+        still = self.unbonded([[-x, r, r], [x, r, r], [0, top, r], [-x, -r, r], [x, -r, r]],
                              [(3, 0), (4, 1), (0, 2), (1, 2)], {"floor": [3, 4], "discs": [0, 1, 2]},
                              '[[support]]\ngroup = "floor"\nux = true\nuy = true\nrotation = true\n'
                              f'[[load]]\ngroup = "discs"\nforce = [0.0, {-weight}]\n', friction)
@@ -212,7 +212,7 @@ class Quasistatic(ProgramTest):
                                  f'displacement = {way}\ndirection = [{along[0]}, {along[1]}]\nschedule = "push"\n')))
             moved = self.slow_run([(r, r, r)], walls + '[[schedule]]\nname = "push"\nkind = "ramp"\nstart = 0.0\n'
                                   "end = 0.2\n", friction, "duration = 0.21\n")
-            still = self.rubbing([[r, r, r], [r, -r, r], [-r, r, r], [r - 2 * r * normal[0], r - 2 * r * normal[1], r]],
+            still = self.unbonded([[r, r, r], [r, -r, r], [-r, r, r], [r - 2 * r * normal[0], r - 2 * r * normal[1], r]],
                                  [(1, 0), (2, 0), (3, 0)], {"walls": [1, 2], "piston": [3]},
                                  '[[support]]\ngroup = "walls"\nux = true\nuy = true\nrotation = true\n'
                                  f'[[support]]\ngroup = "piston"\nux = {way * along[0]}\nuy = {way * along[1]}\n'
@@ -222,10 +222,10 @@ class Quasistatic(ProgramTest):
             # While the piston moves the dashpot adds to the normal force, and so to friction.
             self.assertAlmostEqual(still["friction"] / moved["lost_slip"], 1, delta=0.002)
 
-    def test_broken_contacts_that_rub_open_close_slip_and_stick(self):
-        case = CASES / "rubbing_notch.toml"
+    def test_broken_frictional_contacts_open_close_slip_and_stick(self):
+        case = CASES / "frictional_notch.toml"
         options = (*NO_PICTURE, "--set", "quasistatic.max_events=150", "--json", "-")
-        out = self.folder / "rubs"
+        out = self.folder / "frictional"
         done = equidem("quasistatic", case, "--out", out, *options)
         self.assertEqual(done.returncode, 0, done.stderr)
         result = parse_json(done.stdout)
@@ -259,7 +259,7 @@ class Quasistatic(ProgramTest):
             "springs": [[1e6, 4e5]], "strengths": [[0, 0]], "forces": [[-pressed, 0]], "groups": {"f": [0], "b": [1]}}))
         case = self.folder / "case.toml"
         case.write_text(f'schema = "equidem/1"\n[assembly]\nkind = "file"\npath = "pair.json"\n[strength]\n'
-                        f'after_breaking = "rubs"\nresidual_friction = {friction}\n'
+                        f'after_breaking = "frictional"\nresidual_friction = {friction}\n'
                         '[[support]]\ngroup = "f"\nux = true\nuy = true\nrotation = true\n'
                         '[[support]]\ngroup = "b"\nrotation = true\n[[load]]\ngroup = "b"\nforce = [0.0, 1.0]\n'
                         '[quasistatic]\nlegs = [60.0]\n')
@@ -272,7 +272,7 @@ class Quasistatic(ProgramTest):
         self.assertIn("have friction 0.5", " ".join(done.stdout.split()))
         self.assertEqual(result["strength"]["residual_friction"], friction)
         self.assertFalse(result["prestress"]["counts"])
-        case.write_text(case.read_text().replace('after_breaking = "rubs"\n', "").replace("residual_friction", "friction"))
+        case.write_text(case.read_text().replace('after_breaking = "frictional"\n', "").replace("residual_friction", "friction"))
         gone = equidem("quasistatic", case)
         self.check_done(gone)
         self.assertRegex(gone.stdout, "not used +forces at rest: .*quasistatic with")
@@ -353,7 +353,7 @@ class Quasistatic(ProgramTest):
         [strength]
         tension = 10.0e3
         shear = 20.0e3
-        after_breaking = "rubs"
+        after_breaking = "frictional"
         residual_friction = 0.4
         [[dead_load]]
         group = "top"
@@ -399,7 +399,7 @@ class Quasistatic(ProgramTest):
             tension = 0.0
             shear = 0.0
             friction = 0.3
-            after_breaking = "rubs"
+            after_breaking = "frictional"
             [[dead_load]]
             group = "top"
             kind = "total"
@@ -428,7 +428,7 @@ class Quasistatic(ProgramTest):
             schema = "equidem/1"
             assembly = {kind = "file", path = "stack.json"}
             springs = {kN = 2.0e6, kT = 1.0e6}
-            strength = {after_breaking = "rubs", residual_friction = 0.4}
+            strength = {after_breaking = "frictional", residual_friction = 0.4}
             support = [{group = "ground", ux = true, uy = true, rotation = true}]
             dead_load = [{group = "top", force = [0.0, -3.0]}]
             load = [{group = "top", force = [0.2, 0.0]}]
@@ -465,7 +465,7 @@ class Quasistatic(ProgramTest):
             (self.folder / "cell.json").write_text(json.dumps({
                 "schema": "equidem-assembly/1", "discs": discs, "contacts": contacts,
                 "cell": [rows, rows * math.sqrt(0.75)]}))
-            for after in ("gone", "rubs"):
+            for after in ("gone", "frictional"):
                 with self.subTest(seed=seed, after_breaking=after):
                     case = self.folder / "cell.toml"
                     case.write_text(textwrap.dedent(f"""
@@ -532,7 +532,7 @@ class Quasistatic(ProgramTest):
         plate = NOTCH.read_text()
         load = '[[load]]\ngroup = "top"\nkind = "total"\nforce = [0.0, 1.0e5]\n'
         pulled = plate.replace('[[support]]\ngroup = "top"\nuy = 1.0e-6               # m, times lambda\n', load)
-        rubs = 'friction        = 0.5\nafter_breaking  = "rubs"'
+        friction = 'friction        = 0.5\nafter_breaking  = "frictional"'
         cell = ('schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = 8\nrows = 8\nradius = 0.5\n'
                 'periodic = true\n[springs]\nkN = 1e9\nkT = 3e8\n[strength]\ntension = 1e6\nshear = 2e6\n')
         one = '[[group]]\nname = "one"\ndiscs = [0]\n'
@@ -547,7 +547,7 @@ class Quasistatic(ProgramTest):
                 (plate.replace("kT = 3.0e9", "kT = -1.0e8"), "[springs]", "springs", "kT < 0"),
                 (plate.replace("tension         = 10.0e3", "#"), "[strength]", "strength", "one of two strengths is missing"),
                 (plate.replace("weibull_modulus = 8.0", "weibull_modulus = 1e-3"), "[strength]", "strength", "scatters them"),
-                (plate.replace("friction        = 0.5", rubs), "control", "quasistatic.control", "their state depends on"),
+                (plate.replace("friction        = 0.5", friction), "control", "quasistatic.control", "their state depends on"),
                 (plate.replace('"path"', '"motion"\nlegs = [1.0, 1.0]'), "legs", "quasistatic.legs", "nothing happens"),
                 (plate.replace("from = [-0.001, 0.0152]", "from = [1.0, 1.0]").replace("0.008, 0.0152", "2.0, 2.0"),
                  "[[notch]]", "notch", "crosses no contact")):

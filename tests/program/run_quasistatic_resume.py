@@ -21,10 +21,10 @@ class QuasistaticResume(ProgramTest):
         with open(out / "events.csv", newline="") as file:
             return [(row["contact"], row["mode"]) for row in csv.DictReader(file)]
 
-    def test_a_rubbing_path_that_is_stopped_anywhere_goes_on_with_the_same_bits(self):
+    def test_a_frictional_path_that_is_stopped_anywhere_goes_on_with_the_same_bits(self):
         options = (*NO_PICTURE, "--set", "quasistatic.max_events=260", "--set", "quasistatic.frame_every=20", "--set",
                    "output.checkpoint_interval=1e-3", "--threads", 1)
-        case, whole, part = CASES / "rubbing_notch.toml", self.folder / "whole", self.folder / "part"
+        case, whole, part = CASES / "frictional_notch.toml", self.folder / "whole", self.folder / "part"
         self.check_done(equidem("quasistatic", case, "--out", whole, *options))
         expected = {path.relative_to(whole): path.read_bytes() for path in whole.rglob("*") if self.is_of_path(path)}
         self.assertGreater(len(expected), 24)
@@ -59,7 +59,7 @@ class QuasistaticResume(ProgramTest):
 
     def test_a_kept_state_that_was_altered_or_is_of_another_case_is_refused(self):
         options = (*NO_PICTURE, "--set", "quasistatic.max_events=20")
-        case, out = CASES / "rubbing_notch.toml", self.folder / "rubs"
+        case, out = CASES / "frictional_notch.toml", self.folder / "frictional"
         self.check_done(equidem("quasistatic", case, "--out", out, *options))
         checkpoint = out / "quasistatic.checkpoint.h5"
         kept = bytearray(checkpoint.read_bytes())
@@ -84,8 +84,8 @@ class QuasistaticResume(ProgramTest):
         self.assertEqual((whole / "frames.pvd").read_text(), (part / "frames.pvd").read_text())
 
     def test_a_path_that_was_ended_by_max_events_goes_on_to_the_events_of_a_whole_one(self):
-        rubbing = CASES / "rubbing_notch.toml"
-        for case, first, last in ((NOTCH, 13, 40), (rubbing, 10, 200)):
+        frictional = CASES / "frictional_notch.toml"
+        for case, first, last in ((NOTCH, 13, 40), (frictional, 10, 200)):
             with self.subTest(case=case.name):
                 whole, part = self.folder / case.stem / "whole", self.folder / case.stem / "part"
                 command = ("quasistatic", case, *NO_PICTURE, "--threads", 1)
@@ -97,7 +97,7 @@ class QuasistaticResume(ProgramTest):
                 self.check_done(equidem(*command, *until, "--out", part, "--resume", "--set", "title=another"))
                 self.assertEqual(self.cracks_of(whole), self.cracks_of(part))
                 self.assertEqual(done, self.cracks_of(whole)[:len(done)])
-                if case == rubbing:
+                if case == frictional:
                     self.assertEqual((whole / "events.csv").read_bytes(), (part / "events.csv").read_bytes())
                 back = equidem(*command, "--set", f"quasistatic.max_events={first}", "--out", part, "--resume")
                 self.check_error(back, 2, f"max_events is {first}, and {len(self.cracks_of(whole))} events are done",
@@ -120,15 +120,15 @@ class QuasistaticResume(ProgramTest):
         self.assertEqual(len(self.cracks_of(out)), 26)
         run(NOTCH, 34, 10, "--resume")
         self.assertEqual(self.frames_of(out)[:6], [5, 10, 14, 21, 30, 34])
-        # Where contacts rub, many change at once.
-        rubbing = CASES / "rubbing_notch.toml"
-        out = self.folder / rubbing.stem
-        run(rubbing, 10, 0)
+        # Where contacts are frictional, many change at once.
+        frictional = CASES / "frictional_notch.toml"
+        out = self.folder / frictional.stem
+        run(frictional, 10, 0)
         before = len(self.cracks_of(out))
-        run(rubbing, 200, 1, "--resume")
+        run(frictional, 200, 1, "--resume")
         self.assertGreater(min(self.frames_of(out)), before)
         many = self.frames_of(out)
-        run(rubbing, 260, 500, "--resume")
+        run(frictional, 260, 500, "--resume")
         self.assertEqual(many[:-1], self.frames_of(out)[:len(many) - 1])
 
     def test_a_key_that_decides_the_path_is_named_where_it_differs(self):
@@ -154,7 +154,7 @@ class QuasistaticResume(ProgramTest):
 
     def test_a_path_that_ends_under_its_dead_loads_says_so_and_draws_no_curve(self):
         case, out = self.folder / "case.toml", self.folder / "out"
-        pushed = '[[dead_load]]\ngroup = "top"\nforce = [1e3, -1e3]\n[strength]\ntension = 0\nshear = 0\nafter_breaking = "rubs"\n'
+        pushed = '[[dead_load]]\ngroup = "top"\nforce = [1e3, -1e3]\n[strength]\ntension = 0\nshear = 0\nafter_breaking = "frictional"\n'
         case.write_text(self.BLOCK.replace("hexagonal", "square").replace("columns = 5", "columns = 1") + pushed)
         out.mkdir()
         (out / "curve.svg").write_text("of an earlier path")

@@ -81,7 +81,7 @@ gravity = [3.0, -9.81]
 name = "slide"
 duration = 0.004
 [[stage]]
-name = "rub"
+name = "friction"
 duration = 0.004
 """
         push = push.replace("[collisions]", "[collisions]\nfriction = 0.4").replace("[0.02, 0.01]", "[0.02, 0.00999]").replace("[0.05, 0.01]", "[0.04, 0.00999]")

@@ -28,7 +28,7 @@ def test_contacts_without_a_bond_slip_and_stick():
     # Kt u = mu N begins the slip, and the loop of a cycle of the amplitude A has the area 4 mu N (A - mu N/kT).
     pair = eq.Assembly([(0.0, 0.0), (2.0, 0.0)], 1.0, [(0, 1)]).with_strengths([(0.0, 0.0)])
     friction, amplitude = 0.1, 1e-3
-    result = eq.Case(assembly=pair, springs=(1000.0, 300.0), strength={"friction": friction, "after_breaking": "rubs"},
+    result = eq.Case(assembly=pair, springs=(1000.0, 300.0), strength={"friction": friction, "after_breaking": "frictional"},
                      supports=[{"group": [0], "ux": 0.0, "uy": 0.0, "rotation": 0.0},
                                {"group": [1], "uy": amplitude, "rotation": 0.0}],
                      dead_load=[{"group": [1], "force": [-1.0, 0.0]}],

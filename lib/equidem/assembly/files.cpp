@@ -385,20 +385,12 @@ std::string shortest(double value) {
   return value == 0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
 }
 
-/// "key": [one per line].
-template <typename Entry>
-void append_list(std::string& text, const char* key, std::size_t count, const Entry& entry) {
-  text += fmt::format(",\n\"{}\": [", key);
-  for (std::size_t k = 0; k < count; ++k) text += (k == 0 ? "\n" : ",\n") + entry(k);
-  text += "]";
-}
 std::string pair_of(double first, double second) {
   return fmt::format("[{}, {}]", shortest(first), shortest(second));
 }
 
-}  // namespace
-
-std::string json_of(const Assembly& assembly) {
+/// See json_of.
+void write_json(const TextSink& to, const Assembly& assembly) {
   std::string text = fmt::format("{{\"schema\": \"{}\"", assembly_schema);
   text += ",\n\"title\": " + quoted_json(assembly.kind);
   text += assembly.period
@@ -410,34 +402,40 @@ std::string json_of(const Assembly& assembly) {
     text += fmt::format(",\n\"box\": [{}, {}", pair_of(low.x, low.y), pair_of(high.x, high.y));
     text += assembly.box->upright() ? "]" : fmt::format(", {}]", pair_of(along.x, along.y));
   }
-  append_list(text, "discs", assembly.size(), [&](std::size_t k) {
+  const auto append_list = [&](const char* key, std::size_t count, const auto& entry) {  // one per line
+    text += fmt::format(",\n\"{}\": [", key);
+    for (std::size_t k = 0; k < count; ++k) {
+      text += (k == 0 ? "\n" : ",\n") + entry(k);
+      pass_block(text, to);
+    }
+    text += "]";
+  };
+  append_list("discs", assembly.size(), [&](std::size_t k) {
     return fmt::format("[{}, {}, {}]", shortest(assembly.centres[k].x), shortest(assembly.centres[k].y),
                        shortest(assembly.radii[k]));
   });
   if (!assembly.sections.empty()) {
-    append_list(text, "sections", assembly.size(),
+    append_list("sections", assembly.size(),
                 [&](std::size_t k) { return pair_of(assembly.sections[k].area, assembly.sections[k].polar_moment); });
   }
   const auto append_numbers = [&](const char* key, const std::vector<double>& numbers) {
-    append_list(text, key, numbers.size(), [&](std::size_t k) { return shortest(numbers[k]); });
+    append_list(key, numbers.size(), [&](std::size_t k) { return shortest(numbers[k]); });
   };
   if (!assembly.cell_areas.empty()) append_numbers("cell_areas", assembly.cell_areas);
   const auto& contacts = assembly.contacts;
-  append_list(text, "contacts", contacts.size(), [&](std::size_t k) {
+  append_list("contacts", contacts.size(), [&](std::size_t k) {
     return fmt::format("[{}, {}, {}, {}]", contacts[k].i, contacts[k].j, contacts[k].shift_x, contacts[k].shift_y);
   });
-  append_list(text, "levers", contacts.size(),
+  append_list("levers", contacts.size(),
               [&](std::size_t k) { return pair_of(contacts[k].lever_i, contacts[k].lever_j); });
   const auto& arms = assembly.contact_arms;
   if (!arms.empty()) {
-    append_list(text, "normals", contacts.size(),
-                [&](std::size_t k) { return pair_of(arms[k].normal.x, arms[k].normal.y); });
-    append_list(text, "offsets", contacts.size(),
-                [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
+    append_list("normals", contacts.size(), [&](std::size_t k) { return pair_of(arms[k].normal.x, arms[k].normal.y); });
+    append_list("offsets", contacts.size(), [&](std::size_t k) { return pair_of(arms[k].offset_i, arms[k].offset_j); });
   }
   for (const ContactNumbers& numbers : contact_numbers) {
     if (!numbers.given(assembly)) continue;
-    append_list(text, numbers.key, contacts.size(),
+    append_list(numbers.key, contacts.size(),
                 [&](std::size_t k) { return pair_of((assembly.*numbers.first)[k], (assembly.*numbers.second)[k]); });
   }
   if (!assembly.cell_areas.empty() && assembly.facet_lengths.size() == contacts.size())
@@ -455,7 +453,15 @@ std::string json_of(const Assembly& assembly) {
     }
     text += "}";
   }
-  return text + "}\n";
+  to(text + "}\n");
+}
+
+}  // namespace
+
+std::string json_of(const Assembly& assembly) {
+  std::string all;
+  write_json([&](std::string_view part) { all += part; }, assembly);
+  return all;
 }
 
 std::string assembly_file_name(const std::string& stem, AssemblyFormat format) {
@@ -472,7 +478,8 @@ void write_assembly(const std::filesystem::path& path, const Assembly& assembly,
   check_writable(path, overwrite);
   check(assembly);
   if (is_hdf5_name(path)) return write_hdf5_assembly(path, assembly);
-  write_file(path, json_of(assembly), overwrite);
+  write_file(
+      path, [&](const TextSink& to) { write_json(to, assembly); }, overwrite);
 }
 
 }  // namespace equidem

@@ -31,15 +31,15 @@ struct EnumNames<BondLength> {
 
 /// The behaviour of a contact without a bond.
 enum class AfterBreaking {
-  gone,  ///< it carries nothing
-  rubs,  ///< it opens, closes, sticks and slips
+  gone,        ///< it carries nothing
+  frictional,  ///< it opens, closes, sticks and slips
 };
 
 template <>
 struct EnumNames<AfterBreaking> {
   using enum AfterBreaking;
   static constexpr const char* what = "behaviour of broken contacts";
-  static constexpr NamedValue<AfterBreaking> list[] = {{gone, "gone"}, {rubs, "rubs"}};
+  static constexpr NamedValue<AfterBreaking> list[] = {{gone, "gone"}, {frictional, "frictional"}};
 };
 
 struct StrengthOptions {
@@ -52,7 +52,7 @@ struct StrengthOptions {
   std::optional<double> weibull_modulus = {};
   std::uint64_t seed = 1;
   AfterBreaking after_breaking = AfterBreaking::gone;
-  /// mu >= 0 of contacts without a bond, where they rub. None: `friction`.
+  /// mu >= 0 of contacts without a bond, where they are frictional. None: `friction`.
   std::optional<double> residual_friction = {};
 };
 

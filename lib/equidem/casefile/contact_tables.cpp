@@ -112,10 +112,10 @@ std::vector<Key<StrengthOptions>> strength_keys() {
               "equal"),
           key("seed", &S::seed, not_negative, "of the strengths: same seed, same strengths"),
           key("after_breaking", &S::after_breaking,
-              "gone: a broken contact carries nothing; rubs: it opens, closes, sticks and slips. Contacts whose "
+              "gone: a broken contact carries nothing; frictional: it opens, closes, sticks and slips. Contacts whose "
               "strengths are both 0 are then no bonds from the start"),
-          key("residual_friction", &S::residual_friction, not_negative, when("after_breaking", {"rubs"}),
-              "coefficient of friction of contacts without a bond, where they rub; left out: friction")};
+          key("residual_friction", &S::residual_friction, not_negative, when("after_breaking", {"frictional"}),
+              "coefficient of friction of contacts without a bond, where they are frictional; left out: friction")};
 }
 
 std::vector<Key<StrengthTargetCase>> strength_target_keys() {
@@ -165,8 +165,8 @@ void check_strength_target(const TomlValue& root) {
   if (friction != nullptr && friction->real != 0 && target->find("shear_over_tension") != nullptr)
     fail_at(*friction, "strength.friction", "it is given beside strength_target.shear_over_tension",
             "calibrate looks for the friction where f_s/f_t is given", "Remove one of them");
-  if (const TomlValue* given = strength->find("after_breaking"); given != nullptr && given->text == "rubs")
-    fail_at(*given, "strength.after_breaking", "\"rubs\" is given beside [strength_target]",
+  if (const TomlValue* given = strength->find("after_breaking"); given != nullptr && given->text == "frictional")
+    fail_at(*given, "strength.after_breaking", "\"frictional\" is given beside [strength_target]",
             "calibrate finds strengths of contacts that carry nothing once they are broken", "Remove it");
 }
 

@@ -170,31 +170,46 @@ void check_writable(const fs::path& path, bool overwrite) {
   fs::remove(trial, ignored);
 }
 
+Replacement::Replacement(fs::path path) : path_(std::move(path)), part_(path_.string() + temporary_suffix()) {}
+
+Replacement::~Replacement() {
+  std::error_code ignored;
+  fs::remove(part_, ignored);
+}
+
+void Replacement::commit() {
+  std::error_code failed;
+  fs::rename(part_, path_, failed);
+  if (failed) cannot_write(path_, failed.value());
+}
+
 void write_file(const fs::path& path, std::string_view content, bool overwrite) {
+  write_file(
+      path, [&](const TextSink& to) { to(content); }, overwrite);
+}
+
+void write_file(const fs::path& path, const std::function<void(const TextSink&)>& make, bool overwrite) {
   check_writable(path, overwrite);
   std::error_code failed;
   fs::create_directories(folder_of(path), failed);
   if (failed) cannot_write(path, failed.value());
-  const auto write_to = [&](const fs::path& place) {
-    errno = 0;
-    std::ofstream file(place, std::ios::binary | std::ios::trunc);
-    file.write(content.data(), static_cast<std::streamsize>(content.size()));
-    file.close();
-    return file ? 0 : errno == 0 ? EIO : errno;
+  std::optional<Replacement> replacement;
+  if (!is_kept(path)) replacement.emplace(path);
+  errno = 0;
+  std::ofstream file(replacement ? replacement->path() : path, std::ios::binary | std::ios::trunc);
+  const auto check = [&] {
+    if (!file) cannot_write(path, errno == 0 ? EIO : errno);
   };
-  if (is_kept(path)) {
-    if (const int error = write_to(path); error != 0) cannot_write(path, error);
-    return;
-  }
-  const fs::path temporary = path.string() + temporary_suffix();
-  int error = write_to(temporary);
-  if (error == 0) {
-    fs::rename(temporary, path, failed);
-    error = failed.value();
-  }
-  if (error == 0) return;
-  fs::remove(temporary, failed);
-  cannot_write(path, error);
+  check();
+  make([&](std::string_view part) {
+    errno = 0;
+    file.write(part.data(), static_cast<std::streamsize>(part.size()));
+    check();
+  });
+  errno = 0;
+  file.close();
+  check();
+  if (replacement) replacement->commit();
 }
 
 void remove_abandoned_files(const fs::path& folder) {

@@ -4,7 +4,9 @@
 /// Lock of a folder against other processes.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,11 +20,41 @@ void check_readable(const std::filesystem::path& path);
 /// \throws Error (bad_input) as check_readable, or where the file cannot be read
 std::string read_file(const std::filesystem::path& path);
 
+/// A temporary file that replaces another atomically: a reader finds the old or the new file.
+class Replacement {
+ public:
+  explicit Replacement(std::filesystem::path path);
+  /// Removes a file that was not committed.
+  ~Replacement();
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  /// Name of the temporary file: the final name, that of this process and ".part".
+  [[nodiscard]] const std::filesystem::path& path() const { return part_; }
+  /// \throws Error as write_file where that fails
+  void commit();
+
+ private:
+  std::filesystem::path path_, part_;
+};
+
 /// Write a file whole or not at all: into a temporary file beside it, then renamed. Missing folders are made. Devices,
 /// pipes and links are written into.
 /// \throws Error (bad_input) where it exists and `overwrite` is false, or where it cannot be written (with the
 ///         reason); (computation_failed) where the disk is full or fails
 void write_file(const std::filesystem::path& path, std::string_view content, bool overwrite);
+
+/// Takes a text part by part.
+using TextSink = std::function<void(std::string_view part)>;
+/// The same for a content that is made while it is written, so that it is never whole in memory.
+/// \param make passes the parts on in their order; what it throws leaves the file as it was
+void write_file(const std::filesystem::path& path, const std::function<void(const TextSink&)>& make, bool overwrite);
+/// Passes on and clears a text that has grown to a block.
+inline void pass_block(std::string& text, const TextSink& to, std::size_t block = 1 << 16) {
+  if (text.size() < block) return;
+  to(text);
+  text.clear();
+}
 
 /// Remove the temporary files that processes which have ended since, killed in the middle of write_file, left in a
 /// folder (not below it).

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <string_view>
 #include <utility>
 
 #include <unistd.h>
@@ -46,7 +48,14 @@ std::atomic<bool> progress_shown{true};
 std::atomic<int> existing{0};
 volatile std::sig_atomic_t stop_asked = 0;
 
+/// Of what is safe in a signal handler.
 void ask_to_stop(int signal_number) {
+  constexpr std::string_view answer = "stopping: what is done is written first; a second signal ends this at once\n";
+  const int error = errno;
+  if (stop_asked == 0) {
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, answer.data(), answer.size());
+  }
+  errno = error;
   stop_asked = 1;
   // of a terminal that closes, SIGHUP comes from the system and from its shell
   if (signal_number != SIGHUP) std::signal(signal_number, SIG_DFL);

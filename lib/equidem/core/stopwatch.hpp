@@ -70,7 +70,7 @@ class Progress {
 };
 
 /// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (not under nohup) ask the running computation to stop at its next
-/// safe point; a second SIGINT or SIGTERM ends the process at once. SIGXFSZ is ignored.
+/// safe point, which stderr says at once; a second SIGINT or SIGTERM ends the process at once. SIGXFSZ is ignored.
 void catch_interrupts();
 /// \throws Error of kind interrupted where the user asked to stop
 void stop_if_interrupted();

@@ -253,7 +253,7 @@ class Case:
         """Contacts that break one after another (tables `strength`, `strain`, `dead_load`, `notch`, `quasistatic`).
 
         `result.events` lists them: lambda, contact, mode, stress [xx, yx, xy, yy] in Pa, load, motion, energies in N.
-        With ``strength.after_breaking = "rubs"`` contacts without a bond open, close, slip and stick too.
+        With ``strength.after_breaking = "frictional"`` contacts without a bond open, close, slip and stick too.
         """
         return self.run_verb("quasistatic", **options)
 

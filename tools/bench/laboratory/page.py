@@ -96,7 +96,7 @@ def rock(lab):
     out, _, _ = lab.run("unconfined")
     plain = readings.unconfined(out, 0.04)
     out, _, _ = lab.run("unconfined", "collisions.walls.friction=0.5")
-    rubbing = readings.unconfined(out, 0.04)
+    rough = readings.unconfined(out, 0.04)
     out, result, _ = lab.run("brazilian")
     split = readings.brazilian(out, 0.05)
     across, along = readings.stress_at_the_centre(out, 0.05, float(readings.rows_of_breaks(out)[0]["time_s"]))
@@ -105,7 +105,7 @@ def rock(lab):
     return [["unconfined compression, E, Pa", number(plain["young_modulus"], 4), number(young, 4), "homogenize lab_rock.toml, its edge included: below"],
             ["the same, nu", number(plain["poisson_ratio"]), number(nu), "likewise"],
             ["unconfined strength, Pa", number(plain["strength"], 4), "", f"at a strain of {100 * plain['strain']:.2f} %"],
-            ["the same, plates with friction 0.5", number(rubbing["strength"], 4), "", "held ends"],
+            ["the same, plates with friction 0.5", number(rough["strength"], 4), "", "held ends"],
             ["stress across the loaded diameter at the centre, before the first break, over 2P/(pi D)", number(across), number(theory[0]),
              "Hondros (1959), uniform pressure on arcs of 20°, in a square of 0.48 radii"],
             ["the same, along it", number(along), number(theory[1]), "likewise"],

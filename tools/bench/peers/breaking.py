@@ -93,7 +93,7 @@ def section(equidem, columns, steps, command):
             f"{KT / KN:g}, friction {FRICTION:g}, strengths by Weibull's law with\nm = {MODULUS:g}, pulled by its top at a constant speed until 1.3 "
             "times the motion of our peak (YADE: CohFrictMat, local damping 0.4, 0.3 of its\ncritical step), or break by break under control of the "
             "motion until nothing carries (equidem). The law of YADE carries our springs and both\nstrengths exactly; it differs behind the break, "
-            "where its discs still push and rub, and in waves, which a break sends out. Both on one core.\n\n" + table(head, rows) + "\n")
+            "where its discs still press on each other and slide with friction, and in waves, which a break sends out. Both on one core.\n\n" + table(head, rows) + "\n")
 
 
 def main():

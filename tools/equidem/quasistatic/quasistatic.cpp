@@ -56,7 +56,7 @@ struct Sequence {
   std::unique_ptr<BreakableSystem> system{};
   std::unique_ptr<EventPath> events{};
   BreakageRun* brittle = nullptr;   ///< the path of bonds that break
-  UnbondedRun* unbonded = nullptr;  ///< or that of contacts that rub
+  UnbondedRun* unbonded = nullptr;  ///< or that of frictional contacts
 
   explicit Sequence(Problem given) : problem(std::move(given)) {
     using casefile::with_place;
@@ -67,12 +67,12 @@ struct Sequence {
     strengths = with_place(resolved.where("strength"),
                            [&] { return contact_strengths(assembly, resolved.strength.value_or(StrengthOptions{})); });
     cut = with_place(resolved.where("notch"), [&] { return contacts_across(assembly, resolved.notches); });
-    if (rubs()) tell_forces_at_rest();
+    if (frictional()) tell_forces_at_rest();
     const QuasistaticCase& wanted = resolved.quasistatic;
     const bool loaded = !problem.load_cases.front().loads.empty();
-    if (rubs()) {
+    if (frictional()) {
       for (const std::size_t contact : cut) strengths.tension[contact] = strengths.shear[contact] = 0;
-      check_rubbing_solver();
+      check_frictional_solver();
     }
     with_place(resolved.where("quasistatic.legs"), [&] { check_legs(wanted.legs); });
     with_place(resolved.where(resolved.material ? "material" : "springs"), [&] { check_breaking_springs(springs); });
@@ -82,13 +82,13 @@ struct Sequence {
                              .loads = problem.load_cases.front().loads,
                              .dead_loads = resolved.dead_loads,
                              .strain = resolved.strain,
-                             .control = wanted.control.value_or(!rubs()  ? LoadControl::path
-                                                                : loaded ? LoadControl::load
-                                                                         : LoadControl::motion),
+                             .control = wanted.control.value_or(!frictional() ? LoadControl::path
+                                                                : loaded      ? LoadControl::load
+                                                                              : LoadControl::motion),
                              .legs = wanted.legs,
                              .max_events = wanted.max_events});
     });
-    if (rubs()) with_place(resolved.where("quasistatic.control"), [&] { check_control_of_rubbing(path); });
+    if (frictional()) with_place(resolved.where("quasistatic.control"), [&] { check_control_with_friction(path); });
   }
 
   /// The table that drives the path, or should.
@@ -110,35 +110,35 @@ struct Sequence {
                                "contacts begin with them, and open, close, stick and slip from there; the "
                                "stiffness does not turn with them"};
   }
-  void check_rubbing_solver() const {
+  void check_frictional_solver() const {
     const SolverMethod method = problem.resolved.solver.method;
     if (method == SolverMethod::automatic || method == SolverMethod::umfpack) return;
     bad_input_at(problem.resolved.where("solver.method"),
-                 fmt::format("contacts rub, and the method is {}", to_string(method)),
+                 fmt::format("contacts are frictional, and the method is {}", to_string(method)),
                  "the stiffness of contacts that slip is not symmetric, which umfpack alone factorizes",
                  "Leave out solver.method, or take \"umfpack\"");
   }
   /// With the method that the path takes.
   [[nodiscard]] SolverOptions solver() const {
     SolverOptions solver = factor_to_update(problem.resolved.solver);
-    if (rubs()) solver.method = SolverMethod::umfpack;
+    if (frictional()) solver.method = SolverMethod::umfpack;
     return solver;
   }
   [[nodiscard]] BreakageScene scene() const { return {problem.assembly, problem.springs.springs, strengths, path}; }
-  [[nodiscard]] bool rubs() const {
+  [[nodiscard]] bool frictional() const {
     const auto& strength = problem.resolved.strength;
-    return strength && strength->after_breaking == AfterBreaking::rubs;
+    return strength && strength->after_breaking == AfterBreaking::frictional;
   }
-  /// mu of contacts without a bond; none: they do not rub.
+  /// mu of contacts without a bond; none: they are not frictional.
   [[nodiscard]] std::optional<double> residual_friction() const {
-    if (!rubs()) return {};
+    if (!frictional()) return {};
     const StrengthOptions& strength = *problem.resolved.strength;
     return strength.residual_friction.value_or(strength.friction);
   }
   [[nodiscard]] EventPath& run() const { return *events; }
   void begin() {
     const Stopwatch watch;
-    if (rubs()) {
+    if (frictional()) {
       EquilibriumOptions wanted = problem.options();
       wanted.solver = solver();
       check_memory(estimate_solve(problem.assembly, problem.springs.springs, problem.supports, wanted),
@@ -171,11 +171,11 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   return 0;
 }
 
-/// Whether the table of events does not hold all that is needed to go on from it: forces of contacts that rub depend on
-/// the path, and frames are written of states on it.
+/// Whether the table of events does not hold all that is needed to go on from it: forces of frictional contacts depend
+/// on the path, and frames are written of states on it.
 bool keeps_state(const Case& resolved) {
-  const bool rubs = resolved.strength && resolved.strength->after_breaking == AfterBreaking::rubs;
-  return rubs || resolved.quasistatic.frame_every != 0;
+  const bool frictional = resolved.strength && resolved.strength->after_breaking == AfterBreaking::frictional;
+  return frictional || resolved.quasistatic.frame_every != 0;
 }
 
 /// The path so far, written whole or not at all.

@@ -197,7 +197,7 @@ FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& r
 
 void check_most_events(const FreeKeysOfPath& before, const Case& resolved, std::int64_t events) {
   const std::int64_t most = resolved.quasistatic.max_events;
-  // Where contacts rub several events may come at once, so that there are more than were asked for.
+  // Where contacts are frictional several events may come at once, so that there are more than were asked for.
   if (most == 0 || most >= events || most == before.max_events) return;
   bad_input_at(resolved.where("quasistatic.max_events"),
                fmt::format("max_events is {}, and {} are done", most, counted(events, "event")),
@@ -299,7 +299,7 @@ EventFrames::EventFrames(const CommonOptions& options, const BreakageScene& scen
       writer_(*options.out, "frames", scene.assembly, {.overwrite = options.overwrite, .continue_from = from}) {}
 
 bool EventFrames::due(const EventPath& run) const {
-  // Where contacts rub several events may happen at once.
+  // Where contacts are frictional several events may happen at once.
   return std::ssize(run.events()) / every_ > std::max(writer_.last_step(), begun_) / every_;
 }
 

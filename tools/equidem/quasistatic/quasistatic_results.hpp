@@ -13,7 +13,7 @@
 namespace equidem {
 
 /// Strengths, path and control.
-/// \param residual_friction of contacts without a bond, where they rub
+/// \param residual_friction of contacts without a bond, where they are frictional
 Results path_results(const BreakageScene& scene, std::size_t cut, std::optional<double> residual_friction);
 
 /// The scene of results.
@@ -22,7 +22,7 @@ struct QuasistaticOutcome {
   const Effects& effects;
   BreakageScene scene;
   std::size_t cut = 0;
-  std::optional<double> residual_friction{};  ///< of contacts without a bond, where they rub
+  std::optional<double> residual_friction{};  ///< of contacts without a bond, where they are frictional
 };
 
 /// Events, avalanches, energies, what comes loose, stability, residual.

@@ -18,6 +18,7 @@
 #include "equidem/assembly/files/file_keys.hpp"
 #include "equidem/assembly/touching.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/files/hdf5.hpp"
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/memory.hpp"

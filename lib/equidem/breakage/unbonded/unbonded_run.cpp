@@ -47,7 +47,7 @@ std::vector<UnbondedLaw> laws_of(const BreakageScene& scene, const UnbondedOptio
   if (!(friction >= 0) || !std::isfinite(friction))
     bad_input(fmt::format("the friction of contacts without a bond is {}", friction),
               "it must be finite and not negative", "Correct it");
-  check_control_of_rubbing(scene.path);
+  check_control_with_friction(scene.path);
   check_rest(scene, friction, options.rest);
   std::vector<UnbondedLaw> laws;
   for (std::size_t c = 0; c < scene.assembly.contacts.size(); ++c)
@@ -68,7 +68,7 @@ std::vector<ContactStatus> first_status(const BreakageScene& scene, std::span<co
 
 }  // namespace
 
-void check_control_of_rubbing(const LoadPath& path) {
+void check_control_with_friction(const LoadPath& path) {
   if (path.control == LoadControl::path) {
     bad_input("lambda may fall from event to event, and contacts close and slip",
               "their state depends on the path by which lambda falls, which this control leaves open",

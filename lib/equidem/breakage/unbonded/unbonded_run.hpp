@@ -31,14 +31,14 @@ struct UnbondedOptions {
 };
 
 /// \throws Error (bad_input) where the control is none of those that a path with a history has
-void check_control_of_rubbing(const LoadPath& path);
+void check_control_with_friction(const LoadPath& path);
 
 class UnbondedRun final : public EventPath {
  public:
   /// Contacts whose strengths are both 0 are no bonds from the start. All of the scene must outlive the run.
   /// A contact without a bond whose force at rest pulls, N_r > 0, begins open with the gap N_r/kN.
   /// \throws Error (bad_input) where the friction is not a finite number >= 0, forces at rest are beyond it, or
-  ///         check_control_of_rubbing() says so
+  ///         check_control_with_friction() says so
   UnbondedRun(const BreakageScene& scene, const Effects& effects, std::span<const Support> supports,
               UnbondedOptions options);
 

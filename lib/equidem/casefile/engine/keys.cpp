@@ -378,6 +378,7 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"stage.pair", "friction_cap", "", both_limited},
     RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
     RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
+    RemovedKey{"strength", "after_breaking", "rubs", "Write \"frictional\""},
     RemovedKey{"settling", "start", "", "Leave it out: bodies fall in time; method = \"growth\" begins dense"},
 };
 

@@ -87,20 +87,6 @@ void OpenFile::sync_file_system() {
   if (syncfs(descriptor_) != 0) write_failed(path_, std::strerror(errno));
 }
 
-Replacement::Replacement(std::filesystem::path path) : path_(std::move(path)), part_(path_.string() + ".part") {}
-
-Replacement::~Replacement() {
-  std::error_code ignored;
-  if (!part_.empty()) std::filesystem::remove(part_, ignored);
-}
-
-void Replacement::commit() {
-  std::error_code failed;
-  std::filesystem::rename(part_, path_, failed);
-  if (failed) write_failed(path_, failed.message());
-  part_.clear();
-}
-
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   OpenFile(folder, OpenFile::Mode::read).sync();

@@ -45,24 +45,6 @@ class OpenFile {
   int descriptor_ = -1;
 };
 
-/// A temporary file that replaces another atomically: a reader finds the old or the new file.
-class Replacement {
- public:
-  explicit Replacement(std::filesystem::path path);
-  /// Removes a file that was not committed.
-  ~Replacement();
-  Replacement(const Replacement&) = delete;
-  Replacement& operator=(const Replacement&) = delete;
-
-  /// Name of the temporary file: the final name and ".part".
-  [[nodiscard]] const std::filesystem::path& path() const { return part_; }
-  /// \throws Error (computation_failed) where that fails
-  void commit();
-
- private:
-  std::filesystem::path path_, part_;
-};
-
 /// Sync the entries of the folder of `path` to disk.
 void sync_folder_of(const std::filesystem::path& path);
 /// Sync many files of one file system to disk, with one call for all that was written to it; each alone takes about

@@ -5,7 +5,7 @@
 /// A bond carries N (tension positive), T and M, the forces and the moment of its springs. A parallel bond of the width
 /// w, with kM = kN w²/12, has its largest tension at the outer fibre, N/w + 6 |M|/w² (Potyondy & Cundall 2004, Int. J.
 /// Rock Mech. Min. Sci. 41, 1329). It breaks where N + 6 |M|/w >= f_t, in bending where the moment has the larger share
-/// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others, and rub
+/// of that, else in tension; and in shear where |T| >= f_s - mu N. The two discs then collide as any others,
 /// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
 /// and an unstretched tangential spring.
 ///

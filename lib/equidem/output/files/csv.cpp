@@ -20,8 +20,6 @@
 namespace equidem {
 namespace {
 
-constexpr std::size_t typical_cell_length = 16;  // characters, to reserve room
-
 template <class Number>
 void append_number(std::string& text, Number value) {
   char digits[32];
@@ -29,20 +27,9 @@ void append_number(std::string& text, Number value) {
   text.append(digits, end);
 }
 
-template <class Value>
-void add_cell(CsvText& text, const Value& value) {
-  text.cell(value);
-}
-
-template <class Value>
-void add_cell(CsvText& text, const std::optional<Value>& value) {
-  value ? text.cell(*value) : text.empty_cell();
-}
-
 }  // namespace
 
-CsvText::CsvText(const std::vector<std::string>& columns, std::size_t expected_rows) : columns_(columns.size()) {
-  text_.reserve((expected_rows + 1) * columns_ * typical_cell_length);
+CsvText::CsvText(const std::vector<std::string>& columns) : columns_(columns.size()) {
   for (const std::string& name : columns) cell(std::string_view(name));
   end_row();
 }
@@ -56,7 +43,7 @@ void CsvText::cell(double value) {
   append_number(text_, value);
 }
 
-void CsvText::cell(std::int64_t value) {
+void CsvText::cell_of(std::int64_t value) {
   separate();
   append_number(text_, value);
 }
@@ -81,45 +68,50 @@ void CsvText::end_row() {
   cells_ = 0;
 }
 
-Table& Table::add(std::string name, Values values) {
+Table& Table::add(std::string name, std::size_t rows, std::function<void(CsvText&, std::size_t row)> cell) {
   if (name.empty()) {
     bad_input("a column of a table has no name", "columns are found by their names", "Name it");
   }
-  for (const Column& column : columns_) {
-    if (column.name == name) {
-      bad_input(fmt::format("two columns of a table are called '{}'", name), "columns are found by their names",
-                "Rename one of them");
-    }
+  if (std::ranges::find(columns_, name, &Column::name) != columns_.end()) {
+    bad_input(fmt::format("two columns of a table are called '{}'", name), "columns are found by their names",
+              "Rename one of them");
   }
-  const std::size_t length = std::visit([](const auto& v) { return v.size(); }, values);
-  if (!columns_.empty() && length != rows()) {
+  if (!columns_.empty() && rows != rows_) {
     bad_input(
-        fmt::format("column '{}' has {} but the table has {}", name, counted(length, "value"), counted(rows(), "row")),
+        fmt::format("column '{}' has {} but the table has {}", name, counted(rows, "value"), counted(rows_, "row")),
         "columns of a table are equally long", "Give one value per row");
   }
-  columns_.push_back({std::move(name), std::move(values)});
+  rows_ = rows;
+  columns_.push_back({std::move(name), std::move(cell)});
   return *this;
 }
 
-std::size_t Table::rows() const {
-  if (columns_.empty()) return 0;
-  return std::visit([](const auto& v) { return v.size(); }, columns_.front().values);
+Table& Table::add(std::string name, Values values) {
+  const std::size_t rows = std::visit([](const auto& v) { return v.size(); }, values);
+  return add(std::move(name), rows, [values = std::move(values)](CsvText& text, std::size_t row) {
+    std::visit([&](const auto& v) { text.cell(v[row]); }, values);
+  });
+}
+
+void Table::write(const TextSink& to) const {
+  CsvText text(names_in(columns_));
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (const Column& column : columns_) column.cell(text, row);
+    text.end_row();
+    text.pass_on(to, false);
+  }
+  text.pass_on(to, true);
 }
 
 std::string Table::csv() const {
-  CsvText text(names_in(columns_), rows());
-  for (std::size_t row = 0; row < rows(); ++row) {
-    for (const Column& column : columns_) {
-      std::visit([&](const auto& values) { add_cell(text, values[row]); }, column.values);
-    }
-    text.end_row();
-  }
-  return text.text();
+  std::string all;
+  write([&](std::string_view part) { all += part; });
+  return all;
 }
 
 void write_csv(const std::filesystem::path& path, const Table& table, bool overwrite) {
-  check_writable(path, overwrite);
-  write_file(path, table.csv(), overwrite);
+  write_file(
+      path, [&](const TextSink& to) { table.write(to); }, overwrite);
 }
 
 std::vector<std::vector<std::string>> csv_cells(const std::string& text) {
@@ -237,11 +229,8 @@ std::string read_marked(const std::filesystem::path& path, const FileMark& mark)
 }
 
 GrowingCsv::GrowingCsv(std::filesystem::path path, std::vector<std::string> columns, const GrowingCsvOptions& options)
-    : path_(std::move(path)),
-      interval_(options.interval),
-      columns_(std::move(columns)),
-      header_(CsvText(columns_).text()),
-      rows_(columns_) {
+    : path_(std::move(path)), interval_(options.interval), columns_(std::move(columns)), rows_(columns_) {
+  rows_.pass_on([&](std::string_view line) { header_ = line; }, true);
   check_writable(path_, options.overwrite || options.continue_from);
   if (options.continue_from) {
     go_on(*options.continue_from);
@@ -254,7 +243,7 @@ GrowingCsv::GrowingCsv(std::filesystem::path path, std::vector<std::string> colu
 }
 
 GrowingCsv::~GrowingCsv() {
-  if (rows_.text().size() == header_.size()) return;
+  if (rows_.text().empty()) return;
   try {
     flush();
   } catch (const Error&) {
@@ -277,11 +266,12 @@ void GrowingCsv::add(std::int64_t step, const std::vector<double>& cells, bool r
 }
 
 void GrowingCsv::flush() {
-  const auto rows = std::string_view(rows_.text()).substr(header_.size());
-  file_->write_at(end_, bytes_of(rows));
-  end_ += rows.size();
+  const auto write = [&](std::string_view rows) {
+    file_->write_at(end_, bytes_of(rows));
+    end_ += rows.size();
+  };
+  rows_.pass_on(write, true);
   file_->truncate(end_);  // what an earlier run left behind
-  rows_ = CsvText(columns_);
   since_flush_.lap();
 }
 

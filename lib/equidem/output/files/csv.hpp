@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "equidem/core/checksum.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/output/files/checkpoint.hpp"
@@ -28,17 +29,24 @@ namespace equidem {
 /// The text of a table, row by row. Every row must have as many cells as there are columns.
 class CsvText {
  public:
-  explicit CsvText(const std::vector<std::string>& columns, std::size_t expected_rows = 0);
+  explicit CsvText(const std::vector<std::string>& columns);
 
   void cell(double value);  ///< "nan", "inf" and "-inf" where not finite
-  void cell(std::int64_t value);
+  void cell(std::integral auto value) { cell_of(static_cast<std::int64_t>(value)); }
   void cell(std::string_view value);  ///< quoted where it holds a comma, a quote or a line break
+  template <class Value>
+  void cell(const std::optional<Value>& value) {
+    value ? cell(*value) : empty_cell();
+  }
   void empty_cell() { separate(); }
   void end_row();
+  /// Passes on what has come together, where it is a block, or all.
+  void pass_on(const TextSink& to, bool all) { pass_block(text_, to, all ? 0 : std::size_t{1} << 16); }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
   void separate();
+  void cell_of(std::int64_t value);
 
   std::string text_;
   std::size_t columns_;
@@ -53,7 +61,7 @@ class Table {
                               std::vector<std::optional<double>>, std::vector<std::optional<std::int64_t>>>;
   struct Column {
     std::string name;
-    Values values;
+    std::function<void(CsvText&, std::size_t row)> cell;
   };
 
   /// Add a column to the right of the others.
@@ -69,13 +77,25 @@ class Table {
     for (const auto& element : range) cells.push_back(static_cast<Stored>(std::invoke(projection, element)));
     return add(std::move(name), Values(std::move(cells)));
   }
+  /// The same without a copy: the range and what the projection refers to outlive the table.
+  template <std::ranges::random_access_range Range, class Projection>
+  Table& view(std::string name, const Range& range, const Projection& projection) {
+    const auto cell = [&range, projection](CsvText& text, std::size_t k) {
+      text.cell(std::invoke(projection, range[k]));
+    };
+    return add(std::move(name), std::ranges::size(range), cell);
+  }
 
-  [[nodiscard]] std::size_t rows() const;
+  [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  void write(const TextSink& to) const;
   [[nodiscard]] std::string csv() const;
 
  private:
+  Table& add(std::string name, std::size_t rows, std::function<void(CsvText&, std::size_t row)> cell);
+
   std::vector<Column> columns_;
+  std::size_t rows_ = 0;
 };
 
 /// \throws Error (bad_input) as write_file does
@@ -173,7 +193,7 @@ class GrowingCsv {
   double interval_;
   std::vector<std::string> columns_;
   std::string header_;
-  CsvText rows_;  ///< the header, and rows that are not yet written
+  CsvText rows_;  ///< that are not yet written
   std::optional<OpenFile> file_;
   std::uint64_t end_ = 0;     ///< end of the written data
   std::uint64_t marked_ = 0;  ///< end of the regular rows, written or not

@@ -7,8 +7,6 @@
 #include <system_error>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/file.hpp"
-#include "equidem/core/files/open_file.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/motion/any_simulation.hpp"
@@ -38,13 +36,6 @@ std::string_view between(std::string_view text, std::string_view begin, std::str
   return text.substr(0, text.find(end));
 }
 
-/// A file that is there as a whole or not at all. \throws Error (computation_failed) where the disk is full
-void replace_file(const std::filesystem::path& path, std::string_view text) {
-  Replacement replacement(path);
-  OpenFile(replacement.path(), OpenFile::Mode::create).write_at(0, std::as_bytes(std::span(text)));
-  replacement.commit();
-}
-
 /// The discs of bodies that are there.
 struct MovingDiscs {
   std::vector<std::size_t> discs;  ///< their numbers in the assembly
@@ -66,8 +57,8 @@ MovingDiscs discs_there(std::size_t count, std::span<const FramePart> parts, std
   return shown;
 }
 
-std::string frame_discs_text(const Assembly& assembly, const FrameOptions& options, double time,
-                             const MovingDiscs& shown) {
+void write_frame_discs(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
+                       const MovingDiscs& shown) {
   const std::vector<std::size_t>& discs = shown.discs;
   PolyData data(discs.size(), discs.size(), 0);
   data.point_numbers("radius", [&](std::size_t k) { return assembly.radii[discs[k]]; });
@@ -80,15 +71,17 @@ std::string frame_discs_text(const Assembly& assembly, const FrameOptions& optio
   data.point_vectors("velocity", [&](std::size_t k) { return shown.velocities[k].u; });
   data.point_numbers("spin", [&](std::size_t k) { return shown.velocities[k].theta; });
   data.places([&](std::size_t k) { return options.travelling ? shown.motions[k].u : assembly.centres[discs[k]]; });
-  return data.text(&time);
+  data.write(to, &time);
 }
 
 /// The contacts of the bodies, which are the discs where none has parts.
-std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& options, double time,
-                                std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
+void write_frame_contacts(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
+                          std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
   const ContactLoads loads{.forces = true, .moments = options.moments};
+  const auto contact_of = [&](std::size_t c) { return contacts[c]; };
   if (!options.travelling)
-    return contacts_text({.places = assembly.centres, .motions = motions}, contacts, loads, &time);
+    return write_contacts(to, {.places = assembly.centres, .motions = motions}, contacts.size(), contact_of, loads,
+                          &time);
   std::vector<Vec2> places;
   std::vector<std::size_t> numbers;
   for (std::size_t body = 0; body < motions.size(); ++body) {
@@ -97,7 +90,7 @@ std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& op
     numbers.push_back(body);
   }
   if (places.size() == motions.size()) numbers.clear();
-  return contacts_text({.places = places, .numbers = numbers}, contacts, loads, &time);
+  write_contacts(to, {.places = places, .numbers = numbers}, contacts.size(), contact_of, loads, &time);
 }
 
 [[noreturn]] void cannot_add_frames(const std::filesystem::path& path, const std::string& why) {
@@ -135,11 +128,12 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, const std::string&
 void FrameWriter::append(std::int64_t step, double time, std::span<const DiscMotion> motions,
                          std::span<const DiscMotion> velocities, std::span<const BodyContact> contacts, bool regular) {
   assert(step > last_step());
-  write(
-      file_name(discs_stem, step),
-      frame_discs_text(assembly_, options_, time, discs_there(assembly_.size(), options_.parts, motions, velocities)));
+  const MovingDiscs shown = discs_there(assembly_.size(), options_.parts, motions, velocities);
+  write(file_name(discs_stem, step),
+        [&](const TextSink& to) { write_frame_discs(to, assembly_, options_, time, shown); });
   if (options_.contacts)
-    write(file_name(contacts_stem, step), frame_contacts_text(assembly_, options_, time, motions, contacts));
+    write(file_name(contacts_stem, step),
+          [&](const TextSink& to) { write_frame_contacts(to, assembly_, options_, time, motions, contacts); });
   list_frame(step, fmt::format("{}", time));
   if (regular) marked_ = {marked_.name, steps_.size(), sum_.value()};
   if (steps_.size() % (1 + steps_.size() / 200) == 0) write_index();
@@ -169,7 +163,7 @@ std::vector<std::filesystem::path> FrameWriter::other_files() const {
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / name_, ignored)) {
     const std::string file = entry.path().filename().string();
     const bool whole = file.ends_with(vtp_extension);
-    if (!whole && !file.ends_with(".vtp.part")) continue;
+    if (!whole && !file.ends_with(".part")) continue;
     for (const std::string_view stem : {discs_stem, contacts_stem}) {
       const auto step = number_from<std::int64_t>(file.starts_with(stem) ? between(file, stem, vtp_extension) : "");
       const bool listed = step && std::ranges::binary_search(steps_, *step);
@@ -212,9 +206,16 @@ void FrameWriter::go_on(const FileMark& mark) {
   marked_ = mark;
 }
 
-void FrameWriter::write(const std::string& name, const std::string& text) {
-  replace_file(folder_ / name, text);
-  sum_.add(std::as_bytes(std::span(text)));
+void FrameWriter::write(const std::string& name, const std::function<void(const TextSink&)>& make) {
+  Checksum sum = sum_;
+  const auto write_and_sum = [&](const TextSink& to) {
+    make([&](std::string_view part) {
+      to(part);
+      sum.add(std::as_bytes(std::span(part)));
+    });
+  };
+  write_file(folder_ / name, write_and_sum, true);
+  sum_ = sum;
   unsynced_.push_back(folder_ / name);
 }
 
@@ -231,7 +232,7 @@ void FrameWriter::list_frame(std::int64_t step, const std::string& time) {
 }
 
 void FrameWriter::write_index() const {
-  replace_file(folder_ / (name_ + ".pvd"), list_head + index_ + list_tail);
+  write_file(folder_ / (name_ + ".pvd"), list_head + index_ + list_tail, true);
 }
 
 Assembly discs_of_frames(std::span<const Grain> grains, std::span<const Clump> clumps, bool come_and_go,

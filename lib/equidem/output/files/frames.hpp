@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@
 #include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/checksum.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 
@@ -52,8 +54,8 @@ double bytes_of_frame(double discs, double contacts, const FrameOptions& options
 /// Writes frames, two files each, SI units, Float64:
 ///   NAME/discs_STEP.vtp     a point for each disc: radius, what FrameOptions::of_discs adds, velocity, spin and
 ///                           displacement, rotation, or angle
-///   NAME/contacts_STEP.vtp  contacts_text (vtk.hpp): a line for each contact, with its force
-/// The step has at least nine digits, and both files hold the time (PolyData::text). NAME.pvd lists the finished
+///   NAME/contacts_STEP.vtp  write_contacts (vtk.hpp): a line for each contact, with its force
+/// The step has at least nine digits, and both files hold the time (PolyData::write). NAME.pvd lists the finished
 /// frames with their times. Every file is written to a temporary file and then renamed: killed at any moment, all that
 /// is listed is whole. Past 200 frames the list is written once in every 200th part of them, in sync() and in finish().
 class FrameWriter {
@@ -90,7 +92,7 @@ class FrameWriter {
   [[nodiscard]] std::vector<std::string> file_names(std::int64_t step) const;
   [[nodiscard]] std::vector<std::filesystem::path> other_files() const;
   void go_on(const FileMark& mark);
-  void write(const std::string& name, const std::string& text);
+  void write(const std::string& name, const std::function<void(const TextSink&)>& make);
   void list_frame(std::int64_t step, const std::string& time);
   void write_index() const;
 

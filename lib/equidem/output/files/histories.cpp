@@ -203,14 +203,18 @@ void write_energy_csv(const std::filesystem::path& path, std::span<const EnergyS
                       Body body, bool overwrite) {
   std::vector<std::string> columns{"step", "time_s"};
   for (const std::string& name : energy_columns(family, body)) columns.push_back(name);
-  CsvText text(columns, energies.size());
-  for (const EnergySample& sample : energies) {
-    text.cell(sample.step);
-    text.cell(sample.time);
-    for (const double value : energy_cells(family, sample.ledger)) text.cell(value);
-    text.end_row();
-  }
-  write_file(path, text.text(), overwrite);
+  const auto make = [&](const TextSink& to) {
+    CsvText text(columns);
+    for (const EnergySample& sample : energies) {
+      text.cell(sample.step);
+      text.cell(sample.time);
+      for (const double value : energy_cells(family, sample.ledger)) text.cell(value);
+      text.end_row();
+      text.pass_on(to, false);
+    }
+    text.pass_on(to, true);
+  };
+  write_file(path, make, overwrite);
 }
 
 Results energy_results(BodyFamily family, Body body, const EnergyLedger& ledger, double scale) {

@@ -12,7 +12,8 @@ namespace equidem {
 namespace {
 
 /// \param discs of which the data are, the first ones \param numbers of discs; empty: not written
-std::string state_discs_text(const AssemblyState& state, std::size_t discs, std::span<const std::int64_t> numbers) {
+void write_state_discs(const TextSink& to, const AssemblyState& state, std::size_t discs,
+                 std::span<const std::int64_t> numbers) {
   const Assembly& assembly = state.assembly;
   PolyData data(discs, discs, 0);
   if (!numbers.empty()) {
@@ -34,19 +35,29 @@ std::string state_discs_text(const AssemblyState& state, std::size_t discs, std:
     data.point_numbers("mean_stress", [=](std::size_t disc) { return mean_stress(state.stresses[disc]); });
   }
   data.places([&](std::size_t disc) { return assembly.centres[disc]; });
-  return data.text();
+  data.write(to);
 }
 
-std::string state_contacts_text(const AssemblyState& state) {
+void write_state_contacts(const TextSink& to, const AssemblyState& state) {
   const Assembly& assembly = state.assembly;
-  std::vector<BodyContact> contacts;
-  for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+  const auto contact_of = [&](std::size_t c) {
     const ContactForce force = state.contact_forces.empty() ? ContactForce{} : state.contact_forces[c];
-    contacts.push_back(bonded_contact(assembly, c, force));
-    if (!state.bending_moments.empty()) contacts.back().bending_moment = state.bending_moments[c];
-  }
-  return contacts_text({.places = assembly.centres, .motions = state.motions}, contacts,
-                       {.forces = !state.contact_forces.empty(), .moments = !state.bending_moments.empty()});
+    BodyContact contact = bonded_contact(assembly, c, force);
+    if (!state.bending_moments.empty()) contact.bending_moment = state.bending_moments[c];
+    return contact;
+  };
+  write_contacts(to, {.places = assembly.centres, .motions = state.motions}, assembly.contacts.size(), contact_of,
+                 {.forces = !state.contact_forces.empty(), .moments = !state.bending_moments.empty()});
+}
+
+/// The files of discs and of contacts. \param numbers see write_state_discs
+void write_both(const std::filesystem::path& discs, const std::filesystem::path& contacts, const AssemblyState& state,
+                std::span<const std::int64_t> numbers, bool overwrite) {
+  const std::size_t count = numbers.empty() ? state.assembly.size() : numbers.size();
+  write_file(
+      discs, [&](const TextSink& to) { write_state_discs(to, state, count, numbers); }, overwrite);
+  write_file(
+      contacts, [&](const TextSink& to) { write_state_contacts(to, state); }, overwrite);
 }
 
 /// \param blocks lines of the index
@@ -63,44 +74,47 @@ std::string piece_name(const std::string& name, const char* what, int piece) {
 
 }  // namespace
 
-std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
-                          const double* time) {
+void write_contacts(const TextSink& to, const BodyPlaces& bodies, std::size_t count,
+                    const std::function<BodyContact(std::size_t)>& contact_of, ContactLoads loads, const double* time) {
   // The points: the bodies, then the ends at walls and at images behind the period.
   struct End {
-    std::size_t body;
+    std::size_t contact, body;
     Vec2 from_centre;
   };
-  const std::size_t n = bodies.places.size(), m = contacts.size();
+  const std::size_t n = bodies.places.size(), m = count;
   const auto place_of = [&](std::int32_t number) {
     const auto body = static_cast<std::size_t>(number);
     if (bodies.numbers.empty()) return body;
     return static_cast<std::size_t>(std::ranges::lower_bound(bodies.numbers, body) - bodies.numbers.begin());
   };
   std::vector<End> ends;
-  std::vector<std::size_t> second;
-  for (const BodyContact& contact : contacts) {
+  for (std::size_t c = 0; c < m; ++c) {
+    const BodyContact contact = contact_of(c);
     const bool wall = contact.j < 0;
-    if (!wall && contact.shift == Vec2{}) {
-      second.push_back(place_of(contact.j));
-    } else {
-      second.push_back(n + ends.size());
-      ends.push_back({place_of(wall ? contact.i : contact.j), wall ? contact.arm : contact.shift});
-    }
+    if (wall || contact.shift != Vec2{})
+      ends.push_back({c, place_of(wall ? contact.i : contact.j), wall ? contact.arm : contact.shift});
   }
+  const auto second_of = [&](std::size_t c) {
+    const auto end = std::ranges::lower_bound(ends, c, {}, &End::contact);
+    if (end != ends.end() && end->contact == c) return n + static_cast<std::size_t>(end - ends.begin());
+    return place_of(contact_of(c).j);
+  };
   const auto body_of = [&](std::size_t point) { return point < n ? point : ends[point - n].body; };
   PolyData data(n + ends.size(), 0, m);
   data.point_numbers("radius", [](std::size_t) { return 0.0; });
   if (!bodies.motions.empty())
     data.point_vectors("displacement", [&](std::size_t point) { return bodies.motions[body_of(point)].u; });
   const auto vectors = [&](const char* name, auto vector) {
-    data.declare<double>("CellData", name, m, 3,
-                         [=](std::size_t c, int component) { return component_of(vector(contacts[c]), component); });
+    data.declare<double>("CellData", name, m, 3, [vector, &contact_of](std::size_t c, int component) {
+      return component_of(vector(contact_of(c)), component);
+    });
   };
   const auto numbers = [&](const char* name, double BodyContact::*member) {
-    data.declare<double>("CellData", name, m, 1, [=](std::size_t c, int) { return contacts[c].*member; });
+    data.declare<double>("CellData", name, m, 1,
+                         [member, &contact_of](std::size_t c, int) { return contact_of(c).*member; });
   };
-  data.declare<std::int32_t>("CellData", "i", m, 1, [=](std::size_t c, int) { return contacts[c].i; });
-  data.declare<std::int32_t>("CellData", "j", m, 1, [=](std::size_t c, int) { return contacts[c].j; });
+  data.declare<std::int32_t>("CellData", "i", m, 1, [&](std::size_t c, int) { return contact_of(c).i; });
+  data.declare<std::int32_t>("CellData", "j", m, 1, [&](std::size_t c, int) { return contact_of(c).j; });
   vectors("contact_point", [&](const BodyContact& c) { return bodies.places[place_of(c.i)] + c.arm; });
   if (loads.forces) {
     vectors("force", [](const BodyContact& c) { return c.force; });
@@ -112,10 +126,10 @@ std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact>
     return point < n ? bodies.places[point] : bodies.places[ends[point - n].body] + ends[point - n].from_centre;
   });
   data.declare<std::int32_t>("Lines", "connectivity", 2 * m, 1, [&](std::size_t point, int) {
-    return point % 2 == 0 ? place_of(contacts[point / 2].i) : second[point / 2];
+    return point % 2 == 0 ? place_of(contact_of(point / 2).i) : second_of(point / 2);
   });
   data.declare<std::int32_t>("Lines", "offsets", m, 1, [](std::size_t contact, int) { return 2 * (contact + 1); });
-  return data.text(time);
+  data.write(to, time);
 }
 
 std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder, const std::string& name,
@@ -125,8 +139,7 @@ std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder
   const std::string contacts = name + "_contacts.vtp";
   const std::vector<std::filesystem::path> paths{folder / (name + ".vtm"), folder / discs, folder / contacts};
   for (const auto& path : paths) check_writable(path, overwrite);
-  write_file(paths[1], state_discs_text(state, state.assembly.size(), {}), overwrite);
-  write_file(paths[2], state_contacts_text(state), overwrite);
+  write_both(paths[1], paths[2], state, {}, overwrite);
   const std::string blocks = fmt::format(
       "    <DataSet index=\"0\" name=\"discs\" file=\"{}\"/>\n"
       "    <DataSet index=\"1\" name=\"contacts\" file=\"{}\"/>\n",
@@ -143,8 +156,7 @@ void write_vtk_piece(const std::filesystem::path& folder, const std::string& nam
                      const AssemblyState& state, std::span<const std::int64_t> numbers, bool overwrite) {
   assert_consistent(state);
   const std::vector<std::string> names = vtk_piece_names(name, piece);
-  write_file(folder / names[0], state_discs_text(state, numbers.size(), numbers), overwrite);
-  write_file(folder / names[1], state_contacts_text(state), overwrite);
+  write_both(folder / names[0], folder / names[1], state, numbers, overwrite);
 }
 
 void write_vtk_index(const std::filesystem::path& folder, const std::string& name, int pieces, bool overwrite) {
@@ -182,7 +194,7 @@ void PolyData::declare(const std::string& section, const char* type, const std::
   offset_ += sizeof bytes + bytes;
 }
 
-std::string PolyData::text(const double* time) {
+void PolyData::write(const TextSink& to, const double* time) {
   close_section();
   const std::string field = time == nullptr
                                 ? ""
@@ -196,10 +208,8 @@ std::string PolyData::text(const double* time) {
       "NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n{}"
       "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_",
       vtk_byte_order(), field, points_, vertices_, lines_, header_);
-  text.reserve(text.size() + offset_ + 64);
-  for (const auto& append : arrays_) append(text);
-  text += "\n  </AppendedData>\n</VTKFile>\n";
-  return text;
+  for (const auto& append : arrays_) append(text, to);
+  to(text + "\n  </AppendedData>\n</VTKFile>\n");
 }
 
 void PolyData::close_section() {

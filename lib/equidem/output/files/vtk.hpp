@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "equidem/contact/body_contact.hpp"
+#include "equidem/core/file.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/output/files/body_tables.hpp"
 
@@ -36,16 +37,18 @@ struct ContactLoads {
 /// or to the contact point at a wall. Arrays of lines: i, j (negative: wall -1 - j), contact_point (m), and as `loads`
 /// say force (3-vector, on i), normal_force, tangential_force, bending_moment (body_contact.hpp); of points:
 /// displacement, and a radius of zero, so that Glyph draws circles of discs only.
-/// \param time see PolyData::text
-std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact> contacts, ContactLoads loads,
-                          const double* time = nullptr);
+/// \param contact_of the k-th of `count` contacts, asked for by each array
+/// \param time see PolyData::write
+void write_contacts(const TextSink& to, const BodyPlaces& bodies, std::size_t count,
+                    const std::function<BodyContact(std::size_t k)>& contact_of, ContactLoads loads,
+                    const double* time = nullptr);
 
 /// Write NAME.vtm, the index to open, and beside it NAME_discs.vtp and NAME_contacts.vtp (VTK XML PolyData, appended
 /// raw binary, Float64). SI units; arrays of what the state does not contain are left out.
 ///   discs     one vertex each at its centre: radius, cell_area, displacement (3-vector), rotation, stress_xx,
 ///             stress_yy, stress_xy, stress_yx, mean_stress. In ParaView: Glyph with the 2D glyph "circle" scaled by
 ///             radius, or Point Gaussian.
-///   contacts  as contacts_text: "Warp By Vector" bends both files alike.
+///   contacts  as write_contacts: "Warp By Vector" bends both files alike.
 /// \return the three paths, the index first
 /// \throws Error (bad_input) as write_file does, before anything is written where one of the three exists
 std::vector<std::filesystem::path> write_vtk(const std::filesystem::path& folder, const std::string& name,
@@ -69,7 +72,7 @@ constexpr double component_of(Vec2 v, int component) {
   return component == 0 ? v.x : component == 1 ? v.y : 0.0;
 }
 
-/// One piece of PolyData. Arrays are declared first and generated in text(), so that only the text of the file is held.
+/// One piece of PolyData. Arrays are declared first and generated in write(), so that none of them is held.
 /// Appended raw data: an underscore, then for each array its length in bytes (UInt64) and its numbers; the offsets in
 /// the declarations count from behind the underscore.
 class PolyData {
@@ -81,12 +84,13 @@ class PolyData {
   void declare(const std::string& section, const std::string& name, std::size_t tuples, int components, Value value) {
     const std::uint64_t bytes = tuples * static_cast<std::uint64_t>(components) * sizeof(Number);
     declare(section, vtk_type<Number>(), name, tuples, components, bytes);
-    arrays_.push_back([=](std::string& text) {
+    arrays_.push_back([=](std::string& text, const TextSink& to) {
       append_bytes(text, bytes);
       for (std::size_t tuple = 0; tuple < tuples; ++tuple) {
         for (int component = 0; component < components; ++component) {
           append_bytes(text, static_cast<Number>(value(tuple, component)));
         }
+        pass_block(text, to);
       }
     });
   }
@@ -111,7 +115,7 @@ class PolyData {
   }
 
   /// The file. \param time in s, kept as the field "TimeValue" that VTK's readers take for the time of the data
-  [[nodiscard]] std::string text(const double* time = nullptr);
+  void write(const TextSink& to, const double* time = nullptr);
 
  private:
   template <class Number>
@@ -133,7 +137,7 @@ class PolyData {
   std::size_t points_, vertices_, lines_;
   std::string header_, section_;
   std::uint64_t offset_ = 0;
-  std::vector<std::function<void(std::string&)>> arrays_;
+  std::vector<std::function<void(std::string& text, const TextSink& to)>> arrays_;
 };
 
 /// The text with & < > " written as entities, for content and for values in double quotes.

@@ -2,7 +2,6 @@
 #include "equidem/output/pictures/field_files.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +10,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/output/files/csv.hpp"
+#include "equidem/output/files/vtk.hpp"
 #include "equidem/output/pictures/canvas.hpp"
 
 namespace equidem {
@@ -29,17 +29,17 @@ Values pressure_of(const CoarseFields& fields) {
   return values_of(fields, [&](std::size_t k) { return -0.5 * (fields.stress[k].xx + fields.stress[k].yy); });
 }
 
-/// The fields, one row for each cell. \param table gets the columns
-void add_fields(Table& table, const CoarseFields& f) {
-  table.add("stress_xx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xx; }))
-      .add("stress_yy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yy; }))
-      .add("stress_xy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xy; }))
-      .add("stress_yx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yx; }))
-      .add("pressure_Pa", pressure_of(f))
-      .add("solid_fraction", f.solid_fraction)
-      .add("coordination", f.coordination)
-      .add("vx_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].x; }))
-      .add("vy_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].y; }));
+/// The fields by their names, each with a value for each cell.
+std::vector<std::pair<const char*, Values>> fields_of(const CoarseFields& f) {
+  return {{"stress_xx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xx; })},
+          {"stress_yy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yy; })},
+          {"stress_xy_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].xy; })},
+          {"stress_yx_Pa", values_of(f, [&](std::size_t k) { return f.stress[k].yx; })},
+          {"pressure_Pa", pressure_of(f)},
+          {"solid_fraction", f.solid_fraction},
+          {"coordination", f.coordination},
+          {"vx_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].x; })},
+          {"vy_m_per_s", values_of(f, [&](std::size_t k) { return f.velocity[k].y; })}};
 }
 
 Table table_of(const CoarseFields& fields) {
@@ -50,7 +50,7 @@ Table table_of(const CoarseFields& fields) {
   Table table;
   table.add("x_m", values_of(fields, [&](std::size_t k) { return middle(k).x; }))
       .add("y_m", values_of(fields, [&](std::size_t k) { return middle(k).y; }));
-  add_fields(table, fields);
+  for (auto& [name, values] : fields_of(fields)) table.add(name, std::move(values));
   return table;
 }
 
@@ -63,20 +63,16 @@ std::string image_text(const CoarseFields& fields) {
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{}\" header_type=\"UInt64\">\n"
       "  <ImageData WholeExtent=\"{}\" Origin=\"{} {} 0\" Spacing=\"{} {} 1\">\n    <Piece Extent=\"{}\">\n      "
       "<CellData>\n",
-      std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian", extent, grid.region.low.x,
-      grid.region.low.y, size.x, size.y, extent);
+      vtk_byte_order(), extent, grid.region.low.x, grid.region.low.y, size.x, size.y, extent);
   std::string numbers;
   const auto append = [&](auto number) {
     char bytes[sizeof number];
     std::memcpy(bytes, &number, sizeof number);
     numbers.append(bytes, sizeof number);
   };
-  Table cells;
-  add_fields(cells, fields);
-  for (const Table::Column& column : cells.columns()) {
-    const auto& values = std::get<Values>(column.values);
-    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                        column.name, numbers.size());
+  for (const auto& [name, values] : fields_of(fields)) {
+    text += fmt::format("        <DataArray type=\"Float64\" Name=\"{}\" format=\"appended\" offset=\"{}\"/>\n", name,
+                        numbers.size());
     append(std::uint64_t{8 * values.size()});
     for (const double value : values) append(value);
   }

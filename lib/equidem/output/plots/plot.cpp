@@ -400,7 +400,7 @@ PlotData wide_table(const Plot& plot) {
     place.high = add(series.high, place.y + "_high", "high");
   }
   const std::size_t rows = columns.empty() ? 0 : columns.front()->size();
-  CsvText text(names.all(), rows);
+  CsvText text(names.all());
   for (std::size_t row = 0; row < rows; ++row) {
     for (const auto* column : columns) text.cell(finite_or_nan((*column)[row]));
     text.end_row();
@@ -419,7 +419,7 @@ PlotData tidy_table(const Plot& plot) {
   const std::string low = bars ? columns.add("low", "") : "", high = bars ? columns.add("high", "") : "";
   std::size_t row = 0, total = 0;
   for (const Series& series : plot.series) total += series.x.size();
-  CsvText text(columns.all(), total);
+  CsvText text(columns.all());
   for (const Series& series : plot.series) {
     const std::string name = names.add(series_name(series), "y");
     const bool has_bars = !series.low.empty();

@@ -38,10 +38,6 @@ GrainScene stacked(const PairProperties& pair);
 // Exact values of section 5.6.
 constexpr double exact_speed = 0.271462651012440;   ///< d', eq. (28)
 constexpr double exact_parting = 0.10673687246956;  ///< T0, s, eq. (30); the sum (31) omits the singular end
-
-/// Height, m, above the floor of a rigid ball dropped at rest from `height`, after `time` s.
-double rigid_height(double height, double e, double time);
-
 GrainSimulation start(const GrainScene& scene, NormalLaw law, double step, bool refuse_crossing = true);
 
 }  // namespace equidem::fujioka2005

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Contacts that rub, forces at rest and viscoelastic springs at the ends of what they can be.
+/// Frictional contacts, forces at rest and viscoelastic springs at the ends of what they can be.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -23,14 +23,14 @@ std::string told(const UnbondedRun& run) {
   return fmt::format("{}, ended: {}", counted(std::ssize(run.events()), "event"), to_string(run.end()));
 }
 
-Assembly rubbing_cell() {
+Assembly frictional_cell() {
   return hexagonal_lattice({.columns = 4, .rows = 4, .radius = 0.5, .periodic = true});
 }
 
 }  // namespace
 
 TEST_CASE("an_inclined_crack_with_any_friction_goes_to_and_fro_and_closes_its_energy") {
-  HardCase table({.name = "faces of a crack that rub, friction 0 to 10, to and fro",
+  HardCase table({.name = "faces of a crack, friction 0 to 10, to and fro",
                   .why = "the tangent is not symmetric where faces slip, and at every turn all of them stick at once"});
   for (const double friction : {0.0, 0.3, 1.0, 10.0}) {
     const Assembly block = hexagonal_lattice({.columns = 9, .rows = 9, .radius = 0.5});
@@ -52,27 +52,28 @@ TEST_CASE("an_inclined_crack_with_any_friction_goes_to_and_fro_and_closes_its_en
     const double lost = scene.run().ledger().friction;
     CHECK(lost >= 0);
     if (friction <= 1) CHECK((lost > 0) == (friction > 0));
-    table.note(fmt::format("quasistatic, rubs, friction {:g}", friction),
+    table.note(fmt::format("quasistatic, frictional, friction {:g}", friction),
                friction > 1 ? "an end with its reason" : "energy closes to 1e-10, residual below 1e-12",
                told(scene.run()));
   }
 }
 
 TEST_CASE("discs_without_a_bond_and_without_a_force_open_or_close_at_once") {
-  HardCase table({.name = "a packing that rubs without a force at rest",
+  HardCase table({.name = "a frictional packing without a force at rest",
                   .why = "every contact is at the apex of its cone: it may open, stick, or slip either way"});
   for (const double strain : {-1e-3, 1e-3}) {
     LoadPathOptions path;
     path.strain = Voigt{strain, strain, 0};
     path.control = LoadControl::motion;
     path.legs = {1};
-    Unbonded scene(rubbing_cell(), usual_springs, path, 0.5);
+    Unbonded scene(frictional_cell(), usual_springs, path, 0.5);
     scene.all();
     const auto& status = scene.run().contact_state().status();
     CAPTURE(strain, told(scene.run()));
     CHECK(std::ranges::count(status, ContactStatus::open) == (strain > 0 ? std::ssize(status) : 0));
     CHECK(std::abs(scene.run().leg_points().back().load) > (strain > 0 ? -1.0 : 1.0));
-    table.note(strain > 0 ? "quasistatic, rubs, pulled from all sides" : "quasistatic, rubs, pressed from all sides",
+    table.note(strain > 0 ? "quasistatic, frictional, pulled from all sides"
+                          : "quasistatic, frictional, pressed from all sides",
                strain > 0 ? "all open, no load" : "no contact opens", told(scene.run()));
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/study/fujioka2005_scenes.hpp"
+#include "papers/fujioka2005_scenes.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -39,17 +39,6 @@ GrainScene stacked(const PairProperties& pair) {
   GrainScene scene = on_floor(pair);
   scene.grains = {ball_at({-r, r}, r), ball_at({r, r}, r), ball_at({0, (1 + std::numbers::sqrt3) * r}, r)};
   return scene;
-}
-
-double rigid_height(double height, double e, double time) {
-  double speed = std::sqrt(2 * gravity * height), left = time - speed / gravity;
-  if (left < 0) return height - 0.5 * gravity * time * time;
-  speed *= e;
-  while (left > 2 * speed / gravity) {
-    left -= 2 * speed / gravity;
-    speed *= e;
-  }
-  return speed * left - 0.5 * gravity * left * left;
 }
 
 GrainSimulation start(const GrainScene& scene, NormalLaw law, double step, bool refuse_crossing) {

@@ -24,7 +24,7 @@ using namespace equidem::test;
 namespace {
 
 /// Statics beside motion at one level.
-struct RubbingLevel {
+struct FrictionalLevel {
   double force = 0;  // the largest difference of a force over the largest force
   std::int64_t open = 0;
   std::vector<std::string> other_contacts;  // open in one and closed in the other
@@ -33,17 +33,17 @@ struct RubbingLevel {
   std::string why;
 };
 
-RubbingLevel level_of(const HeldDiscs& held, const Push& load, const std::vector<double>& legs,
-                      const SlowGrains::Forces& moved) {
+FrictionalLevel level_of(const HeldDiscs& held, const Push& load, const std::vector<double>& legs,
+                         const SlowGrains::Forces& moved) {
   LoadPathOptions path;
   path.supports = {{"walls", 0, 0, 0}, {"lid", load.lid.x, load.lid.y, 0}};
   path.control = load.lid == Vec2{} ? LoadControl::load : LoadControl::motion;
   path.legs = legs;
   for (std::size_t k = 0; load.gravity != Vec2{} && k < held.masses.size(); ++k)
     path.loads.push_back({fmt::format("disc {}", k), LoadKind::per_disc, held.masses[k] * load.gravity, 0});
-  Unbonded scene(held.assembly, ContactSprings(rubbing_springs), held.strengths, path, held.options);
+  Unbonded scene(held.assembly, ContactSprings(frictional_springs), held.strengths, path, held.options);
   scene.all();
-  RubbingLevel level;
+  FrictionalLevel level;
   level.ended = scene.run().end();
   level.why = scene.run().why();
   for (const BreakEvent& event : scene.events()) ++level.events[to_string(event.mode)];
@@ -87,30 +87,30 @@ struct CrackedBlock {
         radii[lattice.centres[i].y > lattice.centres[j].y ? i : j] = r - gap;
         continue;
       }
-      const double mass = inertia_of(r, rubbing_density, Body::disc).mass,
-                   dashpot = 0.1 * std::sqrt(mass * rubbing_springs.kN);
+      const double mass = inertia_of(r, frictional_density, Body::disc).mass,
+                   dashpot = 0.1 * std::sqrt(mass * frictional_springs.kN);
       bonds.push_back({.i = std::min(i, j),
                        .j = std::max(i, j),
                        .normal_dashpot = dashpot,
                        .tangential_dashpot = dashpot,
-                       .normal_spring = rubbing_springs.kN,
-                       .tangential_spring = rubbing_springs.kT});
+                       .normal_spring = frictional_springs.kN,
+                       .tangential_spring = frictional_springs.kT});
     }
     for (std::size_t k = 0; k < radii.size(); ++k) {
       discs.push_back({.position = lattice.centres[k] + Vec2{2 * r, r - low.y},
                        .radius = radii[k],
-                       .inertia = inertia_of(radii[k], rubbing_density, Body::disc)});
+                       .inertia = inertia_of(radii[k], frictional_density, Body::disc)});
       box = {std::max(box.x, discs.back().position.x + 3 * r), std::max(box.y, discs.back().position.y + r)};
     }
   }
 };
 
 /// Both go to the levels one after another, from where the motion is.
-std::vector<RubbingLevel> follow(SlowGrains& slow, const HeldDiscs& held, const Push& load,
-                                 std::span<const double> to) {
+std::vector<FrictionalLevel> follow(SlowGrains& slow, const HeldDiscs& held, const Push& load,
+                                    std::span<const double> to) {
   const Push from = slow.at();
   std::vector<double> legs;
-  std::vector<RubbingLevel> levels;
+  std::vector<FrictionalLevel> levels;
   for (const double lambda : to) {
     slow.push_to(from + lambda * load);
     legs.push_back(lambda);
@@ -123,7 +123,7 @@ const std::vector<double> loaded_and_unloaded{0.25, 0.5, 0.75, 1, 0.5, 0};
 
 /// Discs that jammed, pressed and sheared by their lid, which then moves back and further down by some times their
 /// overlaps.
-std::vector<RubbingLevel> under_a_lid(double overlap, double steps) {
+std::vector<FrictionalLevel> under_a_lid(double overlap, double steps) {
   Vec2 box;
   const std::vector<Grain> discs = jammed_discs(60, overlap, box);
   SlowGrains slow(discs, box, {}, steps);
@@ -133,14 +133,14 @@ std::vector<RubbingLevel> under_a_lid(double overlap, double steps) {
   return follow(slow, held, {{-2 * way, -0.3 * way}, {}}, loaded_and_unloaded);
 }
 
-double largest_difference(const std::vector<RubbingLevel>& levels) {
-  return std::ranges::max(levels, {}, &RubbingLevel::force).force;
+double largest_difference(const std::vector<FrictionalLevel>& levels) {
+  return std::ranges::max(levels, {}, &FrictionalLevel::force).force;
 }
 
 /// \param most of the forces at each level
-void check_levels(const std::vector<RubbingLevel>& levels, double most) {
+void check_levels(const std::vector<FrictionalLevel>& levels, double most) {
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const RubbingLevel& level = levels[k];
+    const FrictionalLevel& level = levels[k];
     CAPTURE(k, level.why, level.open);
     CHECK(level.force < most);
     CHECK(level.other_contacts == std::vector<std::string>{});
@@ -153,7 +153,7 @@ void check_levels(const std::vector<RubbingLevel>& levels, double most) {
 // The dashpots of moving contacts add to the force that friction allows: differences fall with the speed, from 5e-4
 // here to 6e-5 at a tenth of it.
 TEST_CASE("a_packing_whose_lid_moves_carries_the_forces_of_slow_motion") {
-  const std::vector<RubbingLevel> levels = under_a_lid(1e-5, 8000);
+  const std::vector<FrictionalLevel> levels = under_a_lid(1e-5, 8000);
   check_levels(levels, 1e-3);
   for (const char* mode : {"open", "close", "slip", "stick"}) {
     CAPTURE(mode);
@@ -169,7 +169,7 @@ TEST_CASE("a_packing_with_forces_at_rest_carries_those_of_slow_motion_as_its_wei
   const double way = 0.004 * overlap;
   slow.push_to({{way, -way}, {}});
   const HeldDiscs held = held_discs(slow.packing(), 20 * overlap, {});
-  const std::vector<RubbingLevel> levels =
+  const std::vector<FrictionalLevel> levels =
       follow(slow, held, {{}, {2.5, -0.75}}, std::vector{0.25, 0.5, 0.75, 1.0, 0.5});
   check_levels(levels, 0.003);
   CHECK(levels.back().events.at("slip") > 50);
@@ -182,7 +182,7 @@ TEST_CASE("a_crack_in_a_block_closes_slips_and_opens_as_in_slow_motion") {
   const HeldDiscs held = held_discs(slow.packing(), 1e-3, block.bonds);
   CHECK(held.assembly.contacts.size() > block.bonds.size() + 10);
   const std::vector<double> to{0.25, 0.5, 1, 0.5, 0.25, 0.7};
-  const std::vector<RubbingLevel> levels = follow(slow, held, {{5e-7, -1e-6}, {}}, to);
+  const std::vector<FrictionalLevel> levels = follow(slow, held, {{5e-7, -1e-6}, {}}, to);
   check_levels(levels, 1e-3);
   for (const char* mode : {"open", "close", "slip", "stick"}) {
     CAPTURE(mode);
