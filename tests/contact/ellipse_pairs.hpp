@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
 #include "contact/ellipse_oracle.hpp"
 
