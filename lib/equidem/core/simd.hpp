@@ -245,15 +245,16 @@ EQUIDEM_ALWAYS_INLINE void transpose(Two (&m)[2]) {
   m[0] = __builtin_shufflevector(a, b, 0, 2);
   m[1] = __builtin_shufflevector(a, b, 1, 3);
 }
+EQUIDEM_ALWAYS_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const Four e01 = __builtin_shufflevector(a, b, 0, 4, 2, 6), o01 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four e23 = __builtin_shufflevector(c, d, 0, 4, 2, 6), o23 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(e01, e23, 0, 1, 4, 5);
+  b = __builtin_shufflevector(o01, o23, 0, 1, 4, 5);
+  c = __builtin_shufflevector(e01, e23, 2, 3, 6, 7);
+  d = __builtin_shufflevector(o01, o23, 2, 3, 6, 7);
+}
 EQUIDEM_ALWAYS_INLINE void transpose(Four (&m)[4]) {
-  const Four e01 = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);
-  const Four o01 = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
-  const Four e23 = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
-  const Four o23 = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
-  m[0] = __builtin_shufflevector(e01, e23, 0, 1, 4, 5);
-  m[1] = __builtin_shufflevector(o01, o23, 0, 1, 4, 5);
-  m[2] = __builtin_shufflevector(e01, e23, 2, 3, 6, 7);
-  m[3] = __builtin_shufflevector(o01, o23, 2, 3, 6, 7);
+  transpose(m[0], m[1], m[2], m[3]);
 }
 EQUIDEM_ALWAYS_INLINE void transpose(Eight (&m)[8]) {
   const Eight e01 = even_of(m[0], m[1]), o01 = odd_of(m[0], m[1]), e23 = even_of(m[2], m[3]), o23 = odd_of(m[2], m[3]);

@@ -25,18 +25,19 @@ using namespace simd;
 /// The motions of four places as x, y(, theta) of four lanes.
 template <int Width>
 EQUIDEM_ALWAYS_INLINE void gather(const double* motion, const std::int32_t* place, Lanes& x, Lanes& y, Lanes& theta) {
-  const auto at = [&](int k) { return motion + Width * static_cast<std::ptrdiff_t>(place[k]); };
+  const double *a = motion + Width * static_cast<std::ptrdiff_t>(place[0]),
+               *b = motion + Width * static_cast<std::ptrdiff_t>(place[1]),
+               *c = motion + Width * static_cast<std::ptrdiff_t>(place[2]),
+               *d = motion + Width * static_cast<std::ptrdiff_t>(place[3]);
   if constexpr (Width == 4) {
-    Lanes rows[4] = {load<Lanes>(at(0)), load<Lanes>(at(1)), load<Lanes>(at(2)), load<Lanes>(at(3))};
-    transpose(rows);
-    x = rows[0];
-    y = rows[1];
-    theta = rows[2];
+    x = load<Lanes>(a);
+    y = load<Lanes>(b);
+    theta = load<Lanes>(c);
+    Lanes unused = load<Lanes>(d);
+    transpose(x, y, theta, unused);
   } else {
-    const auto two = [&](int first, int second) {
-      return __builtin_shufflevector(load<Two>(at(first)), load<Two>(at(second)), 0, 1, 2, 3);
-    };
-    const Lanes ac = two(0, 2), bd = two(1, 3);
+    const Lanes ac = __builtin_shufflevector(load<Two>(a), load<Two>(c), 0, 1, 2, 3);
+    const Lanes bd = __builtin_shufflevector(load<Two>(b), load<Two>(d), 0, 1, 2, 3);
     x = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
     y = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
     theta = Lanes{};
@@ -53,9 +54,12 @@ EQUIDEM_ALWAYS_INLINE void load_group(const double* motion, Lanes& x, Lanes& y, 
 template <int Width>
 EQUIDEM_ALWAYS_INLINE void store_group(const Lanes& x, const Lanes& y, const Lanes& theta, double* motion) {
   if constexpr (Width == 4) {
-    Lanes rows[4] = {x, y, theta, Lanes{}};
-    transpose(rows);
-    for (int k = 0; k < 4; ++k) store(rows[k], motion + 4 * k);
+    Lanes a = x, b = y, c = theta, d{};
+    transpose(a, b, c, d);
+    store(a, motion);
+    store(b, motion + 4);
+    store(c, motion + 8);
+    store(d, motion + 12);
   } else {
     const Lanes even = __builtin_shufflevector(x, y, 0, 4, 2, 6), odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
     store(__builtin_shufflevector(even, odd, 0, 1, 4, 5), motion);

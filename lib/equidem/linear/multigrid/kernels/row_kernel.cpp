@@ -51,10 +51,11 @@ EQUIDEM_ALWAYS_INLINE void gather(const Quad* motion, const std::int32_t* row, M
 /// Rows of three numbers, four of them; a number behind the last is read.
 EQUIDEM_ALWAYS_INLINE void gather(const double* motion, const std::int32_t* row, Motions<Doubles>& to) {
   const auto at = [&](int k) { return motion + 3 * static_cast<std::ptrdiff_t>(row[k]); };
-  Doubles rows[4] = {simd::load<Doubles>(at(0)), simd::load<Doubles>(at(1)), simd::load<Doubles>(at(2)),
-                     simd::load<Doubles>(at(3))};
-  simd::transpose(rows);
-  to = {rows[0], rows[1], rows[2]};
+  to.x = simd::load<Doubles>(at(0));
+  to.y = simd::load<Doubles>(at(1));
+  to.turn = simd::load<Doubles>(at(2));
+  auto unused = simd::load<Doubles>(at(3));
+  simd::transpose(to.x, to.y, to.turn, unused);
 }
 
 /// The rows of a group, or of a part of it; lanes behind its last row repeat the first.
