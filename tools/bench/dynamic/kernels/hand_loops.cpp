@@ -111,13 +111,13 @@ class SpringLoop : public HandLoop {
         }
       }
       double* velocity = velocity_.data() + 4 * unknowns * static_cast<std::ptrdiff_t>(group);
-      const Lanes vx = load<Lanes>(velocity), vy = load<Lanes>(velocity + 4);
+      Lanes vx = load<Lanes>(velocity), vy = load<Lanes>(velocity + 4);
       vx += h / scene_inertia.mass * (tangential ? kT * sum_x + excess * normal_x : excess * normal_x);
       vy += h / scene_inertia.mass * (tangential ? kT * sum_y + excess * normal_y : excess * normal_y);
       store(vx, velocity);
       store(vy, velocity + 4);
       if constexpr (rotation) {
-        const Lanes omega = load<Lanes>(velocity + 8);
+        Lanes omega = load<Lanes>(velocity + 8);
         omega += h / scene_inertia.moment * 0.5 * kT * sum_moment;
         store(omega, velocity + 8);
         theta += h * omega;

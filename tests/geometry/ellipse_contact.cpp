@@ -8,7 +8,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/shape_contact.hpp"
 
-#include "contact/ellipse_pairs.hpp"
+#include "geometry/ellipse_pairs.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;
