@@ -140,7 +140,7 @@ TEST_CASE("a_file_of_grains_is_read_line_by_line") {
   for (const Bad& bad : {Bad{"x,y,group\n1,2,a\n", {":1:", "radius"}}, Bad{"x,y,radius,colour\n", {":1:", "colour"}},
                          Bad{"x,y,radius,group\n" + rest + "1,2\n", {":4:", "2 cells", "4 columns"}},
                          Bad{"x,y,radius\n1,2,three\n", {":2:", "three", "radius"}},
-                         Bad{"x,y,radius\n1,2,-3\n", {":2:", "not positive"}},
+                         Bad{"x,y,radius\n1,2,-3\n", {":2:", "radius is -3 m", "> 0"}},
                          Bad{"x,y,radius,short_half_axis\n1,2,3,1\n", {":2:", "among spheres"}},
                          Bad{"x,y,discs\n1,2,0 0\n", {":2:", "no discs of a clump"}}, Bad{"", {"x, y and radius"}}}) {
     CAPTURE(bad.rows);

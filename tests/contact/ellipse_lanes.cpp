@@ -4,7 +4,7 @@
 #include "equidem/core/text.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
 
-#include "contact/ellipse_pairs.hpp"
+#include "geometry/ellipse_pairs.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

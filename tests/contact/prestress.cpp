@@ -10,9 +10,9 @@
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
 #include "equidem/contact/prestress/forces_at_rest.hpp"
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
 #include "support/catch.hpp"
 

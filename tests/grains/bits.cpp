@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 
 #include "grains/bonded_scenes.hpp"
 #include "grains/cell_scenes.hpp"

@@ -125,9 +125,10 @@ TEST_CASE("bonds_that_make_no_sense_are_refused") {
   refused([](Scene& s, Options&) { s.bonds[0].j = 0; }, "a bond ties grain 0 to itself");
   refused([](Scene& s, Options&) { s.bonds.push_back({.i = 1, .j = 0, .normal_dashpot = 2}); },
           "grains 0 and 1 are bonded twice");
-  refused([](Scene& s, Options&) { s.bonds[0].rolling_dashpot = -1; }, "has a dashpot or a spring of -1");
+  refused([](Scene& s, Options&) { s.bonds[0].rolling_dashpot = -1; },
+          "the rolling_dashpot of the bond of grains 0 and 1 is -1");
   refused([](Scene& s, Options&) { s.bonds[0].normal_spring = std::numeric_limits<double>::quiet_NaN(); },
-          "has a dashpot or a spring of nan");
+          "the normal_spring of the bond of grains 0 and 1 is nan");
   refused([](Scene& s, Options&) { s.bonds[0] = {.j = 1}; }, "it ties nothing");
   refused([](Scene& s, Options&) { s.grains[1].short_half_axis = 0.1; }, "a bond ties grain 1, which is no disc");
   refused([](Scene&, Options& o) { o.law = NormalLaw::exact_flow; }, "Use the law linear_dashpot");

@@ -563,7 +563,7 @@ TEST_CASE("what_a_cell_does_not_carry_is_refused_by_name") {
     check_refused([&] { return GrainSimulation(scene, options); }, words);
   };
   check_scene([](GrainScene& s) { s.cell->width = 1.9; }, {"width = 1.9 m", "several images"});
-  check_scene([](GrainScene& s) { s.cell->height = 0; }, {"height = 0 m"});
+  check_scene([](GrainScene& s) { s.cell->height = 0; }, {"the height of the periodic cell is 0 m"});
   check_scene([](GrainScene& s) { s.cell->along = PeriodicCell::Along::x; }, {"height = 4 m"});
   check_scene([](GrainScene& s) { s.walls = {line("floor", {0, 0}, {0, 1})}; }, {"wall 'floor'", "along x and y"});
   check_scene(

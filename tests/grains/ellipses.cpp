@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Ellipses that meet, rebound, rest and rock.
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 
 #include "grains/shapes.hpp"

@@ -25,10 +25,10 @@ std::vector<Spoiled> all_spoiled() {
   using O = GrainOptions;
   return {
       {"the scene has no grains", [](S& s, O&) { s.grains.clear(); }},
-      {"grain 1 has the radius 0 m", [](S& s, O&) { s.grains[1].radius = 0; }},
-      {"grain 1 has the radius nan m", [](S& s, O&) { s.grains[1].radius = no_number; }},
-      {"grain 0 has the mass -1", [](S& s, O&) { s.grains[0].inertia.mass = -1; }},
-      {"moment of inertia 0", [](S& s, O&) { s.grains[0].inertia.moment = 0; }},
+      {"the radius of grain 1 is 0 m", [](S& s, O&) { s.grains[1].radius = 0; }},
+      {"the radius of grain 1 is nan m", [](S& s, O&) { s.grains[1].radius = no_number; }},
+      {"the mass of grain 0 is -1", [](S& s, O&) { s.grains[0].inertia.mass = -1; }},
+      {"the moment of inertia of grain 0 is 0", [](S& s, O&) { s.grains[0].inertia.moment = 0; }},
       {"grain 0 has a position, a velocity or a spin", [](S& s, O&) { s.grains[0].velocity.y = no_number; }},
       {"grain 0 has a position, a velocity or a spin", [](S& s, O&) { s.grains[0].position.x = 1 / 0.0; }},
       {"grain 1 is of the kind 1", [](S& s, O&) { s.grains[1].kind = 1; }},
@@ -42,8 +42,8 @@ std::vector<Spoiled> all_spoiled() {
        }},
       {"a contact has no stiffness", [](S& s, O&) { s.pairs[0].stiffness = 0; }},
       {"a contact has a stiffness and a dimensionless stiffness", [](S& s, O&) { s.pairs[0].dimensionless = 0.1; }},
-      {"a contact has the stiffness -1", [](S& s, O&) { s.pairs[0].stiffness = -1; }},
-      {"a contact has the stiffness nan", [](S& s, O&) { s.pairs[0].stiffness = no_number; }},
+      {"the stiffness of a contact is -1", [](S& s, O&) { s.pairs[0].stiffness = -1; }},
+      {"the stiffness of a contact is nan", [](S& s, O&) { s.pairs[0].stiffness = no_number; }},
       {"coefficient of restitution is 1.1", [](S& s, O&) { s.pairs[0].restitution = 1.1; }},
       {"coefficient of restitution is 0", [](S& s, O&) { s.pairs[0].restitution = 0; }},
       {"restitution is 2",
@@ -56,7 +56,7 @@ std::vector<Spoiled> all_spoiled() {
          s.pairs[0].restitution = 0.1;
          o.law = NormalLaw::five_case_map;
        }},
-      {"friction -0.1", [](S& s, O&) { s.pairs[0].friction = -0.1; }},
+      {"the friction of a contact is -0.1", [](S& s, O&) { s.pairs[0].friction = -0.1; }},
       {"tangential damping is given without", [](S& s, O&) { s.pairs[0].tangential_damping = 0.1; }},
       {"velocity_verlet is asked for with the law \"exact_flow\"",
        [](S&, O& o) { o.integrator = GrainIntegrator::velocity_verlet; }},

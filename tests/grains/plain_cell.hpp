@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "equidem/contact/finite_bond.hpp"
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "grains/cell_scenes.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 #include "grains/scenes.hpp"

@@ -71,7 +71,8 @@ TEST_CASE("without_gravity_bodies_keep_their_momenta_and_rest_stays_rest") {
   options.radii = {1};
   options.settling.springs = {1e7, 5e6};
   options.settling.gravity = 0;
-  table.refused("pack by falling", attempt([&] { pack(options); }), {"gravity 0", "Give numbers > 0"});
+  table.refused("pack by falling", attempt([&] { pack(options); }),
+                {"gravity of the settling is 0", "Give a number > 0"});
 }
 
 TEST_CASE("one_grain_falls_rebounds_and_rests") {

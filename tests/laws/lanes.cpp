@@ -3,7 +3,7 @@
 
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/random.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
+#include "equidem/core/simd.hpp"
 
 #include "support/catch.hpp"
 

@@ -74,3 +74,24 @@ TEST_CASE("a_packing_and_a_run_of_it_have_one_void_ratio") {
   BoxMeasures run(scene, {});
   CHECK(measure(packing).void_ratio == run.record(0, 0, scene.grains, scene.walls).void_ratio);
 }
+
+TEST_CASE("a_body_in_the_air_changes_the_void_ratio_of_neither_packing_nor_run") {
+  // columns of the surface are four radii wide: two bodies above a heap of two columns lift all of it
+  GrainPacking packing = packing_of({{20, 60}, PackingBox::Sides::open_top}, {}, {});
+  for (int row = 0; row < 10; ++row)
+    for (int column = 0; column < 10; ++column)
+      packing.grains.push_back({.position = {1.0 + 2 * column, 1.0 + 2 * row}, .radius = 1, .inertia = {1, 1}});
+  const auto heap = static_cast<std::ptrdiff_t>(packing.grains.size());
+  for (int column = 0; column < 5; ++column)
+    packing.grains.push_back({.position = {2.0 + 4 * column, 59}, .radius = 1, .inertia = {1, 1}});
+  packing.radii.assign(packing.grains.size(), 1);
+  GrainScene scene;
+  scene.grains = packing.grains;
+  scene.walls = walls_of(packing.box);
+  BoxMeasures run(scene, {});
+  CHECK(measure(packing).void_ratio == run.record(0, 0, scene.grains, scene.walls).void_ratio);
+  GrainPacking at_rest = packing;
+  at_rest.grains.erase(at_rest.grains.begin() + heap, at_rest.grains.end());
+  at_rest.radii.resize(at_rest.grains.size());
+  CHECK(measure(packing).void_ratio == measure(at_rest).void_ratio);
+}

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "equidem/contact/prestress/forces_at_rest.hpp"
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 #include "equidem/homogenize/elasticity_tensor.hpp"
 #include "equidem/packing/measures.hpp"

@@ -207,10 +207,10 @@ TEST_CASE("the_gradient_of_the_overlap_energy_is_what_pushes_bodies_apart") {
       double sum = 0;
       const auto add = [&](const Touch& touch) { sum += 0.5 * touch.overlap * touch.overlap; };
       for (std::size_t i = 0; i < 3; ++i) {
-        const Outline one = outline_of(body, bodies.radii[i], bodies.turns[i]);
+        const Outline one = body.outline(bodies.radii[i], bodies.turns[i]);
         for_wall_touches(one, bodies.centres[i], box, 0, [&](int, const Touch& touch) { add(touch); });
         for (std::size_t j = i + 1; j < 3; ++j)
-          for_touches(one, outline_of(body, bodies.radii[j], bodies.turns[j]), bodies.centres[j] - bodies.centres[i], 0,
+          for_touches(one, body.outline(bodies.radii[j], bodies.turns[j]), bodies.centres[j] - bodies.centres[i], 0,
                       add);
       }
       return sum;

@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
 #include "support/catch.hpp"
 

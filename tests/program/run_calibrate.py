@@ -392,7 +392,7 @@ legs = [1.0]
         self.check_error(equidem("calibrate", STRENGTH, "--set", "springs.kT=-1e8"), 2, "kT < 0")
         notched = ("--set", "strength_target.compressive=none", "--set", "strength_target.toughness=1e5")
         self.check_error(equidem("calibrate", STRENGTH, *notched, "--set", "strength_target.notches=[-0.002]"), 2,
-                         "strength_target: the length of the notch is -0.002 m", "Give a length of the notch above 0 m")
+                         "strength_target: the length of the notch is -0.002 m", "the length of the notch is -0.002 m (it must be > 0")
         self.check_error(equidem("calibrate", STRENGTH, *notched, "--set", "strength_target.notches=[0.2]"), 2,
                          "strength_target: a notch of 0.2 m in a sample", "Give shorter notches")
         self.check_error(equidem("calibrate", STRENGTH, *notched), 2, "strength_target: a toughness needs notches")

@@ -12,6 +12,7 @@
 
 #include "equidem/core/names.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/geometry/shapes.hpp"
 #include "equidem/material/inertia.hpp"
 
 namespace equidem {
@@ -44,12 +45,6 @@ struct ContactArms {
 struct BodySection {
   double area = 0;          ///< m²
   double polar_moment = 0;  ///< m⁴: the integral of r² over the area, about its own centre
-};
-
-struct Rectangle {
-  Vec2 low;   ///< m
-  Vec2 high;  ///< m
-  [[nodiscard]] double area() const { return (high.x - low.x) * (high.y - low.y); }
 };
 
 /// A rectangle with its lower side along a unit vector; low and high are the corners that are the lower left and the

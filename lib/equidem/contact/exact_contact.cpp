@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 
 namespace equidem {
 
@@ -389,19 +388,13 @@ class EventfulStep {
   int beginnings_ = 0;
 };
 
-void check(double value, bool right, const char* name, const char* bound) {
-  if (right && std::isfinite(value)) return;
-  bad_input(fmt::format("the {} of an exact contact is {:.6g}", name, value),
-            fmt::format("it must be finite and {}", bound), fmt::format("Give a {} that is {}", name, bound));
-}
-
 }  // namespace
 
 ExactPair exact_pair(double reduced_mass, double stiffness, double damping_ratio, ContactEnd end, double step) {
-  check(reduced_mass, reduced_mass > 0, "reduced mass", "positive");
-  check(stiffness, stiffness > 0, "stiffness", "positive");
-  check(damping_ratio, damping_ratio >= 0, "damping ratio", "not negative");
-  check(step, step > 0, "time step", "positive");
+  check_positive(reduced_mass, "reduced mass of a contact", "kg");
+  check_positive(stiffness, "stiffness of a contact", "N/m");
+  check_range(Range::not_negative(), damping_ratio, "damping ratio of a contact");
+  check_positive(step, "time step", "s");
   ExactPair p{reduced_mass, stiffness, damping_ratio, end, step, std::sqrt(stiffness / reduced_mass)};
   const double w = p.frequency, x = w * step;
   const Response r = response(damping_ratio, x);

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "equidem/core/error.hpp"
-#include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
@@ -43,10 +42,7 @@ double damping_at_zero_force(double loss) {
 }  // namespace
 
 double checked_restitution(double restitution) {
-  if (!(restitution >= 0 && restitution <= 1)) {
-    bad_input(fmt::format("the coefficient of restitution is {:.6g}", restitution),
-              "it is the ratio of two speeds, at most 1 where no energy is added", "Give a number from 0 to 1");
-  }
+  check_range(Range::from(0, 1), restitution, "coefficient of restitution");
   return restitution;
 }
 
@@ -84,20 +80,10 @@ double hertz_damping_of(double restitution, ContactEnd end) {
 
 namespace {
 
-void check_damping(double damping_ratio) {
-  if (!(damping_ratio >= 0 && std::isfinite(damping_ratio))) {
-    bad_input(fmt::format("the damping ratio is {:.6g}", damping_ratio), "a dashpot takes energy",
-              "Give a finite number from 0 on");
-  }
-}
-
 /// (1 - nu²)/E
 double compliance(double young, double poisson) {
   check_positive(young, "Young modulus", "Pa");
-  if (!(poisson > -1 && poisson <= 0.5)) {
-    bad_input(fmt::format("the Poisson ratio is {:.6g}", poisson), "a stable solid has -1 < nu <= 0.5",
-              "Give a number in that range");
-  }
+  check_range({.low = -1, .high = 0.5, .low_open = true}, poisson, "Poisson ratio");
   return (1 - poisson) * (1 + poisson) / young;
 }
 
@@ -110,7 +96,7 @@ double stiffness_from_dimensionless(double a, double reduced_mass, double step) 
 }
 
 double stiffness_from_overlap(double largest_overlap, double closing_speed, double reduced_mass, double damping_ratio) {
-  check_damping(damping_ratio);
+  check_range(Range::not_negative(), damping_ratio, "damping ratio");
   const double rate =
       check_positive(closing_speed, "closing speed", "m/s") / check_positive(largest_overlap, "largest overlap", "m");
   // The largest overlap is v/w exp(-zeta phase/2), phase that of the end at zero force.

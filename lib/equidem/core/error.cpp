@@ -40,6 +40,8 @@ std::string sentence(const std::string& problem, const std::string& why, const s
   return with_short_words(printable(text));
 }
 
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
 }  // namespace
 
 Error::Error(ErrorKind kind, std::string problem, std::string why, std::string remedy, std::string where)
@@ -58,11 +60,38 @@ void bad_input(std::string problem, std::string why, std::string remedy) {
   bad_input_at({}, std::move(problem), std::move(why), std::move(remedy));
 }
 
+bool Range::contains(double value) const {
+  if (!std::isfinite(value) || (zero_excluded && value == 0)) return false;
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  const auto shown = [](double value) {
+    const bool short_whole = std::abs(value) < 1e7 && value == std::floor(value);
+    return short_whole ? fmt::format("{:.0f}", value) : fmt::format("{:g}", value);
+  };
+  if (zero_excluded) return "not 0";
+  if (low == -unlimited && high == unlimited) return {};
+  if (high == unlimited) return fmt::format("{} {}", low_open ? ">" : ">=", shown(low));
+  if (low == -unlimited) return fmt::format("{} {}", high_open ? "<" : "<=", shown(high));
+  if (low_open && high_open) return fmt::format("between {} and {}", shown(low), shown(high));
+  if (!low_open && !high_open) return fmt::format("from {} to {}", shown(low), shown(high));
+  return fmt::format("{} {} and {} {}", low_open ? ">" : ">=", shown(low), high_open ? "<" : "<=", shown(high));
+}
+
+void check_range(const Range& range, double value, const std::string& name, const std::string& unit) {
+  if (range.contains(value)) return;
+  const std::string bounds = range.text();
+  bad_input(fmt::format("the {} is {:.6g}{}", name, value, unit.empty() ? "" : " " + unit),
+            bounds.empty()                          ? "it must be finite"
+            : std::isfinite(range.high - range.low) ? "it must be " + bounds
+                                                    : fmt::format("it must be {} and finite", bounds),
+            bounds.empty() ? "Give a finite number" : "Give a number " + bounds);
+}
+
 double check_positive(double value, const std::string& name, const std::string& unit) {
-  if (is_positive(value)) return value;
-  const std::string with_unit = unit.empty() ? "" : " " + unit;
-  bad_input(fmt::format("the {} is {:.6g}{}", name, value, with_unit), "it must be positive and finite",
-            fmt::format("Give a {} above 0{}", name, with_unit));
+  check_range(Range::positive(), value, name, unit);
+  return value;
 }
 
 void bad_input_at(std::string where, std::string problem, std::string why, std::string remedy) {

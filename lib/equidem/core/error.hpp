@@ -5,6 +5,8 @@
 
 #include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,6 +51,45 @@ class Error : public std::runtime_error {
 /// Whether a number is positive and finite.
 inline bool is_positive(double value) {
   return value > 0 && std::isfinite(value);
+}
+
+/// Numbers that an option accepts; those that are not finite never.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+  bool zero_excluded = false;
+
+  static constexpr Range positive() { return {.low = 0, .low_open = true}; }
+  static constexpr Range above_zero_to(double high) { return {.low = 0, .high = high, .low_open = true}; }
+  static constexpr Range not_negative() { return {.low = 0}; }
+  static constexpr Range from(double low, double high) { return {.low = low, .high = high}; }
+
+  [[nodiscard]] bool contains(double value) const;
+  /// "> 0", "from 1 to 100", ">= 0 and < 0.5", "not 0"; empty for any number.
+  [[nodiscard]] std::string text() const;
+};
+
+/// \throws Error (bad_input): "the radius of grain 3 is -1 m (it must be > 0 and finite). Give a number > 0."
+void check_range(const Range& range, double value, const std::string& name, const std::string& unit = {});
+
+/// The range of a member.
+template <class Struct>
+struct Bound {
+  const char* name;
+  double Struct::*member;
+  Range range;
+  const char* unit = "";
+};
+
+/// Checks the members of a table.
+/// \param owner returns the words behind the name, " of grain 3"
+template <class Struct, std::size_t count, class Owner>
+void check_bounds(const Struct& values, const Bound<Struct> (&bounds)[count], const Owner& owner) {
+  for (const Bound<Struct>& bound : bounds)
+    if (!bound.range.contains(values.*bound.member))
+      check_range(bound.range, values.*bound.member, bound.name + std::string(owner()), bound.unit);
 }
 
 /// \return the value

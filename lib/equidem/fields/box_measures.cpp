@@ -9,7 +9,6 @@
 #include <numeric>
 #include <utility>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/geometry/neighbours.hpp"
@@ -60,17 +59,9 @@ SurfaceProfile surface_of(std::span<const Grain> grains, std::span<const Clump> 
   Raised raised(profile, right);
   for (std::size_t g = 0; g < grains.size(); ++g) {
     if (!heap.empty() && !heap[g]) continue;
-    const Grain& grain = grains[g];
-    if (grain.shape() == GrainShape::clump) {
-      const Vec2 axis{std::cos(grain.angle), std::sin(grain.angle)};
-      for (const Clump::Disc& disc : clumps[grain.clump].discs)
-        raised.by({disc.radius, disc.radius},
-                  grain.position + disc.offset.x * axis + disc.offset.y * perpendicular(axis));
-    } else if (grain.shape() == GrainShape::ellipse) {
-      raised.by(Ellipse::at_angle(grain.radius, grain.short_half_axis, grain.angle), grain.position);
-    } else {
-      raised.by({grain.radius, grain.radius}, grain.position);
-    }
+    const Outline outline = outline_of(grains[g], clumps);
+    for (std::size_t p = 0; p < outline.parts(); ++p)
+      raised.by(outline.part(p), grains[g].position + outline.offset(p));
   }
   return profile;
 }
@@ -420,6 +411,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
       masses[*cell] += grain.inertia.mass;
       momenta[*cell] += grain.inertia.mass * grain.velocity;
     }
+    const Outline outline = outline_of(grain, clumps);
     const auto span_of = [&](double centre, double low, double width, std::size_t count) {
       const auto last = static_cast<double>(count);
       return std::pair(
@@ -431,7 +423,7 @@ CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump>
     for (std::size_t row = bottom; row < top; ++row)
       for (std::size_t column = left; column < right; ++column) {
         const std::size_t cell = row * grid.columns + column;
-        fields.solid_fraction[cell] += clipped_area(grain, clumps, grid.cell(cell)) / area;
+        fields.solid_fraction[cell] += clipped_area(outline, grain.position, grid.cell(cell)) / area;
       }
   }
   for (std::size_t cell = 0; cell < grid.size(); ++cell) {

@@ -43,17 +43,10 @@ void check(const Servo& servo, const std::string& name) {
     refuse_servo(name, fmt::format("pushes along ({}, {})", servo.direction.x, servo.direction.y),
                  "that is no unit vector", "Divide it by its length");
   }
-  if (servo.max_speed && (!(*servo.max_speed > 0) || !std::isfinite(*servo.max_speed))) {
-    refuse_servo(name, fmt::format("has max_speed = {} m/s", *servo.max_speed), "it must be > 0 and finite",
-                 "Give a positive one, or leave it out");
-  }
-  if (!(servo.relaxation > 0) || !(servo.relaxation <= 1)) {
-    refuse_servo(name, fmt::format("has relaxation = {}", servo.relaxation),
-                 "a step mends that share of the difference, and more than 1 overshoots", "Take 0.5");
-  }
-  if (servo.is_stress && !(servo.length >= 0)) {
-    refuse_servo(name, fmt::format("has length = {} m", servo.length), "it must be > 0", "Give a positive one");
-  }
+  const std::string owner = fmt::format(" of the servo of wall '{}'", name);
+  if (servo.max_speed) check_positive(*servo.max_speed, "max_speed" + owner, "m/s");
+  check_range(Range::above_zero_to(1), servo.relaxation, "relaxation" + owner);
+  if (servo.is_stress) check_range(Range::not_negative(), servo.length, "length" + owner, "m");
 }
 
 namespace {

@@ -108,7 +108,8 @@ Rectangle measured_region(const GrainPacking& packing) {
   const Rectangle whole = {{0, 0}, packing.box.size};
   if (packing.box.periodic()) return whole;
   const GrainBox box{.inside = whole, .lid = packing.box.sides != PackingBox::Sides::open_top};
-  return measured_region(packing.grains, packing.clumps, box).value_or(whole);
+  const std::vector<char> heap = heap_of(packing.grains, mean_diameter(packing.grains, packing.clumps));
+  return measured_region(packing.grains, packing.clumps, box, heap).value_or(whole);
 }
 
 namespace {

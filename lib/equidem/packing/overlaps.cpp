@@ -79,10 +79,10 @@ class Pushed {
 
   void evaluate() {
     forces.force = weights_;
-    forces.turning.assign(is_disc() ? 0 : weights_.size(), 0);
+    forces.turning.assign(shape_.is_disc() ? 0 : weights_.size(), 0);
     forces.sum = forces.largest = 0;
     forces.contacts = 0;
-    if (is_disc()) {
+    if (shape_.is_disc()) {
       push_discs(bodies_, *pairs_, forces);
     } else {
       push_shapes(bodies_, outlines_, turns() ? lever_ : 1, *pairs_, forces);
@@ -101,12 +101,8 @@ class Pushed {
   }
 
  private:
-  [[nodiscard]] bool is_disc() const { return shape_.discs.empty() && shape_.a == shape_.b; }
-
   void turn_outlines() {
-    for (std::size_t k = 0; k < outlines_.size(); ++k)
-      outlines_[k] = is_disc() ? Outline{.a = bodies_.radii[k], .b = bodies_.radii[k]}
-                               : outline_of(shape_, bodies_.radii[k], bodies_.turns[k]);
+    for (std::size_t k = 0; k < outlines_.size(); ++k) outlines_[k] = shape_.outline(bodies_.radii[k], bodies_.turn(k));
   }
 
   void find_pairs() {

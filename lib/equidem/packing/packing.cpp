@@ -102,7 +102,7 @@ void make_grains(const PackingShape& shape, const Bodies& bodies, double density
     grain.radius = body.reach * r;
     if (!bodies.turns.empty()) grain.angle = 2 * std::numbers::pi * bodies.turns[k];
     if (bonded) {
-      const Outline outline = outline_of(body, r, bodies.turns[k]);
+      const Outline outline = body.outline(r, bodies.turns[k]);
       grain.radius = r;
       grain.inertia = inertia_of(r, density, Body::disc);
       for (std::size_t part = 0; part < 2; ++part) {

@@ -8,7 +8,6 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
 
@@ -23,13 +22,9 @@ UnitBody body_of_discs(std::vector<Clump::Disc> discs, double area) {
   const double scale = std::sqrt(area / whole.area);
   UnitBody body{
       .discs = std::move(clump.discs), .area = area, .gyration = area * whole.polar_moment / (whole.area * whole.area)};
-  body.reach = 0;
-  for (Clump::Disc& disc : body.discs) {
-    disc = {scale * disc.offset, scale * disc.radius};
-    body.reach = std::max(body.reach, norm(disc.offset) + disc.radius);
-    body.lever = std::max(body.lever, norm(disc.offset));
-  }
-  body.lever = lever_of(body.lever, body.reach);
+  for (Clump::Disc& disc : body.discs) disc = {scale * disc.offset, scale * disc.radius};
+  body.reach = reach_of(body.outline(1, 0));
+  body.lever = lever_of(longest_lever(body.outline(1, 0)), body.reach);
   return body;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "equidem/core/names.hpp"
+#include "equidem/geometry/shapes.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 
 namespace equidem {
@@ -37,6 +38,12 @@ struct UnitBody {
   double lever = 0;
   double area = 0;      ///< times r²
   double gyration = 0;  ///< I/m, times r²
+
+  [[nodiscard]] bool is_disc() const { return discs.empty() && a == b; }
+  /// Of a radius, m, at an angle over 2 pi; the body outlives it.
+  [[nodiscard]] Outline outline(double radius, double turns) const {
+    return {a * radius, b * radius, is_disc() ? Vec2{1, 0} : axis_of_turns(turns), discs, radius};
+  }
 };
 /// The lever of a unit body from its longest arm (UnitBody::lever). While bodies are pushed apart, moments are divided
 /// by it: its lower bound of a tenth of the reach keeps the small moments on nearly round bodies from turning them far,
@@ -88,6 +95,7 @@ struct Bodies {
   std::vector<double> radii;  ///< m
   std::vector<double> turns;  ///< angles over 2 pi; of discs none
 
+  [[nodiscard]] double turn(std::size_t k) const { return turns.empty() ? 0 : turns[k]; }
   [[nodiscard]] std::size_t size() const { return centres.size(); }
 };
 

@@ -23,7 +23,7 @@ Placement placement_at_random(const PackingOptions& options, const UnitBody& sha
   Vec2 low, high = options.box.size;
   if (!options.shape.is_disc()) there.turns = random.uniform();
   if (!options.box.periodic()) {
-    const Outline outline = outline_of(shape, radius, there.turns);
+    const Outline outline = shape.outline(radius, there.turns);
     // The distance from each side is the reach of the body towards it; the middle where it does not fit.
     for_wall_touches(outline, {}, {{}, PackingBox::Sides::walls}, std::numeric_limits<double>::infinity(),
                      [&](int side, const Touch& touch) {
@@ -92,7 +92,7 @@ void PlacedBodies::add(Vec2 place, double radius, double angle) {
   cell(sizes, place).push_back(static_cast<std::int32_t>(bodies_.size()));
   bodies_.centres.push_back(place);
   bodies_.radii.push_back(radius);
-  if (!round()) bodies_.turns.push_back(angle);
+  if (!shape_.is_disc()) bodies_.turns.push_back(angle);
 }
 
 void PlacedBodies::move(std::int32_t body, Vec2 place, double angle) {
@@ -105,7 +105,7 @@ void PlacedBodies::move(std::int32_t body, Vec2 place, double angle) {
     to.push_back(body);
   }
   bodies_.centres[k] = place;
-  if (!round()) bodies_.turns[k] = angle;
+  if (!shape_.is_disc()) bodies_.turns[k] = angle;
 }
 
 }  // namespace equidem

@@ -32,7 +32,7 @@ class PlacedBodies {
   [[nodiscard]] Vec2 centre(std::size_t body) const { return bodies_.centres[body]; }
   [[nodiscard]] double radius(std::size_t body) const { return bodies_.radii[body]; }
 
-  [[nodiscard]] double turns(std::size_t body) const { return bodies_.turns.empty() ? 0 : bodies_.turns[body]; }
+  [[nodiscard]] double turns(std::size_t body) const { return bodies_.turn(body); }
 
   /// The place, moved into the box by whole periods.
   [[nodiscard]] Vec2 wrapped(Vec2 place) const;
@@ -98,7 +98,6 @@ class PlacedBodies {
   [[nodiscard]] Span span_of(double x, double reach, double length, std::int64_t count) const;
   SizeClass& class_of(double radius);
   std::vector<std::int32_t>& cell(SizeClass& sizes, Vec2 place);
-  [[nodiscard]] bool round() const { return shape_.discs.empty() && shape_.a == shape_.b; }
 
   PackingBox box_;
   UnitBody shape_;
@@ -109,20 +108,17 @@ class PlacedBodies {
 
 template <typename Body>
 bool PlacedBodies::any_overlap(Vec2 place, double radius, double angle, std::int32_t except, const Body& body) const {
-  const bool discs = round();
-  const Outline self = discs ? Outline{.a = radius, .b = radius} : outline_of(shape_, radius, angle);
+  const Outline self = shape_.outline(radius, angle);
   bool found = false;
-  const auto look = [&](const Touch& touch) { found = found || body(touch.overlap); };
-  for_wall_touches(self, place, box_, 0, [&](int, const Touch& touch) { look(touch); });
+  const auto add = [&](const Touch& touch) { found = found || body(touch.overlap); };
+  for_wall_touches(self, place, box_, 0, [&](int, const Touch& touch) { add(touch); });
   return found || any_near(place, radius, [&](std::int32_t other) {
            if (other == except) return false;
            const auto k = static_cast<std::size_t>(other);
            const Vec2 way = branch(place, bodies_.centres[k]);
            const double reach = shape_.reach * (radius + bodies_.radii[k]);
            if (dot(way, way) >= reach * reach) return false;
-           const Outline there = discs ? Outline{.a = bodies_.radii[k], .b = bodies_.radii[k]}
-                                       : outline_of(shape_, bodies_.radii[k], turns(k));
-           for_touches(self, there, way, 0, [&](const Touch& touch) { look(touch); });
+           for_touches(self, shape_.outline(bodies_.radii[k], turns(k)), way, 0, add);
            return found;
          });
 }

@@ -7,6 +7,7 @@
 
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/material/spring_relations.hpp"
@@ -17,29 +18,23 @@ namespace {
 constexpr double moment_of_disc = 0.5;  // I/(m r²)
 
 void check(const SettlingOptions& options) {
-  if (!is_positive(options.density) || !is_positive(options.springs.kN) || !is_positive(options.gravity)) {
-    bad_input(fmt::format("density {} kg/m³, kN {} Pa, gravity {} m/s²", options.density, options.springs.kN,
-                          options.gravity),
-              "bodies that fall need all three", "Give numbers > 0");
-  }
-  if (!(options.springs.kT >= 0) || !(options.friction >= 0) || !(options.wall_friction >= 0)) {
-    bad_input(fmt::format("kT {} Pa, friction {}, with walls {}", options.springs.kT, options.friction,
-                          options.wall_friction),
-              "negative ones would feed the motion", "Give 0 or more");
-  }
+  using O = SettlingOptions;
+  constexpr Bound<O> bounds[] = {{"density", &O::density, Range::positive(), "kg/m³"},
+                                 {"damping", &O::damping, Range::above_zero_to(10)},
+                                 {"gravity", &O::gravity, Range::positive(), "m/s²"},
+                                 {"friction", &O::friction, Range::not_negative()},
+                                 {"wall_friction", &O::wall_friction, Range::not_negative()},
+                                 {"time_step", &O::time_step, Range::not_negative(), "s"},
+                                 {"rest", &O::rest, {.low = 1e-12, .high = 1, .high_open = true}},
+                                 {"longest", &O::longest, Range::positive(), "s"}};
+  constexpr Bound<SpringConstants> spring_bounds[] = {{"kN", &SpringConstants::kN, Range::positive(), "Pa"},
+                                                      {"kT", &SpringConstants::kT, Range::not_negative(), "Pa"}};
+  const auto owner = [] { return " of the settling"; };
+  check_bounds(options, bounds, owner);
+  check_bounds(options.springs, spring_bounds, owner);
   if (options.springs.kT == 0 && (options.friction > 0 || options.wall_friction > 0)) {
     bad_input("there is friction, but no tangential spring (kT = 0)",
-              "friction that only slides trembles and never holds anything at rest", "Give kT > 0, or friction 0");
-  }
-  if (!(options.damping > 0 && options.damping <= 10)) {
-    bad_input(fmt::format("the damping is {}", options.damping),
-              "without it nothing comes to rest, far above 1 steps become tiny",
-              "Give a number above 0, at most 10; 1 is usual");
-  }
-  if (!(options.rest >= 1e-12 && options.rest < 1) || !is_positive(options.longest) || !(options.time_step >= 0)) {
-    bad_input(fmt::format("unbalanced force ratio {}, longest time {} s, time step {} s", options.rest, options.longest,
-                          options.time_step),
-              "the ratio lies between 1e-12 and 1, times are positive", "Correct it");
+              "friction without a spring never holds anything at rest", "Give kT > 0, or friction 0");
   }
 }
 
@@ -84,7 +79,7 @@ double contact_step_limit(const GrainScene& scene, const SettlingOptions& option
     const Inertia& body = grain.inertia;
     const auto moved = [&](double lever) { return 0.5 / (1 / body.mass + lever * lever / body.moment); };
     mass = std::min(mass, body.mass);
-    normal = std::min(normal, moved(longest_lever(grain, scene.clumps)));
+    normal = std::min(normal, moved(longest_lever(outline_of(grain, scene.clumps))));
     tangential = std::min(tangential, moved(grain.radius));
   }
   const auto limit = [&](double stiffness, double moved_mass) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "equidem/casefile/engine/toml.hpp"
+#include "equidem/core/error.hpp"
 
 namespace equidem::casefile {
 
@@ -36,23 +37,6 @@ enum class KeyType {
   words,           ///< a list of words of KeySpec::choices
   held,            ///< a number, or true for 0
   bytes,           ///< a number of bytes, or text such as "4 GB"
-};
-
-/// Numbers that a key accepts.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;
-  bool high_open = false;
-  bool zero_excluded = false;
-
-  static constexpr Range positive() { return {.low = 0, .low_open = true}; }
-  static constexpr Range not_negative() { return {.low = 0}; }
-  static constexpr Range from(double low, double high) { return {.low = low, .high = high}; }
-
-  [[nodiscard]] bool contains(double value) const;
-  /// "> 0", "from 1 to 100", ">= 0 and < 0.5", "not 0"; empty for any number.
-  [[nodiscard]] std::string text() const;
 };
 
 /// A condition on a key and others of its table. A number set to "auto" counts as not given; so do keys and tables that

@@ -75,7 +75,6 @@ struct EnergyMap : Map {
     step.loss = (1 - e) * (1 + e) * closing * closing / 2;
     return step;
   }
-  static void check_range(double /*a*/, double /*restitution*/) {}
 };
 
 }  // namespace equidem::laws

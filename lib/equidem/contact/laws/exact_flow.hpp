@@ -10,14 +10,13 @@
 
 namespace equidem::laws {
 
-struct ExactFlow : LinearSpring {
+struct ExactFlow : LinearSpringDashpot {
   static constexpr const char* name = "exact_flow";
   static constexpr const char* letter = "X";
   static constexpr const char* source = "";
   static constexpr const char* summary =
       "linear spring and dashpot solved exactly within the step, all contacts together";
   static constexpr LawKind kind = LawKind::simultaneous;
-  static constexpr bool has_dashpot = true;
   static constexpr double steps_per_contact = std::numbers::pi;  ///< omega dt = 1
 
   static ExactPair prepare(double m, double k, double dissipation, ContactEnd end, double dt) {
@@ -27,12 +26,8 @@ struct ExactFlow : LinearSpring {
     return exact_step(pair, overlap, closing, touching, h0, h1);
   }
 
-  /// c/sqrt(m k) = 2 zeta
-  static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }
-  static double damping_ratio(double restitution, ContactEnd end) { return damping_ratio_of(restitution, end); }
   /// A single contact is exact at any step.
   static double stable_step(double /*damping_ratio*/) { return 0; }
-  static void check_range(double /*a*/, double /*restitution*/) {}
 };
 
 }  // namespace equidem::laws

@@ -74,6 +74,16 @@ struct LinearSpring {
   static double stiffness_from_overlap(double overlap, double speed, double m, double damping_ratio) {
     return equidem::stiffness_from_overlap(overlap, speed, m, damping_ratio);
   }
+  static void check_range(double /*a*/, double /*restitution*/) {}
+};
+
+/// F = k d + c v
+struct LinearSpringDashpot : LinearSpring {
+  static constexpr bool has_dashpot = true;
+
+  /// c/sqrt(m k) = 2 zeta
+  static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }
+  static double damping_ratio(double restitution, ContactEnd end) { return damping_ratio_of(restitution, end); }
 };
 
 }  // namespace laws

@@ -8,13 +8,12 @@
 
 namespace equidem::laws {
 
-struct LinearDashpot : LinearSpring {
+struct LinearDashpot : LinearSpringDashpot {
   static constexpr const char* name = "linear_dashpot";
   static constexpr const char* letter = "C";
   static constexpr const char* source = "Cundall & Strack 1979";
   static constexpr const char* summary = "linear spring and dashpot";
   static constexpr LawKind kind = LawKind::force;
-  static constexpr bool has_dashpot = true;
   static constexpr double steps_per_contact = 50;
 
   template <class Number>
@@ -26,12 +25,8 @@ struct LinearDashpot : LinearSpring {
     return c;
   }
 
-  /// c/sqrt(m k) = 2 zeta
-  static double dissipation(double restitution, ContactEnd end) { return 2 * damping_ratio(restitution, end); }
-  static double damping_ratio(double restitution, ContactEnd end) { return damping_ratio_of(restitution, end); }
   /// Largest omega dt of one contact: 2/(sqrt(1 + zeta²) + zeta), omega² = k/m.
   static double stable_step(double damping_ratio) { return semi_implicit_limit(damping_ratio); }
-  static void check_range(double /*a*/, double /*restitution*/) {}
 };
 
 }  // namespace equidem::laws

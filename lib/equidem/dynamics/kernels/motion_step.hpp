@@ -11,12 +11,61 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
-#include "equidem/dynamics/kernels/lanes.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
 #include "equidem/dynamics/layout.hpp"
 
 namespace equidem::lanes {
+
+using Lanes = simd::Four;
+using namespace simd;
+
+/// The motions of four places as x, y(, theta) of four lanes.
+template <int Width>
+EQUIDEM_ALWAYS_INLINE void gather(const double* motion, const std::int32_t* place, Lanes& x, Lanes& y, Lanes& theta) {
+  const double *a = motion + Width * static_cast<std::ptrdiff_t>(place[0]),
+               *b = motion + Width * static_cast<std::ptrdiff_t>(place[1]),
+               *c = motion + Width * static_cast<std::ptrdiff_t>(place[2]),
+               *d = motion + Width * static_cast<std::ptrdiff_t>(place[3]);
+  if constexpr (Width == 4) {
+    x = load<Lanes>(a);
+    y = load<Lanes>(b);
+    theta = load<Lanes>(c);
+    Lanes unused = load<Lanes>(d);
+    transpose(x, y, theta, unused);
+  } else {
+    const Lanes ac = __builtin_shufflevector(load<Two>(a), load<Two>(c), 0, 1, 2, 3);
+    const Lanes bd = __builtin_shufflevector(load<Two>(b), load<Two>(d), 0, 1, 2, 3);
+    x = __builtin_shufflevector(ac, bd, 0, 4, 2, 6);
+    y = __builtin_shufflevector(ac, bd, 1, 5, 3, 7);
+    theta = Lanes{};
+  }
+}
+
+/// The motions of a group, whose places follow one another.
+template <int Width>
+EQUIDEM_ALWAYS_INLINE void load_group(const double* motion, Lanes& x, Lanes& y, Lanes& theta) {
+  constexpr std::int32_t place[] = {0, 1, 2, 3};
+  gather<Width>(motion, place, x, y, theta);
+}
+
+template <int Width>
+EQUIDEM_ALWAYS_INLINE void store_group(const Lanes& x, const Lanes& y, const Lanes& theta, double* motion) {
+  if constexpr (Width == 4) {
+    Lanes a = x, b = y, c = theta, d{};
+    transpose(a, b, c, d);
+    store(a, motion);
+    store(b, motion + 4);
+    store(c, motion + 8);
+    store(d, motion + 12);
+  } else {
+    const Lanes even = __builtin_shufflevector(x, y, 0, 4, 2, 6), odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+    store(__builtin_shufflevector(even, odd, 0, 1, 4, 5), motion);
+    store(__builtin_shufflevector(even, odd, 2, 3, 6, 7), motion + 4);
+  }
+}
 
 /// Resultant force and moment on the discs of a group.
 struct Resultant {
@@ -35,12 +84,9 @@ struct ContactSums {
 
 /// Add one slot whose contacts have equal springs.
 template <LoopKind kind>
-EQUIDEM_INLINE void add_equal(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
-                              const Lanes& theta_j, ContactSums& sum) {
-  Lanes lx, ly, over_square;
-  load(geometry, lx);
-  load(geometry + 4, ly);
-  load(geometry + 8, over_square);
+EQUIDEM_ALWAYS_INLINE void add_equal(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
+                                     const Lanes& theta_j, ContactSums& sum) {
+  const Lanes lx = load<Lanes>(geometry), ly = load<Lanes>(geometry + 4), over_square = load<Lanes>(geometry + 8);
   const Lanes normal = over_square * (lx * dx + ly * dy);
   sum.normal_x += normal * lx;
   sum.normal_y += normal * ly;
@@ -58,20 +104,15 @@ EQUIDEM_INLINE void add_equal(const double* geometry, const Lanes& dx, const Lan
 /// Add one slot whose contacts have springs of their own, lanes of kN, kT and kM at `springs`: F on i = kN dn n + kT
 /// ds s, moment kT r_i ds + kM (theta_j - theta_i).
 template <LoopKind kind>
-EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const Lanes& dx, const Lanes& dy,
-                            const Lanes& theta_i, const Lanes& theta_j, ContactSums& sum) {
-  Lanes nx, ny, kn;
-  load(geometry, nx);
-  load(geometry + 4, ny);
-  load(springs, kn);
+EQUIDEM_ALWAYS_INLINE void add_own(const double* geometry, const double* springs, const Lanes& dx, const Lanes& dy,
+                                   const Lanes& theta_i, const Lanes& theta_j, ContactSums& sum) {
+  const Lanes nx = load<Lanes>(geometry), ny = load<Lanes>(geometry + 4), kn = load<Lanes>(springs);
   const Lanes normal = kn * (nx * dx + ny * dy);
   sum.x += normal * nx;
   sum.y += normal * ny;
   if constexpr (kind.springs != LoopKind::Springs::normal) {
-    Lanes lever_i, lever_j, kt;
-    load(geometry + 8, lever_i);
-    load(geometry + 12, lever_j);
-    load(springs + 4, kt);
+    const Lanes lever_i = load<Lanes>(geometry + 8), lever_j = load<Lanes>(geometry + 12),
+                kt = load<Lanes>(springs + 4);
     Lanes slip = nx * dy - ny * dx;
     if constexpr (kind.springs == LoopKind::Springs::rotation) slip -= lever_i * theta_i + lever_j * theta_j;
     const Lanes shear = kt * slip;
@@ -80,8 +121,7 @@ EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const
     if constexpr (kind.springs == LoopKind::Springs::rotation) sum.moment += lever_i * shear;
   }
   if constexpr (kind.bending) {
-    Lanes km;
-    load(springs + 8, km);
+    const Lanes km = load<Lanes>(springs + 8);
     sum.moment += km * (theta_j - theta_i);
   }
 }
@@ -89,8 +129,8 @@ EQUIDEM_INLINE void add_own(const double* geometry, const double* springs, const
 /// One slot of springs, or with velocities in place of motions one of dashpots, whose constants lie behind those of the
 /// springs.
 template <LoopKind kind, bool dashpots>
-EQUIDEM_INLINE void add_contact(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
-                                const Lanes& theta_j, ContactSums& sum) {
+EQUIDEM_ALWAYS_INLINE void add_contact(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
+                                       const Lanes& theta_j, ContactSums& sum) {
   if constexpr (kind.equal_contacts) {
     add_equal<kind>(geometry, dx, dy, theta_i, theta_j, sum);
   } else {
@@ -100,7 +140,7 @@ EQUIDEM_INLINE void add_contact(const double* geometry, const Lanes& dx, const L
 
 /// \param kN, kT of equal contacts, of springs or of dashpots
 template <LoopKind kind>
-EQUIDEM_INLINE Resultant resultant_of(const ContactSums& sum, double kN, double kT) {
+EQUIDEM_ALWAYS_INLINE Resultant resultant_of(const ContactSums& sum, double kN, double kT) {
   if constexpr (!kind.equal_contacts) {
     return {sum.x, sum.y, sum.moment};
   } else if constexpr (kind.springs == LoopKind::Springs::normal) {
@@ -112,8 +152,8 @@ EQUIDEM_INLINE Resultant resultant_of(const ContactSums& sum, double kN, double 
 }
 
 /// Cundall's non-viscous damping: a share of the resultant acts against the velocity.
-EQUIDEM_INLINE void damp_locally(double alpha, const Lanes& velocity, Lanes& force) {
-  const Lanes along = change_sign(alpha * change_sign(force, sign_of(force)), sign_of(velocity));
+EQUIDEM_ALWAYS_INLINE void damp_locally(double alpha, const Lanes& velocity, Lanes& force) {
+  const Lanes along = with_sign(alpha * magnitude(force), velocity);
   force -= velocity != 0 ? along : Lanes{};
 }
 
@@ -122,15 +162,16 @@ struct DissipationLanes {
   Lanes mass{}, contact{}, local{};
 };
 
-EQUIDEM_INLINE double sum_of(const Lanes& lanes) {
+EQUIDEM_ALWAYS_INLINE double sum_of(const Lanes& lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
 /// The integrator's stage for one group, from the resultant of its springs and, separately, that of its dashpots.
 /// Powers are computed with the mean of the velocities before and after, which makes the balance of leapfrog exact.
 template <LoopKind kind>
-EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity, std::int32_t group, Lanes x, Lanes y,
-                            Lanes theta, Resultant force, const Resultant& dashpots, DissipationLanes& dissipation) {
+EQUIDEM_ALWAYS_INLINE void advance(const LoopData& data, const Stage& stage, int parity, std::int32_t group, Lanes x,
+                                   Lanes y, Lanes theta, Resultant force, const Resultant& dashpots,
+                                   DissipationLanes& dissipation) {
   using Resistance = LoopKind::Resistance;
   constexpr bool rotation = kind.springs == LoopKind::Springs::rotation;
   constexpr int unknowns = rotation ? 3 : 2, width = rotation ? 4 : 2;
@@ -140,14 +181,14 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
     inverse_moment += data.inverse_moment;
   } else {
     const double* at = data.inverse_inertia + static_cast<std::ptrdiff_t>(group) * 8;
-    load(at, inverse_mass);
-    load(at + 4, inverse_moment);
+    inverse_mass = load<Lanes>(at);
+    inverse_moment = load<Lanes>(at + 4);
   }
   double* velocity = data.velocity + static_cast<std::ptrdiff_t>(group) * 4 * unknowns;
   Lanes vx, vy, omega{};
-  load(velocity, vx);
-  load(velocity + 4, vy);
-  if constexpr (rotation) load(velocity + 8, omega);
+  vx = load<Lanes>(velocity);
+  vy = load<Lanes>(velocity + 4);
+  if constexpr (rotation) omega = load<Lanes>(velocity + 8);
   const Lanes vx_before = vx, vy_before = vy, omega_before = omega;
 
   if constexpr (kind.resistance == Resistance::dashpot) {
@@ -213,15 +254,15 @@ EQUIDEM_INLINE void advance(const LoopData& data, const Stage& stage, int parity
 }
 
 /// Add the sums of the lanes to those of a range.
-EQUIDEM_INLINE void add_dissipation(const DissipationLanes& lanes, Dissipation& sum) {
+EQUIDEM_ALWAYS_INLINE void add_dissipation(const DissipationLanes& lanes, Dissipation& sum) {
   sum.mass += sum_of(lanes.mass);
   sum.contact += sum_of(lanes.contact);
   sum.local += sum_of(lanes.local);
 }
 
 template <LoopKind kind>
-EQUIDEM_INLINE void small_motion_step(const LoopData& data_in, const Stage& stage_in, int parity, std::int32_t begin,
-                                      std::int32_t end, Dissipation& sum) {
+EQUIDEM_ALWAYS_INLINE void small_motion_step(const LoopData& data_in, const Stage& stage_in, int parity,
+                                             std::int32_t begin, std::int32_t end, Dissipation& sum) {
   // Local copies: otherwise the compiler must assume that a store to a velocity may alias these data.
   const LoopData data = data_in;
   const Stage stage = stage_in;
@@ -260,19 +301,19 @@ struct BondAtRest {
   Lanes square;  ///< l0², 0: no contact
 };
 
-EQUIDEM_INLINE BondAtRest load_bond(const double* geometry) {
+EQUIDEM_ALWAYS_INLINE BondAtRest load_bond(const double* geometry) {
   BondAtRest bond;
-  load(geometry, bond.x);
-  load(geometry + 4, bond.y);
-  load(geometry + 8, bond.square);
+  bond.x = load<Lanes>(geometry);
+  bond.y = load<Lanes>(geometry + 4);
+  bond.square = load<Lanes>(geometry + 8);
   return bond;
 }
 
 /// Share of body i in the branch: r_i/L, L = r_i + r_j.
 template <LoopKind kind>
-EQUIDEM_INLINE Lanes share_of(const double* geometry) {
+EQUIDEM_ALWAYS_INLINE Lanes share_of(const double* geometry) {
   Lanes share = Lanes{} + 0.5;
-  if constexpr (!kind.equal_contacts) load(geometry + 16, share);
+  if constexpr (!kind.equal_contacts) share = load<Lanes>(geometry + 16);
   return share;
 }
 
@@ -288,8 +329,8 @@ struct BondNow {
 /// The law, for any motion d = u_j - u_i: with e = l² - l0² = d.(l0 + l), dn/|l| = e/(|l| (|l| + |l0|)), and psi the
 /// angle from l0 to l. \param twist theta_j - theta_i
 template <LoopKind kind>
-EQUIDEM_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
-                              const Lanes& twist) {
+EQUIDEM_ALWAYS_INLINE BondNow deform(const double* geometry, const Lanes& dx, const Lanes& dy, const Lanes& theta_i,
+                                     const Lanes& twist) {
   const BondAtRest rest = load_bond(geometry);
   BondNow bond;
   bond.x = rest.x + dx;
@@ -319,8 +360,8 @@ struct BondSeen {
 
 /// \param turn of body i
 template <LoopKind kind>
-EQUIDEM_INLINE BondSeen see(const double* geometry, const SineVersine& turn, const Lanes& dx, const Lanes& dy,
-                            const Lanes& twist) {
+EQUIDEM_ALWAYS_INLINE BondSeen see(const double* geometry, const SineVersine<Lanes>& turn, const Lanes& dx,
+                                   const Lanes& dy, const Lanes& twist) {
   const BondAtRest rest = load_bond(geometry);
   BondSeen bond;
   Lanes px = rest.x, py = rest.y, vx = dx, vy = dy;
@@ -345,7 +386,7 @@ EQUIDEM_INLINE BondSeen see(const double* geometry, const SineVersine& turn, con
 ///   |l0|/|l| = (l0²/m) C,   dn/|l| = 1 - |l0|/|l| = (p.v)/m + (l0²/m) z Q,   psi - theta_i = atan t.
 /// \param far its signs are set where a lane is too far from rest
 template <LoopKind kind>
-EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& seen, Choice& far) {
+EQUIDEM_ALWAYS_INLINE BondNow deform_little(const double* geometry, const BondSeen& seen, Bits<Lanes>& far) {
   constexpr double near = 1.0 / 64;
   BondNow bond;
   bond.x = seen.x;
@@ -364,7 +405,7 @@ EQUIDEM_INLINE BondNow deform_little(const double* geometry, const BondSeen& see
     }
   }
   if constexpr (kind.bending) bond.twist = seen.twist;
-  far |= reinterpret_cast<Choice>(room) | reinterpret_cast<Choice>(seen.ratio);
+  far |= bits_of(room) | bits_of(seen.ratio);
   return bond;
 }
 
@@ -380,20 +421,16 @@ struct BondSums {
 /// Add one slot of springs, or with rates in place of stretch and slip one of dashpots, whose constants lie behind
 /// those of the springs. \param stretch dn/|l| \param slip ds/L \param twist theta_j - theta_i, with bending springs
 template <LoopKind kind, bool dashpots>
-EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip,
-                               [[maybe_unused]] const Lanes& twist, BondSums& sum) {
+EQUIDEM_ALWAYS_INLINE void add_stress(const double* geometry, const BondNow& bond, Lanes stretch, Lanes slip,
+                                      [[maybe_unused]] const Lanes& twist, BondSums& sum) {
   constexpr bool tangential = kind.springs != LoopKind::Springs::normal;
   if constexpr (!kind.equal_contacts) {
     const double* springs = geometry + (!dashpots ? 20 : kind.bending ? 32 : 28);
-    Lanes kn, kt, levers;
-    load(springs, kn);
-    load(springs + 4, kt);
-    load(geometry + 12, levers);
+    const Lanes kn = load<Lanes>(springs), kt = load<Lanes>(springs + 4), levers = load<Lanes>(geometry + 12);
     stretch *= kn;
     if constexpr (tangential) slip *= kt * (levers * levers);
     if constexpr (kind.bending) {
-      Lanes km;
-      load(springs + 8, km);
+      const Lanes km = load<Lanes>(springs + 8);
       sum.moment += km * twist;
     }
   }
@@ -405,8 +442,7 @@ EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lane
     sum.across_y += across * bond.x;
   }
   if constexpr (kind.springs == LoopKind::Springs::rotation) {
-    Lanes square;
-    load(geometry + 8, square);
+    Lanes square = load<Lanes>(geometry + 8);
     if constexpr (!kind.equal_contacts) square *= share_of<kind>(geometry);
     sum.moment += square * slip;
   }
@@ -414,7 +450,7 @@ EQUIDEM_INLINE void add_stress(const double* geometry, const BondNow& bond, Lane
 
 /// \param kN, kT of equal contacts, of springs or of dashpots
 template <LoopKind kind>
-EQUIDEM_INLINE Resultant resultant_of(const BondSums& sum, double kN, double kT) {
+EQUIDEM_ALWAYS_INLINE Resultant resultant_of(const BondSums& sum, double kN, double kT) {
   if constexpr (kind.equal_contacts) {
     return {kN * sum.normal_x + kT * sum.across_x, kN * sum.normal_y + kT * sum.across_y, 0.5 * kT * sum.moment};
   } else {
@@ -435,21 +471,21 @@ struct GroupBonds {
   Lanes x, y, theta, vx, vy, omega;
   BondSums springs, dashpots;
 
-  EQUIDEM_INLINE GroupBonds(const LoopData& data_in, int parity_in, std::int32_t group)
+  EQUIDEM_ALWAYS_INLINE GroupBonds(const LoopData& data_in, int parity_in, std::int32_t group)
       : data(data_in), parity(parity_in), first(data_in.first[group]), last(data_in.first[group + 1]) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(group) * 4 * kind.width();
     load_group<kind.width()>(data.motion[parity] + at, x, y, theta);
     if constexpr (dashpot) load_group<kind.width()>(data.velocity_at[parity] + at, vx, vy, omega);
   }
 
-  [[nodiscard]] EQUIDEM_INLINE const double* geometry(std::int32_t slot) const {
+  [[nodiscard]] EQUIDEM_ALWAYS_INLINE const double* geometry(std::int32_t slot) const {
     return data.geometry + static_cast<std::ptrdiff_t>(slot) * slot_doubles(kind) * 4;
   }
-  [[nodiscard]] EQUIDEM_INLINE const std::int32_t* places(std::int32_t slot) const {
+  [[nodiscard]] EQUIDEM_ALWAYS_INLINE const std::int32_t* places(std::int32_t slot) const {
     return data.neighbour + static_cast<std::ptrdiff_t>(slot) * 4;
   }
 
-  EQUIDEM_INLINE void add(std::int32_t slot, const BondNow& bond) {
+  EQUIDEM_ALWAYS_INLINE void add(std::int32_t slot, const BondNow& bond) {
     add_stress<kind, false>(geometry(slot), bond, bond.stretch, bond.slip, bond.twist, springs);
     if constexpr (dashpot) {
       Lanes dx, dy, spin, slip{};
@@ -466,22 +502,22 @@ struct GroupBonds {
 
   /// Two passes, each over independent slots, for instruction-level parallelism. \return whether all contacts are near
   /// rest; if not, the sums are invalid
-  EQUIDEM_INLINE bool sum_near() {
+  EQUIDEM_ALWAYS_INLINE bool sum_near() {
     if (last - first > most_seen) return false;
     BondSeen seen[most_seen];
-    SineVersine turn;
+    SineVersine<Lanes> turn;
     if constexpr (rotation) turn = sine_versine(theta);
     for (std::int32_t k = first; k < last; ++k) {
       Lanes xj, yj, theta_j;
       gather<kind.width()>(data.motion[parity], places(k), xj, yj, theta_j);
       seen[k - first] = see<kind>(geometry(k), turn, xj - x, yj - y, theta_j - theta);
     }
-    Choice far{};
+    Bits<Lanes> far{};
     for (std::int32_t k = first; k < last; ++k) add(k, deform_little<kind>(geometry(k), seen[k - first], far));
     return (far[0] | far[1] | far[2] | far[3]) >= 0;
   }
 
-  EQUIDEM_INLINE void sum_far() {
+  EQUIDEM_ALWAYS_INLINE void sum_far() {
     springs = dashpots = {};
     for (std::int32_t k = first; k < last; ++k) {
       Lanes xj, yj, theta_j;
@@ -492,8 +528,8 @@ struct GroupBonds {
 };
 
 template <LoopKind kind>
-EQUIDEM_INLINE void finite_motion_step(const LoopData& data_in, const Stage& stage_in, int parity, std::int32_t begin,
-                                       std::int32_t end, Dissipation& sum) {
+EQUIDEM_ALWAYS_INLINE void finite_motion_step(const LoopData& data_in, const Stage& stage_in, int parity,
+                                              std::int32_t begin, std::int32_t end, Dissipation& sum) {
   // Copies, as in small_motion_step.
   const LoopData data = data_in;
   const Stage stage = stage_in;

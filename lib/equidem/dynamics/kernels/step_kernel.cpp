@@ -33,8 +33,8 @@ constexpr LoopKind kind_of(std::size_t number) {
 }
 
 template <LoopKind kind>
-EQUIDEM_INLINE void step(const LoopData& data, const Stage& stage, int parity, std::int32_t begin, std::int32_t end,
-                         Dissipation& dissipation) {
+EQUIDEM_ALWAYS_INLINE void step(const LoopData& data, const Stage& stage, int parity, std::int32_t begin,
+                                std::int32_t end, Dissipation& dissipation) {
   if constexpr (kind.motion == LoopKind::Motion::finite) {
     lanes::finite_motion_step<kind>(data, stage, parity, begin, end, dissipation);
   } else {

@@ -25,9 +25,7 @@ void check_periods(const GrainScene& scene) {
   double largest = 0;
   for (const Grain& grain : scene.grains) largest = std::max(largest, grain.radius);
   const auto check_period = [&](const char* name, double period) {
-    if (!is_positive(period))
-      bad_input(fmt::format("the periodic cell has {} = {} m", name, period), "it must be > 0 and finite",
-                "Give the period");
+    check_positive(period, fmt::format("{} of the periodic cell", name), "m");
     if (period > 4 * largest) return;
     bad_input(fmt::format("the periodic cell has {} = {:.6g} m, and the largest body a diameter of {:.6g} m", name,
                           period, 2 * largest),
@@ -91,10 +89,9 @@ void check_deformation(const GrainScene& scene, const GrainOptions& options) {
   };
   check_one("xx", servo.stress_xx, cell.rate_xx);
   check_one("yy", servo.stress_yy, cell.rate_yy);
-  check_positive(servo.max_rate, "max_rate of the periodic cell", "1/s");
-  if (!(servo.relaxation > 0) || !(servo.relaxation <= 1))
-    bad_input(fmt::format("the servo of the periodic cell has relaxation = {}", servo.relaxation),
-              "a step mends that share of the difference, and more than 1 overshoots", "Take 0.1");
+  constexpr Bound<CellServo> bounds[] = {{"max_rate", &CellServo::max_rate, Range::positive(), "1/s"},
+                                         {"relaxation", &CellServo::relaxation, Range::above_zero_to(1)}};
+  check_bounds(servo, bounds, [] { return " of the periodic cell"; });
 }
 
 /// As refuse_long_ways_in_cell, before candidates are looked for as far as bodies may come.

@@ -5,7 +5,7 @@
 /// Contact geometry of two parts of bodies, or of a part and a wall, in scenes with ellipses or clumps.
 #pragma once
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 
 namespace equidem {
@@ -62,7 +62,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
   const Pose i = pose_at(system, candidate.i, parts.i, 1), j = pose_at(system, candidate.j, parts.j, 1);
   const Vec2 branch = j.centre - i.centre;
   const PartWay way = way_of_parts(system, candidate, parts);
-  const bool inside = holds(i.part, i.axis, branch) || holds(j.part, j.axis, branch);
+  const bool inside = holds(i.ellipse(), branch) || holds(j.ellipse(), branch);
   if (inside && norm(branch) < norm(way.before)) return "be pressed into";
   const EllipseContact before = contact_at(0), after = contact_at(1);
   if (before.gap < 0 && after.gap < 0 && dot(before.normal, after.normal) < 0) return "pass through";

@@ -8,29 +8,10 @@
 #include <limits>
 #include <numbers>
 
-#include "equidem/dynamics/kernels/lanes.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
 
 namespace equidem::eight {
-
-/// lanes::angle_of for all numbers of eight bonds.
-template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Lanes direction_of(const Lanes& x, const Lanes& y) {
-  using std::numbers::pi;
-  constexpr double smallest = 1e-300;
-  const Lanes across = magnitude(x), up = magnitude(y);
-  const Bits<Lanes> steep = negative(across - up);
-  const Lanes larger = choose(steep, up, across), smaller = choose(steep, across, up);
-  const Bits<Lanes> turned = negative(lanes::tan_pi_8 * larger - smaller);
-  const Lanes t = choose(turned, smaller - larger, smaller) / (choose(turned, smaller + larger, larger) + smallest);
-  const Lanes z = t * t;
-  Lanes angle = t + (t * z * lanes::arctangent_series(z) + only(turned, all<Lanes>(lanes::rest_of_pi_4)));
-  angle = choose(turned, pi / 4 + angle, angle);
-  angle = choose(steep, pi / 2 - angle, angle);
-  angle = choose(negative(x), pi - angle, angle);
-  return as<Lanes>(bits_of(angle) ^ (bits_of(y) & std::numeric_limits<long long>::min()));
-}
 
 /// The angle of (x, y), x > 0 in most lanes. By a short polynomial within 1/64 of the direction of x; a lane takes the
 /// longer one by its own numbers alone.
@@ -38,10 +19,10 @@ template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Lanes turn_of(const Lanes& x, const Lanes& y) {
   constexpr double near = 1.0 / 64;
   const Lanes t = y / x, z = t * t;
-  const Lanes turn = lanes::small_arctangent(t, z);
+  const Lanes turn = small_arctangent(t, z);
   const Bits<Lanes> far = negative(near * near - z) | negative(x);
   if (!any(far)) return turn;
-  return choose(far, direction_of(x, y), turn);
+  return choose(far, angle_of(x, y), turn);
 }
 
 EQUIDEM_ALWAYS_INLINE Four two_and_two(const void* first, const void* second, const Four&) {

@@ -59,7 +59,7 @@ void Stretch<kind>::run(GrainSystem& system, BondBatch& batch) {
                   tilt_j = now.angle_j - load<Lanes>(spring.angle_j);
       const auto share_i = load<Lanes>(group.share);
       const Lanes mean = tilt_j + share_i * (tilt_i - tilt_j);
-      tangential = load<Lanes>(spring.tangential) * (levers * lanes::without_whole_turns(turn - mean));
+      tangential = load<Lanes>(spring.tangential) * (levers * without_whole_turns(turn - mean));
       const Lanes turned = levers * tangential, across = turned * inverse;
       x -= across * ny;
       y += across * nx;

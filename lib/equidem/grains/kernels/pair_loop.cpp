@@ -2,10 +2,9 @@
 #include <algorithm>
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem {
 namespace {

@@ -8,10 +8,9 @@
 #include <utility>
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 

@@ -3,9 +3,9 @@
 /// Contact geometry of eight pairs of parts at once.
 #pragma once
 
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
 
 namespace equidem::eight {
 
@@ -37,6 +37,7 @@ template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Vectors<Lanes> perpendicular(const Vectors<Lanes>& a) {
   return {-a.y, a.x};
 }
+using simd::choose;
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE Vectors<Lanes> choose(const Bits<Lanes>& choice, const Vectors<Lanes>& a,
                                             const Vectors<Lanes>& b) {
@@ -116,7 +117,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_round_parts(const PartGro
           column<Lanes>(group, PartGroup::a_j) - rest};
 }
 
-/// support() of ellipse_contact.hpp.
+/// support() of geometry/shapes.hpp.
 template <class Lanes>
 struct Supports {
   Lanes reach, slope, radius, radius_slope;

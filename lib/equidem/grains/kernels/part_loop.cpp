@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
 
 namespace equidem::eight {
 

@@ -6,11 +6,10 @@
 #include <type_traits>
 
 #include "equidem/contact/laws/visit.hpp"
+#include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
-#include "equidem/grains/kernels/pair_lanes.hpp"
 #include "equidem/grains/kernels/slide_lanes.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 
 namespace equidem {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 #include "equidem/grains/grain_system.hpp"
 

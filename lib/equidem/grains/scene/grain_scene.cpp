@@ -24,15 +24,7 @@ namespace {
 constexpr double clump_tolerance = 1e-6;
 
 void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
-  if (clump.discs.empty()) {
-    bad_input(fmt::format("clump {} has no discs", grain.clump), "there is nothing to it", "Give at least one");
-  }
-  for (const Clump::Disc& disc : clump.discs) {
-    if (disc.radius > 0 && std::isfinite(disc.radius) && std::isfinite(disc.offset.x + disc.offset.y)) continue;
-    bad_input(fmt::format("clump {} has a disc of the radius {} m at ({}, {}) m", grain.clump, disc.radius,
-                          disc.offset.x, disc.offset.y),
-              "it would touch nothing", "Give a radius > 0 and finite numbers");
-  }
+  check(clump);
   const double reach = radius_of(clump);
   if (reach > grain.radius * (1 + clump_tolerance)) {
     bad_input(fmt::format("grain {} has the radius {:.6g} m, its clump {} reaches {:.6g} m from the centre of mass", i,
@@ -44,16 +36,6 @@ void check_clump(const Clump& clump, const Grain& grain, std::size_t i) {
     bad_input(fmt::format("clump {} has its centre of mass at ({:.4g}, {:.4g}) m", grain.clump, centre.x, centre.y),
               "the origin of its frame is the centre of mass", "Use centred_clump(discs), which shifts the discs");
   }
-}
-
-/// \param branch from the centre of p to that of q
-bool run_through_one_another(const GrainPart& p, Vec2 axis_p, const GrainPart& q, Vec2 axis_q, Vec2 branch) {
-  const double skew = cross(axis_p, axis_q);
-  if (skew == 0) return false;
-  const auto reaches = [](const GrainPart& part, double along) {
-    return std::abs(along) < part.a - part.b * part.b / part.a;
-  };
-  return reaches(p, cross(branch, axis_q) / skew) && reaches(q, cross(branch, axis_p) / skew);
 }
 
 }  // namespace
@@ -98,51 +80,42 @@ void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options) 
   }
 }
 
-bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain& b) {
-  if (a.shape() == GrainShape::disc && b.shape() == GrainShape::disc) {
-    return norm(b.position - a.position) < std::max(a.radius, b.radius);
-  }
-  const Vec2 axis_a = axis_at(a.angle), axis_b = axis_at(b.angle);
-  const std::vector<GrainPart> of_a = parts_of(a, scene.clumps), of_b = parts_of(b, scene.clumps);
-  return std::any_of(of_a.begin(), of_a.end(), [&](const GrainPart& p) {
-    return std::any_of(of_b.begin(), of_b.end(), [&](const GrainPart& q) {
-      const Vec2 branch = b.position - a.position + (offset_of(q, axis_b) - offset_of(p, axis_a));
-      return holds(p, axis_a, branch) || holds(q, axis_b, branch) ||
-             run_through_one_another(p, axis_a, q, axis_b, branch);
-    });
-  });
-}
-
 bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall) {
   const Vec2 start = wall.displacement(0);
-  const auto is_out = [&](Vec2 centre) {
-    const double distance = nearest(wall, start, centre).distance;
-    return distance > 0 && std::isfinite(distance);
-  };
-  if (grain.shape() == GrainShape::disc) return !is_out(grain.position);
-  const Vec2 axis = axis_at(grain.angle);
-  const std::vector<GrainPart> parts = parts_of(grain, scene.clumps);
-  return !std::all_of(parts.begin(), parts.end(),
-                      [&](const GrainPart& part) { return is_out(grain.position + offset_of(part, axis)); });
+  const Outline outline = outline_of(grain, scene.clumps);
+  for (std::size_t p = 0; p < outline.parts(); ++p) {
+    const double distance = nearest(wall, start, grain.position + outline.offset(p)).distance;
+    if (!(distance > 0 && std::isfinite(distance))) return true;
+  }
+  return false;
 }
 
 namespace {
 
-bool not_negative(double value) {
-  return value >= 0 && std::isfinite(value);
-}
+constexpr Bound<Grain> grain_bounds[] = {{"radius", &Grain::radius, Range::positive(), "m"}};
+constexpr Bound<Inertia> inertia_bounds[] = {{"mass", &Inertia::mass, Range::positive()},
+                                             {"moment of inertia", &Inertia::moment, Range::positive()}};
+constexpr Bound<PairProperties> pair_bounds[] = {
+    {"friction", &PairProperties::friction, Range::not_negative()},
+    {"tangential_ratio", &PairProperties::tangential_ratio, Range::not_negative()},
+    {"tangential_damping", &PairProperties::tangential_damping, Range::not_negative()}};
+constexpr Bound<GrainOptions> option_bounds[] = {
+    {"time step", &GrainOptions::time_step, Range::positive(), "s"},
+    {"reference length", &GrainOptions::reference_length, Range::not_negative(), "m"},
+    {"margin", &GrainOptions::margin, Range::not_negative(), "m"}};
+constexpr Bound<GrainBond> bond_bounds[] = {
+    {"normal_dashpot", &GrainBond::normal_dashpot, Range::not_negative()},
+    {"tangential_dashpot", &GrainBond::tangential_dashpot, Range::not_negative()},
+    {"rolling_dashpot", &GrainBond::rolling_dashpot, Range::not_negative()},
+    {"normal_spring", &GrainBond::normal_spring, Range::not_negative()},
+    {"tangential_spring", &GrainBond::tangential_spring, Range::not_negative()},
+    {"bending_spring", &GrainBond::bending_spring, Range::not_negative()}};
 
 void check_grain(const GrainScene& scene, std::size_t i) {
   const Grain& grain = scene.grains[i];
-  if (!is_positive(grain.radius)) {
-    bad_input(fmt::format("grain {} has the radius {} m", i, grain.radius), "it would touch nothing",
-              "Give a radius > 0");
-  }
-  if (!is_positive(grain.inertia.mass) || !is_positive(grain.inertia.moment)) {
-    bad_input(fmt::format("grain {} has the mass {} and the moment of inertia {}", i, grain.inertia.mass,
-                          grain.inertia.moment),
-              "a force could not move it by a number", "Give a radius and a density whose mass is a number > 0");
-  }
+  const auto owner = [i] { return fmt::format(" of grain {}", i); };
+  check_bounds(grain, grain_bounds, owner);
+  check_bounds(grain.inertia, inertia_bounds, owner);
   constexpr double most = 1e150;
   for (const double number : {grain.position.x, grain.position.y, grain.radius, grain.velocity.x, grain.velocity.y,
                               grain.spin * grain.radius, grain.spin, grain.angle}) {
@@ -163,16 +136,9 @@ void check_pair(const PairProperties& pair, const GrainOptions& options) {
         "one number says how hard a contact is", "Give one of the two");
   }
   const double hardness = pair.stiffness != 0 ? pair.stiffness : pair.dimensionless;
-  if (!is_positive(hardness)) {
-    bad_input(fmt::format("a contact has the stiffness {}", hardness), "bodies would not rebound",
-              "Give a stiffness > 0");
-  }
+  check_positive(hardness, "stiffness of a contact");
   describe(options.law).dissipation(pair.restitution, pair.end);
-  if (!not_negative(pair.friction) || !not_negative(pair.tangential_ratio) || !not_negative(pair.tangential_damping)) {
-    bad_input(fmt::format("friction {}, tangential_ratio {}, tangential_damping {}", pair.friction,
-                          pair.tangential_ratio, pair.tangential_damping),
-              "negative ones would feed the motion", "Give 0 or more");
-  }
+  check_bounds(pair, pair_bounds, [] { return " of a contact"; });
   if (gives_force(options.law) && pair.friction > 0 && !(pair.tangential_ratio > 0)) {
     bad_input(fmt::format("friction {} is given without a tangential spring", pair.friction),
               fmt::format("contacts by {} stick by one", to_string(options.law)),
@@ -236,13 +202,13 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   }
   for (const CirclePair& pair : pairs_within(circles, periods, 0)) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
-    Grain grain = scene.grains[i], other = scene.grains[j];
-    grain.position = circles[i].centre;
-    other.position = circles[j].centre + pair.shift;
-    if (!are_inside_one_another(scene, grain, other)) continue;
+    const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
+    if (!are_inside_one_another(outline_of(scene.grains[i], scene.clumps), outline_of(scene.grains[j], scene.clumps),
+                                branch))
+      continue;
     refuse_grain(j, where, fmt::format("grains {} and {} start inside one another", i, j),
-                 fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m",
-                             norm(other.position - grain.position), circles[i].radius, circles[j].radius),
+                 fmt::format("their centres are {:.4g} m apart, their radii {:.4g} m and {:.4g} m", norm(branch),
+                             circles[i].radius, circles[j].radius),
                  "Move them apart");
   }
   for (std::size_t i = 0; i < scene.grains.size(); ++i) {
@@ -272,19 +238,12 @@ void check_bond(const GrainScene& scene, const GrainBond& bond) {
     bad_input(fmt::format("a bond ties grain {} to itself", bond.i), "it could not move against itself",
               "Tie two grains");
   }
-  double largest = 0;
-  for (const double number : {bond.normal_dashpot, bond.tangential_dashpot, bond.rolling_dashpot, bond.normal_spring,
-                              bond.tangential_spring, bond.bending_spring}) {
-    largest = std::max(largest, number);
-    if (number >= 0 && std::isfinite(number)) continue;
-    bad_input(fmt::format("the bond of grains {} and {} has a dashpot or a spring of {}", bond.i, bond.j, number),
-              "negative ones would feed the motion", "Give 0 or more");
-  }
+  check_bounds(bond, bond_bounds, [&] { return fmt::format(" of the bond of grains {} and {}", bond.i, bond.j); });
   if (scene.strengths && !(bond.normal_spring > 0)) {
     bad_input(fmt::format("the bond of grains {} and {} has no normal spring", bond.i, bond.j),
               "it carries the force that breaks a bond", "Give a normal_spring > 0");
   }
-  if (largest == 0) {
+  if (std::ranges::all_of(bond_bounds, [&](const Bound<GrainBond>& of) { return bond.*of.member == 0; })) {
     bad_input(fmt::format("the bond of grains {} and {} has neither dashpot nor spring", bond.i, bond.j),
               "it ties nothing", "Give a normal_dashpot and a tangential_dashpot > 0");
   }
@@ -312,13 +271,7 @@ double reference_length(const GrainScene& scene, const GrainOptions& options) {
 
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
   if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
-  if (!is_positive(options.time_step)) {
-    bad_input(fmt::format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
-  }
-  if (!not_negative(options.reference_length) || !not_negative(options.margin)) {
-    bad_input(fmt::format("the reference length is {} m, the margin {} m", options.reference_length, options.margin),
-              "lengths are not negative", "Give 0 to have them chosen");
-  }
+  check_bounds(options, option_bounds, [] { return ""; });
   check_laws_of_shapes(scene, options);
   if (!gives_force(options.law) && options.verlet()) {
     bad_input(fmt::format("velocity_verlet is asked for with the law \"{}\"", to_string(options.law)),

@@ -16,6 +16,7 @@
 #include "equidem/contact/restitution.hpp"
 #include "equidem/contact/sliding.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/geometry/shapes.hpp"
 #include "equidem/grains/cell/periodic_cell.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_simulation.hpp"
@@ -45,15 +46,6 @@ struct Grain {
     if (clump >= 0) return GrainShape::clump;
     return short_half_axis > 0 ? GrainShape::ellipse : GrainShape::disc;
   }
-};
-
-/// Discs tied rigidly, in the frame of their body: the origin is the centre of mass, the angle of the body is 0.
-struct Clump {
-  struct Disc {
-    Vec2 offset;        ///< of the centre, m
-    double radius = 0;  ///< m
-  };
-  std::vector<Disc> discs;
 };
 
 /// Two discs of a bond as they were without stretch.
@@ -119,8 +111,8 @@ struct GrainOptions {
   double margin = 0;            ///< margin of the neighbour lists, m; 0: chosen from speeds and density
   /// Contact detection of two ellipses, or of an ellipse and a disc.
   enum class EllipseLaw {
-    exact,     ///< closest points and common normal (ellipse_contact.hpp)
-    enlarged,  ///< Sukegawa's test (4.1)-(4.49) (ellipse_contact.hpp): misses shallow contacts
+    exact,     ///< closest points and common normal (geometry/shape_contact.hpp)
+    enlarged,  ///< Sukegawa's test (4.1)-(4.49), same file: misses shallow contacts
   } ellipse_law = EllipseLaw::exact;
   /// How dashpots of bonds act over a step.
   enum class BondStep {
@@ -186,10 +178,6 @@ void check_shape(const GrainScene& scene, std::size_t grain);
 
 /// \throws Error (bad_input): laws that do not support ellipses and clumps; spheres in the scene
 void check_laws_of_shapes(const GrainScene& scene, const GrainOptions& options);
-
-/// Whether a part of one grain has its centre in a part of the other, or ellipses intersect so deeply that the lines
-/// between the centres of curvature of their tips cross. For discs: whether the centre of one is in the other.
-bool are_inside_one_another(const GrainScene& scene, const Grain& a, const Grain& b);
 
 /// Whether the centre of a part is behind a wall or on it.
 bool is_behind(const GrainScene& scene, const Grain& grain, const Wall& wall);

@@ -13,6 +13,7 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
+#include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/material/spring_relations.hpp"
 
 namespace equidem {
@@ -392,7 +393,7 @@ struct Shortest {
 std::vector<double> agility_of_kinds(const GrainScene& scene) {
   std::vector<double> agility(static_cast<std::size_t>(scene.kinds), 1.0);
   for (const Grain& grain : scene.grains) {
-    const double lever = longest_lever(grain, scene.clumps);
+    const double lever = longest_lever(outline_of(grain, scene.clumps));
     double& most = agility[grain.kind];
     most = std::max(most, 1 + grain.inertia.mass * lever * lever / grain.inertia.moment);
   }
@@ -468,20 +469,6 @@ void limit_by_bonds(const GrainScene& scene, GrainOptions options, GrainTimeStep
 }
 
 }  // namespace
-
-double longest_lever(const Grain& grain, std::span<const Clump> clumps) {
-  switch (grain.shape()) {
-    case GrainShape::disc:
-      return 0;
-    case GrainShape::ellipse:
-      return grain.radius - grain.short_half_axis;
-    case GrainShape::clump:
-      break;
-  }
-  double lever = 0;
-  for (const Clump::Disc& disc : clumps[grain.clump].discs) lever = std::max(lever, norm(disc.offset));
-  return lever;
-}
 
 GrainTimeStep choose_time_step(const GrainScene& scene, const ContactTable& contacts, const GrainOptions& options,
                                const GrainStepOptions& wanted) {

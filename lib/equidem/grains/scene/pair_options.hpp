@@ -157,9 +157,6 @@ struct ReducedMasses {
 /// Extremes over all pairs of two kinds; none if the scene has no two such bodies.
 std::optional<ReducedMasses> reduced_masses(const std::vector<KindMasses>& kinds, int a, int b);
 
-/// Longest lever of a normal force about the centre of mass of a body, m: a - b for an ellipse, 0 for a disc.
-double longest_lever(const Grain& grain, std::span<const Clump> clumps);
-
 struct GrainStepOptions {
   std::optional<double> time_step = {};                      ///< s; none: by steps_per_contact
   std::optional<double> steps_per_contact = {};              ///< none: LawDescription::steps_per_contact

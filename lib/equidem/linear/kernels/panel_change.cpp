@@ -3,9 +3,8 @@
 
 #include <cmath>
 
+#include "equidem/core/simd.hpp"
 #include "equidem/linear/kernels/panel_solve.hpp"
-
-#define EQUIDEM_INLINE inline __attribute__((always_inline))
 
 namespace equidem {
 namespace {
@@ -18,8 +17,8 @@ struct Turn {
 };
 
 /// The turn at a pivot, which becomes the new one.
-EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffness, double least, bool& vanished,
-                            double& share) {
+EQUIDEM_ALWAYS_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffness, double least, bool& vanished,
+                                   double& share) {
   const double square = sign > 0 ? pivot * pivot + w * w : (pivot - w) * (pivot + w);
   if (sign < 0 && !(square > least * stiffness)) {
     vanished = true;
@@ -35,7 +34,7 @@ EQUIDEM_INLINE Turn turn_at(double& pivot, double w, double sign, double stiffne
 
 /// Pivots [p, p + N) with K vectors and C right-hand sides.
 template <std::size_t N, std::size_t K, std::size_t C>
-EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, PanelChangeResult& result) {
+EQUIDEM_ALWAYS_INLINE void change_pivots(const PanelChange& change, std::size_t p, PanelChangeResult& result) {
   const std::size_t ld = change.rows;
   double* a = change.values + p * ld;
   double* const w = change.vectors;
@@ -98,7 +97,7 @@ EQUIDEM_INLINE void change_pivots(const PanelChange& change, std::size_t p, Pane
 }
 
 template <std::size_t K, std::size_t C>
-EQUIDEM_INLINE void change_all(const PanelChange& change, PanelChangeResult& result) {
+EQUIDEM_ALWAYS_INLINE void change_all(const PanelChange& change, PanelChangeResult& result) {
   constexpr std::size_t at_once = 4;  // pivots
   std::size_t p = 0;
   for (; p + at_once <= change.pivots; p += at_once) change_pivots<at_once, K, C>(change, p, result);
@@ -106,7 +105,7 @@ EQUIDEM_INLINE void change_all(const PanelChange& change, PanelChangeResult& res
 }
 
 template <std::size_t K>
-EQUIDEM_INLINE void change_with(const PanelChange& change, PanelChangeResult& result) {
+EQUIDEM_ALWAYS_INLINE void change_with(const PanelChange& change, PanelChangeResult& result) {
   switch (change.right_sides) {
     case 0:
       return change_all<K, 0>(change, result);
@@ -117,7 +116,7 @@ EQUIDEM_INLINE void change_with(const PanelChange& change, PanelChangeResult& re
   }
 }
 
-EQUIDEM_INLINE void change_by(const PanelChange& change, PanelChangeResult& result) {
+EQUIDEM_ALWAYS_INLINE void change_by(const PanelChange& change, PanelChangeResult& result) {
   if (change.changes == 1) return change_with<1>(change, result);
   change_with<2>(change, result);
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#define EQUIDEM_INLINE inline __attribute__((always_inline))
+#include "equidem/core/simd.hpp"
 
 namespace equidem {
 namespace {
@@ -18,18 +18,18 @@ template <std::size_t N>
 struct LaneSums {
   Vector all;
 
-  EQUIDEM_INLINE explicit LaneSums(const Vector (&given)[N]) {
+  EQUIDEM_ALWAYS_INLINE explicit LaneSums(const Vector (&given)[N]) {
     Vector v[4] = {};
     for (std::size_t j = 0; j < N; ++j) v[j] = given[j];
     const auto low = __builtin_shufflevector(v[0], v[1], 0, 4, 2, 6) + __builtin_shufflevector(v[0], v[1], 1, 5, 3, 7);
     const auto high = __builtin_shufflevector(v[2], v[3], 0, 4, 2, 6) + __builtin_shufflevector(v[2], v[3], 1, 5, 3, 7);
     all = __builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7);
   }
-  EQUIDEM_INLINE double operator[](std::size_t j) const { return all[j]; }
+  EQUIDEM_ALWAYS_INLINE double operator[](std::size_t j) const { return all[j]; }
 };
 
 /// The last `count` numbers of a vector, < width; 0 before them, whatever stands there.
-EQUIDEM_INLINE Vector load_last(const double* end, std::size_t count) {
+EQUIDEM_ALWAYS_INLINE Vector load_last(const double* end, std::size_t count) {
   typedef std::int64_t Mask __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
   static constexpr auto masks = [] {
     std::array<std::int64_t, 2 * width> all{};
@@ -44,7 +44,7 @@ EQUIDEM_INLINE Vector load_last(const double* end, std::size_t count) {
 
 /// Pivots [p, p + N) of L y = b for C columns w of `rows` numbers.
 template <std::size_t N, std::size_t C>
-EQUIDEM_INLINE void eliminate(const Panel& panel, std::size_t p, double* w) {
+EQUIDEM_ALWAYS_INLINE void eliminate(const Panel& panel, std::size_t p, double* w) {
   const std::size_t ld = panel.rows;
   const double* a = panel.values + p * ld;
   double y[C][N];
@@ -79,7 +79,8 @@ EQUIDEM_INLINE void eliminate(const Panel& panel, std::size_t p, double* w) {
 /// Pivots [p, p + N) of L^T x = y. \param before the solutions of the next `width` rows where they have just been
 /// found: the sums over other rows do not wait for them; null: they are read
 template <std::size_t N, std::size_t C>
-EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, const Vector* before, Vector* found) {
+EQUIDEM_ALWAYS_INLINE void substitute(const Panel& panel, std::size_t p, double* w, const Vector* before,
+                                      Vector* found) {
   const std::size_t ld = panel.rows;
   const double* a = panel.values + p * ld;
   double inverse[N], triangle[N][N];  // 1/l_jj and l_ij/l_jj: neither they nor divisions wait for solutions
@@ -138,14 +139,14 @@ EQUIDEM_INLINE void substitute(const Panel& panel, std::size_t p, double* w, con
 constexpr std::size_t at_once = 4;  // pivots
 
 template <std::size_t C>
-EQUIDEM_INLINE void forward(const Panel& panel, double* w) {
+EQUIDEM_ALWAYS_INLINE void forward(const Panel& panel, double* w) {
   std::size_t p = 0;
   for (; p + at_once <= panel.pivots; p += at_once) eliminate<at_once, C>(panel, p, w);
   for (; p < panel.pivots; ++p) eliminate<1, C>(panel, p, w);
 }
 
 template <std::size_t C>
-EQUIDEM_INLINE void backward(const Panel& panel, double* w) {
+EQUIDEM_ALWAYS_INLINE void backward(const Panel& panel, double* w) {
   Vector found[C];
   const Vector* before = nullptr;
   std::size_t p = panel.pivots;
@@ -164,7 +165,7 @@ EQUIDEM_INLINE void backward(const Panel& panel, double* w) {
   }
 }
 
-EQUIDEM_INLINE void solve(bool up, const Panel& panel, double* w, std::size_t columns) {
+EQUIDEM_ALWAYS_INLINE void solve(bool up, const Panel& panel, double* w, std::size_t columns) {
   switch (columns) {
     case 1:
       return up ? forward<1>(panel, w) : backward<1>(panel, w);

@@ -201,7 +201,7 @@ void draw_grains(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
     const double radius = grain.radius * frame.scale;
     const Vec2 centre = frame.to_page(grain.position);
     const Colour &fill = fills[tone(picture, g)], &edge = inks[tone(picture, g)];
-    const bool outlined = inscribed_radius(grain, picture.clumps) * frame.scale >= smallest_marked;
+    const bool outlined = inscribed_radius(outline_of(grain, picture.clumps)) * frame.scale >= smallest_marked;
     Vec2 mark_from = centre;
     double mark = radius;
     if (grain.shape() == GrainShape::clump) {
@@ -239,7 +239,7 @@ void draw_starts(Canvas& canvas, const PageFrame& frame, const GrainPicture& pic
   for (std::size_t g = 0; g < picture.grains.size(); ++g) {
     const Grain& grain = picture.grains[g];
     const double size =
-        grain.shape() == GrainShape::disc ? grain.radius : 0.5 * inscribed_radius(grain, picture.clumps);
+        grain.shape() == GrainShape::disc ? grain.radius : 0.5 * inscribed_radius(outline_of(grain, picture.clumps));
     const auto first = std::ranges::find_if(picture.paths, [&](const auto& places) { return is_there(places[g]); });
     if (first == picture.paths.end()) continue;
     canvas.stroke_circle(frame.to_page((*first)[g]), std::max(1.5, size * frame.scale), 0.7, pale_colour);

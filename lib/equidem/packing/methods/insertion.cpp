@@ -158,8 +158,8 @@ class Inserter {
     constexpr int directions = 16, halvings = 32;
     const double turns = random_.uniform(), start = random_.uniform(),
                  step = (random_.below(2) == 0 ? 1.0 : -1.0) / directions;
-    const Outline fixed = outline_of(placed_.shape(), placed_.radius(a), placed_.turns(a));
-    const Outline moved = outline_of(placed_.shape(), radius, turns);
+    const Outline fixed = placed_.shape().outline(placed_.radius(a), placed_.turns(a));
+    const Outline moved = placed_.shape().outline(radius, turns);
     const double far = placed_.shape().reach * (placed_.radius(a) + radius);
     const auto at = [&](double direction) {
       const Vec2 along = axis_of_turns(direction);

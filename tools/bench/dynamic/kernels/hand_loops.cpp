@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/dynamics/kernels/lanes.hpp"
+#include "equidem/dynamics/kernels/motion_step.hpp"
 #include "equidem/dynamics/layout.hpp"
 
 #include "scene.hpp"
@@ -21,10 +21,10 @@ namespace {
 
 using lanes::gather;
 using lanes::Lanes;
-using lanes::load;
 using lanes::load_group;
-using lanes::store;
 using lanes::store_group;
+using simd::load;
+using simd::store;
 
 /// Arrays as the library has them.
 class HandLoop : public Contender {
@@ -94,9 +94,9 @@ class SpringLoop : public HandLoop {
         const double* at = geometry_.data() + 12 * static_cast<std::ptrdiff_t>(k);
         Lanes xj, yj, theta_j, lx, ly, over_square;
         gather<width>(before_.data(), slots_.neighbour.data() + 4 * static_cast<std::ptrdiff_t>(k), xj, yj, theta_j);
-        load(at, lx);
-        load(at + 4, ly);
-        load(at + 8, over_square);
+        lx = load<Lanes>(at);
+        ly = load<Lanes>(at + 4);
+        over_square = load<Lanes>(at + 8);
         const Lanes dx = xj - x, dy = yj - y, normal = over_square * (lx * dx + ly * dy);
         normal_x += normal * lx;
         normal_y += normal * ly;
@@ -111,16 +111,13 @@ class SpringLoop : public HandLoop {
         }
       }
       double* velocity = velocity_.data() + 4 * unknowns * static_cast<std::ptrdiff_t>(group);
-      Lanes vx, vy;
-      load(velocity, vx);
-      load(velocity + 4, vy);
+      Lanes vx = load<Lanes>(velocity), vy = load<Lanes>(velocity + 4);
       vx += h / scene_inertia.mass * (tangential ? kT * sum_x + excess * normal_x : excess * normal_x);
       vy += h / scene_inertia.mass * (tangential ? kT * sum_y + excess * normal_y : excess * normal_y);
       store(vx, velocity);
       store(vy, velocity + 4);
       if constexpr (rotation) {
-        Lanes omega;
-        load(velocity + 8, omega);
+        Lanes omega = load<Lanes>(velocity + 8);
         omega += h / scene_inertia.moment * 0.5 * kT * sum_moment;
         store(omega, velocity + 8);
         theta += h * omega;

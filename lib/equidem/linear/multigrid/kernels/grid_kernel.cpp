@@ -3,13 +3,13 @@
 
 #include <cstring>
 
-#define EQUIDEM_INLINE inline __attribute__((always_inline))
+#include "equidem/core/simd.hpp"
 
 namespace equidem::multigrid {
 namespace {
 
 struct Loops {
-  static EQUIDEM_INLINE void restrict_cell(const PointsOfCell& points, const Quad* forces, Quad* corners) {
+  static EQUIDEM_ALWAYS_INLINE void restrict_cell(const PointsOfCell& points, const Quad* forces, Quad* corners) {
     Quad sums[4] = {};
     for (std::size_t k = 0; k < points.count; ++k) {
       const auto [s, t] = points.inside[k];
@@ -23,7 +23,7 @@ struct Loops {
     std::memcpy(corners, sums, sizeof sums);
   }
 
-  static EQUIDEM_INLINE void move_points(const PointsOfCell& points, const Quad* corners, Quad* motions) {
+  static EQUIDEM_ALWAYS_INLINE void move_points(const PointsOfCell& points, const Quad* corners, Quad* motions) {
     const Quad u = corners[0], along_x = corners[1] - u, along_y = corners[2] - u;
     const Quad twist = corners[3] - corners[1] - along_y;
     for (std::size_t k = 0; k < points.count; ++k) {
@@ -34,49 +34,35 @@ struct Loops {
     }
   }
 
-  using Four = double __attribute__((vector_size(32)));
-  static EQUIDEM_INLINE void load(const double* from, Four& four) { std::memcpy(&four, from, sizeof four); }
-  static EQUIDEM_INLINE void store(const Four& four, double* to) { std::memcpy(to, &four, sizeof four); }
+  using Four = simd::Four;
 
-  static EQUIDEM_INLINE void add_squares(double k, const double* v, double l, const double* w, double* matrix) {
+  static EQUIDEM_ALWAYS_INLINE void add_squares(double k, const double* v, double l, const double* w, double* matrix) {
     for (int part = 0; part < 12; part += 4) {
-      Four kv, lw, row;
-      load(v + part, kv);
-      load(w + part, lw);
-      kv *= k;
-      lw *= l;
+      const Four kv = k * simd::load<Four>(v + part), lw = l * simd::load<Four>(w + part);
       for (int r = 0; r < 12; ++r) {
-        load(matrix + 12 * r + part, row);
-        row += v[r] * kv + w[r] * lw;
-        store(row, matrix + 12 * r + part);
+        double* const row = matrix + 12 * r + part;
+        simd::store(simd::load<Four>(row) + (v[r] * kv + w[r] * lw), row);
       }
     }
   }
 
-  static EQUIDEM_INLINE void add_projection(const double* k, const double* t, double* matrix) {
+  static EQUIDEM_ALWAYS_INLINE void add_projection(const double* k, const double* t, double* matrix) {
     double product[144];  // K T
     for (int r = 0; r < 12; ++r) {
       Four sums[3] = {};
       for (int c = 0; c < 12; ++c) {
-        for (int part = 0; part < 3; ++part) {
-          Four row;
-          load(t + 12 * c + 4 * part, row);
-          sums[part] += k[12 * r + c] * row;
-        }
+        for (int part = 0; part < 3; ++part) sums[part] += k[12 * r + c] * simd::load<Four>(t + 12 * c + 4 * part);
       }
-      for (int part = 0; part < 3; ++part) store(sums[part], product + 12 * r + 4 * part);
+      for (int part = 0; part < 3; ++part) simd::store(sums[part], product + 12 * r + 4 * part);
     }
     for (int r = 0; r < 12; ++r) {
       Four sums[3];
-      for (int part = 0; part < 3; ++part) load(matrix + 12 * r + 4 * part, sums[part]);
+      for (int part = 0; part < 3; ++part) sums[part] = simd::load<Four>(matrix + 12 * r + 4 * part);
       for (int c = 0; c < 12; ++c) {
-        for (int part = 0; part < 3; ++part) {
-          Four row;
-          load(product + 12 * c + 4 * part, row);
-          sums[part] += t[12 * c + r] * row;
-        }
+        for (int part = 0; part < 3; ++part)
+          sums[part] += t[12 * c + r] * simd::load<Four>(product + 12 * c + 4 * part);
       }
-      for (int part = 0; part < 3; ++part) store(sums[part], matrix + 12 * r + 4 * part);
+      for (int part = 0; part < 3; ++part) simd::store(sums[part], matrix + 12 * r + 4 * part);
     }
   }
 };

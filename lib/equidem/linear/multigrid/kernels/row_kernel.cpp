@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#define EQUIDEM_INLINE inline __attribute__((always_inline))
+#include "equidem/core/simd.hpp"
 
 namespace equidem::multigrid {
 namespace {
@@ -14,10 +14,10 @@ namespace {
 constexpr int lanes = GroupedRows::lanes;
 
 using Singles = float __attribute__((vector_size(32)));
-using Doubles = double __attribute__((vector_size(32)));
+using Doubles = simd::Four;
 
 template <class Lanes>
-EQUIDEM_INLINE void load(const float* from, Lanes& to) {
+EQUIDEM_ALWAYS_INLINE void load(const float* from, Lanes& to) {
   if constexpr (sizeof(to[0]) == sizeof(float)) {
     std::memcpy(&to, from, sizeof to);
   } else {
@@ -34,7 +34,7 @@ struct Motions {
 };
 
 /// Rows of four numbers, eight of them, as columns.
-EQUIDEM_INLINE void gather(const Quad* motion, const std::int32_t* row, Motions<Singles>& to) {
+EQUIDEM_ALWAYS_INLINE void gather(const Quad* motion, const std::int32_t* row, Motions<Singles>& to) {
   const Singles a = __builtin_shufflevector(motion[row[0]], motion[row[4]], 0, 1, 2, 3, 4, 5, 6, 7);
   const Singles b = __builtin_shufflevector(motion[row[1]], motion[row[5]], 0, 1, 2, 3, 4, 5, 6, 7);
   const Singles c = __builtin_shufflevector(motion[row[2]], motion[row[6]], 0, 1, 2, 3, 4, 5, 6, 7);
@@ -49,24 +49,20 @@ EQUIDEM_INLINE void gather(const Quad* motion, const std::int32_t* row, Motions<
 }
 
 /// Rows of three numbers, four of them; a number behind the last is read.
-EQUIDEM_INLINE void gather(const double* motion, const std::int32_t* row, Motions<Doubles>& to) {
-  Doubles a, b, c, d;
-  std::memcpy(&a, motion + 3 * static_cast<std::ptrdiff_t>(row[0]), sizeof a);
-  std::memcpy(&b, motion + 3 * static_cast<std::ptrdiff_t>(row[1]), sizeof b);
-  std::memcpy(&c, motion + 3 * static_cast<std::ptrdiff_t>(row[2]), sizeof c);
-  std::memcpy(&d, motion + 3 * static_cast<std::ptrdiff_t>(row[3]), sizeof d);
-  const Doubles xt_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Doubles xt_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6), y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  to.x = __builtin_shufflevector(xt_ab, xt_cd, 0, 1, 4, 5);
-  to.y = __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5);
-  to.turn = __builtin_shufflevector(xt_ab, xt_cd, 2, 3, 6, 7);
+EQUIDEM_ALWAYS_INLINE void gather(const double* motion, const std::int32_t* row, Motions<Doubles>& to) {
+  const auto at = [&](int k) { return motion + 3 * static_cast<std::ptrdiff_t>(row[k]); };
+  to.x = simd::load<Doubles>(at(0));
+  to.y = simd::load<Doubles>(at(1));
+  to.turn = simd::load<Doubles>(at(2));
+  auto unused = simd::load<Doubles>(at(3));
+  simd::transpose(to.x, to.y, to.turn, unused);
 }
 
 /// The rows of a group, or of a part of it; lanes behind its last row repeat the first.
 template <int Count>
 struct OwnRows {
   std::int32_t row[Count];
-  EQUIDEM_INLINE OwnRows(const GroupedRows::Group& group, int first_lane) {
+  EQUIDEM_ALWAYS_INLINE OwnRows(const GroupedRows::Group& group, int first_lane) {
     for (int k = 0; k < Count; ++k) {
       const std::size_t lane = static_cast<std::size_t>(first_lane + k);
       row[k] = static_cast<std::int32_t>(group.first_row + (lane < group.rows ? lane : 0));
@@ -76,8 +72,8 @@ struct OwnRows {
 
 /// f = K motion on the rows of a group, or of the half of it that begins at `first_lane`.
 template <RowKind kind, class Lanes, class Number>
-EQUIDEM_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::Group& group, int first_lane,
-                                   const Number* motion, const Motions<Lanes>& own, Motions<Lanes>& force) {
+EQUIDEM_ALWAYS_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::Group& group, int first_lane,
+                                          const Number* motion, const Motions<Lanes>& own, Motions<Lanes>& force) {
   const Lanes zero{};
   Lanes fx = zero, fy = zero, moment = zero;
   Lanes kN = zero + rows.normal_spring(), kT = zero + rows.tangential_spring();
@@ -132,7 +128,7 @@ EQUIDEM_INLINE void internal_force(const GroupedRows& rows, const GroupedRows::G
   force = {fx, fy, moment};
 }
 
-EQUIDEM_INLINE void multiply_by_inverse(const float* inverse, const Motions<Singles>& f, Motions<Singles>& to) {
+EQUIDEM_ALWAYS_INLINE void multiply_by_inverse(const float* inverse, const Motions<Singles>& f, Motions<Singles>& to) {
   Singles xx, xy, yy, xt, yt, tt;
   load(inverse, xx);
   load(inverse + lanes, xy);
@@ -143,7 +139,7 @@ EQUIDEM_INLINE void multiply_by_inverse(const float* inverse, const Motions<Sing
   to = {xx * f.x + xy * f.y + xt * f.turn, xy * f.x + yy * f.y + yt * f.turn, xt * f.x + yt * f.y + tt * f.turn};
 }
 
-EQUIDEM_INLINE void store(const Motions<Singles>& from, const GroupedRows::Group& group, Quad* to) {
+EQUIDEM_ALWAYS_INLINE void store(const Motions<Singles>& from, const GroupedRows::Group& group, Quad* to) {
   const Singles zero{};
   const Singles xy_low = __builtin_shufflevector(from.x, from.y, 0, 8, 1, 9, 4, 12, 5, 13);
   const Singles xy_high = __builtin_shufflevector(from.x, from.y, 2, 10, 3, 11, 6, 14, 7, 15);
@@ -166,7 +162,7 @@ EQUIDEM_INLINE void store(const Motions<Singles>& from, const GroupedRows::Group
 }
 
 /// Four rows of three numbers; fewer at the end of a group.
-EQUIDEM_INLINE void store(const Motions<Doubles>& from, std::size_t first_row, std::size_t rows, double* to) {
+EQUIDEM_ALWAYS_INLINE void store(const Motions<Doubles>& from, std::size_t first_row, std::size_t rows, double* to) {
   for (std::size_t k = 0; k < rows; ++k) {
     double* row = to + 3 * (first_row + k);
     row[0] = from.x[k];
@@ -177,8 +173,8 @@ EQUIDEM_INLINE void store(const Motions<Doubles>& from, std::size_t first_row, s
 
 template <RowKind kind>
 struct Loops {
-  static EQUIDEM_INLINE void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,
-                                   const Quad* b, Quad* x) {
+  static EQUIDEM_ALWAYS_INLINE void start(const GroupedRows& rows, std::size_t first, std::size_t last, float factor,
+                                          const Quad* b, Quad* x) {
     for (std::size_t g = first; g < last; ++g) {
       const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
@@ -190,8 +186,8 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE void advance(const GroupedRows& rows, std::size_t first, std::size_t last,
-                                     const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {
+  static EQUIDEM_ALWAYS_INLINE void advance(const GroupedRows& rows, std::size_t first, std::size_t last,
+                                            const ChebyshevStep& step, const Quad* b, const Quad* x, Quad* next) {
     for (std::size_t g = first; g < last; ++g) {
       const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
@@ -214,8 +210,8 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE void residual(const GroupedRows& rows, std::size_t first, std::size_t last, const Quad* b,
-                                      const Quad* x, Quad* r) {
+  static EQUIDEM_ALWAYS_INLINE void residual(const GroupedRows& rows, std::size_t first, std::size_t last,
+                                             const Quad* b, const Quad* x, Quad* r) {
     for (std::size_t g = first; g < last; ++g) {
       const GroupedRows::Group group = rows.group(g);
       const OwnRows<lanes> own(group, 0);
@@ -235,8 +231,8 @@ struct Loops {
     }
   }
 
-  static EQUIDEM_INLINE double multiply(const GroupedRows& rows, std::size_t first, std::size_t last, const double* p,
-                                        double* q) {
+  static EQUIDEM_ALWAYS_INLINE double multiply(const GroupedRows& rows, std::size_t first, std::size_t last,
+                                               const double* p, double* q) {
     double sum = 0;
     for (std::size_t g = first; g < last; ++g) {
       const GroupedRows::Group group = rows.group(g);

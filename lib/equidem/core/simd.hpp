@@ -1,19 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Eight numbers, one for each pair of a group, in vectors as wide as those of the processor: an Eight, or fewer
-/// numbers Twice. Plain C++ with the vector types of GCC and Clang.
+/// Vectors of numbers in plain C++ with the vector types of GCC and Clang, for loops over any number of lanes: those of
+/// one vector of the processor, or Twice as many. The compiler selects the instructions.
+/// Roots and angles of all lanes at once: no branches, no tables, bit-identical on every machine.
 #pragma once
 
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 #include <utility>
 
 #include "equidem/core/square_root.hpp"
-#include "equidem/grains/kernels/vector_width.hpp"
 
-namespace equidem::eight {
+/// Attribute of functions that are part of every function that calls them.
+#define EQUIDEM_ALWAYS_INLINE inline __attribute__((always_inline))
+/// Attributes of functions compiled for vectors of 256 and of 512 bits, without fused multiply-add: results are
+/// bit-identical on every machine.
+#define EQUIDEM_BY_FOURS __attribute__((target("avx2")))
+#if defined(__clang__)
+#define EQUIDEM_BY_EIGHTS __attribute__((target("avx2,avx512f,avx512vl,avx512dq")))
+#else
+#define EQUIDEM_BY_EIGHTS __attribute__((target("avx2,avx512f,avx512vl,avx512dq,prefer-vector-width=512")))
+#endif
+
+namespace equidem::simd {
+
+// Numbers in one vector of the processor.
+using Two = double __attribute__((vector_size(16)));
+using Four = double __attribute__((vector_size(32)));
+using Eight = double __attribute__((vector_size(64)));
+
+/// Twice as many numbers: compilers make slow code of vectors wider than those of the processor.
+template <class Half>
+struct Twice {
+  Half low, high;
+};
 
 template <class Lanes>
 constexpr bool in_halves = requires(Lanes lanes) {
@@ -222,15 +245,16 @@ EQUIDEM_ALWAYS_INLINE void transpose(Two (&m)[2]) {
   m[0] = __builtin_shufflevector(a, b, 0, 2);
   m[1] = __builtin_shufflevector(a, b, 1, 3);
 }
+EQUIDEM_ALWAYS_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const Four e01 = __builtin_shufflevector(a, b, 0, 4, 2, 6), o01 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four e23 = __builtin_shufflevector(c, d, 0, 4, 2, 6), o23 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(e01, e23, 0, 1, 4, 5);
+  b = __builtin_shufflevector(o01, o23, 0, 1, 4, 5);
+  c = __builtin_shufflevector(e01, e23, 2, 3, 6, 7);
+  d = __builtin_shufflevector(o01, o23, 2, 3, 6, 7);
+}
 EQUIDEM_ALWAYS_INLINE void transpose(Four (&m)[4]) {
-  const Four e01 = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);
-  const Four o01 = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
-  const Four e23 = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
-  const Four o23 = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
-  m[0] = __builtin_shufflevector(e01, e23, 0, 1, 4, 5);
-  m[1] = __builtin_shufflevector(o01, o23, 0, 1, 4, 5);
-  m[2] = __builtin_shufflevector(e01, e23, 2, 3, 6, 7);
-  m[3] = __builtin_shufflevector(o01, o23, 2, 3, 6, 7);
+  transpose(m[0], m[1], m[2], m[3]);
 }
 EQUIDEM_ALWAYS_INLINE void transpose(Eight (&m)[8]) {
   const Eight e01 = even_of(m[0], m[1]), o01 = odd_of(m[0], m[1]), e23 = even_of(m[2], m[3]), o23 = odd_of(m[2], m[3]);
@@ -339,4 +363,133 @@ struct Vectors {
   Lanes x, y;
 };
 
-}  // namespace equidem::eight
+/// P(z) of atan t = t + t z P(z), z = t², |t| <= tan(pi/8): the best polynomial of degree 10 (relative error 2^-59
+/// before rounding). \tparam Lanes vectors of any width
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes arctangent_series(const Lanes& z) {
+  const Lanes z2 = z * z, z4 = z2 * z2;
+  const Lanes low =
+      (-0x1.555555555553dp-2 + z * 0x1.99999999957cdp-3) + z2 * (-0x1.24924922aa4e5p-3 + z * 0x1.c71c70e50e27dp-4);
+  const Lanes middle =
+      (-0x1.745cf8c36d549p-4 + z * 0x1.3b1117948652dp-4) + z2 * (-0x1.10eba8c075af4p-4 + z * 0x1.df0e7fb248f05p-5);
+  const Lanes high = (-0x1.9ccf7cd2124b5p-5 + z * 0x1.37ce1ac095656p-5) - z2 * 0x1.255b341c4b7f1p-6;
+  return low + z4 * (middle + z4 * high);
+}
+
+constexpr double tan_pi_8 = 0.41421356237309505;
+constexpr double rest_of_pi_4 = 0x1.1a62633145c07p-55;  // pi/4 minus its double; without it errors grow by half an ulp
+
+/// The angle of (x, y) in [-pi, pi], as std::atan2 to 2 ulp. Components between 1e-150 and 1e150 or 0.
+///
+/// By symmetry to the octant of t = smaller/larger in [0, 1], by tan(a - pi/4) = (t - 1)/(t + 1) to |t| <= tan(pi/8).
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes angle_of(const Lanes& x, const Lanes& y) {
+  using std::numbers::pi;
+  constexpr double smallest = 1e-300;
+  const Lanes across = magnitude(x), up = magnitude(y);
+  const Bits<Lanes> steep = negative(across - up);
+  const Lanes larger = choose(steep, up, across), smaller = choose(steep, across, up);
+  const Bits<Lanes> turned = negative(tan_pi_8 * larger - smaller);
+  const Lanes t = choose(turned, smaller - larger, smaller) / (choose(turned, smaller + larger, larger) + smallest);
+  const Lanes z = t * t;
+  Lanes angle = t + (t * z * arctangent_series(z) + only(turned, all<Lanes>(rest_of_pi_4)));
+  angle = choose(turned, pi / 4 + angle, angle);
+  angle = choose(steep, pi / 2 - angle, angle);
+  angle = choose(negative(x), pi - angle, angle);
+  return as<Lanes>(bits_of(angle) ^ (bits_of(y) & std::numeric_limits<long long>::min()));
+}
+
+/// The angle modulo 2 pi, in [-pi, pi], with the error of an ulp of the argument. |angle| < 1e15.
+/// \tparam Lanes vectors of any width
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes without_whole_turns(const Lanes& angle) {
+  using std::numbers::pi;
+  constexpr double to_integer = 0x1.8p52;  // adding it rounds to the nearest integer, the spacing of numbers there
+  const Lanes turns = (angle * (0.5 / pi) + to_integer) - to_integer;
+  return angle - turns * (2 * pi);
+}
+
+/// sin and 1 - cos of an angle, both to a few ulp of themselves where the angle is small and of 1 elsewhere. |angle| <
+/// 1e15.
+template <class Lanes>
+struct SineVersine {
+  Lanes sine, versine;
+};
+
+/// Polynomials for a quarter of the angle, in [-pi/4, pi/4] (sin a = a + a z S(z), 1 - cos a = z C(z), z = a²; relative
+/// errors 2^-57 and 2^-64 before rounding), and twice sin 2a = 2 sin a cos a, 1 - cos 2a = 2 sin² a.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE SineVersine<Lanes> sine_versine(const Lanes& angle) {
+  const Lanes a = 0.25 * without_whole_turns(angle), z = a * a, z2 = z * z, z4 = z2 * z2;
+  const Lanes sine_over =
+      ((-0x1.5555555555548p-3 + z * 0x1.111111110f7d0p-7) + z2 * (-0x1.a01a019bfdefcp-13 + z * 0x1.71de3567d4223p-19)) +
+      z4 * (-0x1.ae5e5a923db8ep-26 + z * 0x1.5d8fd1e48526bp-33);
+  const Lanes versine_over =
+      ((0.5 - z * 0x1.555555555553cp-5) + z2 * (0x1.6c16c16c13f18p-10 - z * 0x1.a01a019b6f8d7p-16)) +
+      z4 * ((0x1.27e4f7537c614p-22 - z * 0x1.1ee984adbe1efp-29) + z2 * 0x1.8f806f1bab6fap-37);
+  const Lanes sine = a + a * z * sine_over, versine = z * versine_over;
+  const Lanes sine_2 = 2 * sine * (1 - versine), versine_2 = 2 * sine * sine;
+  return {2 * sine_2 * (1 - versine_2), 2 * sine_2 * sine_2};
+}
+
+/// atan of |t| <= 1/64 with z = t²: t + t z P(z), P the best polynomial of degree 2 (relative error 2^-56 before
+/// rounding).
+/// \tparam Lanes vectors of any width
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes small_arctangent(const Lanes& t, const Lanes& z) {
+  return t + t * z * ((-0x1.55555555551c7p-2 + z * 0x1.99999919a2fd7p-3) - z * z * 0x1.247cf5080565fp-3);
+}
+
+/// (1 - 1/sqrt(1 + z))/z for 0 <= z <= 1/64²: the best polynomial of degree 3 (relative error 2^-55).
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Lanes small_shortening(const Lanes& z) {
+  return (0.5 - z * 0x1.7ffffffffc107p-2) + z * z * (0x1.3ffffec520523p-2 - z * 0x1.17e082791cc03p-2);
+}
+
+}  // namespace equidem::simd
+
+namespace equidem {
+
+/// Eight numbers, one for each pair of a group, in vectors as wide as those of the processor: an Eight, or fewer
+/// numbers Twice.
+namespace eight {
+using namespace simd;
+}
+
+/// Vector width of loops that take it by template: all widths give bit-identical results.
+enum class VectorWidth { bits_128, bits_256, bits_512 };
+
+/// The widest allowed vectors of the processor (AVX-512 F, VL and DQ; AVX2).
+VectorWidth vector_width();
+
+/// Limit the width from the next simulation on, so that widths can be compared.
+void allow_vectors_up_to(VectorWidth widest);
+
+/// Kernel::run<Lanes> for vectors of the three widths, Lanes being the eight numbers; it is a static
+/// function that is EQUIDEM_ALWAYS_INLINE.
+template <class Kernel, class... Arguments>
+void run_plain(Arguments... arguments) {
+  Kernel::template run<eight::Twice<eight::Twice<eight::Two>>>(arguments...);
+}
+#if defined(__x86_64__)
+template <class Kernel, class... Arguments>
+EQUIDEM_BY_FOURS void run_by_fours(Arguments... arguments) {
+  Kernel::template run<eight::Twice<eight::Four>>(arguments...);
+}
+template <class Kernel, class... Arguments>
+EQUIDEM_BY_EIGHTS void run_by_eights(Arguments... arguments) {
+  Kernel::template run<eight::Eight>(arguments...);
+}
+#endif
+
+/// Kernel::run compiled for the widest allowed vectors.
+template <class Kernel, class... Arguments>
+auto by_vector_width() -> void (*)(Arguments...) {
+#if defined(__x86_64__)
+  if (vector_width() == VectorWidth::bits_512) return run_by_eights<Kernel, Arguments...>;
+  if (vector_width() == VectorWidth::bits_256) return run_by_fours<Kernel, Arguments...>;
+#endif
+  return run_plain<Kernel, Arguments...>;
+}
+
+}  // namespace equidem

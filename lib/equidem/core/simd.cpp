@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/grains/kernels/vector_width.hpp"
+#include "equidem/core/simd.hpp"
 
 #include <algorithm>
 #include <atomic>

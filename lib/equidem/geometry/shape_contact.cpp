@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
 #include <algorithm>
 #include <cassert>

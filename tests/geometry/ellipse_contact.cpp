@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// The exact contact of ellipses.
-#include "equidem/contact/shapes/ellipse_contact.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "equidem/core/text.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
-#include "contact/ellipse_pairs.hpp"
+#include "geometry/ellipse_pairs.hpp"
 #include "support/catch.hpp"
 
 using namespace equidem;

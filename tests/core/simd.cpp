@@ -2,6 +2,8 @@
 /// \file
 /// Root, angles and the short series of the loop against the standard library.
 
+#include "equidem/core/simd.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,16 +11,14 @@
 #include <numbers>
 
 #include "equidem/core/random.hpp"
-#include "equidem/dynamics/kernels/lanes.hpp"
 
 #include "support/catch.hpp"
 
-using namespace equidem;
-using namespace equidem::lanes;
-using std::numbers::pi;
-
+namespace equidem::simd {
 namespace {
 
+using std::numbers::pi;
+using Lanes = Four;
 using Real = long double;
 
 /// |value - truth| in units of the last place of the truth.
@@ -28,17 +28,17 @@ double ulps(double value, Real truth) {
   return static_cast<double>(std::abs(value - truth) / ulp);
 }
 
-using Four = std::array<double, 4>;
+using Drawn = std::array<double, 4>;
 
-Four draw(Random& random, double low, double high) {
-  Four x;
+Drawn draw(Random& random, double low, double high) {
+  Drawn x;
   for (double& value : x) value = random.uniform(low, high);
   return x;
 }
 
 /// Numbers of either sign and all sizes from 1e-15 to 1.
-Four draw_sizes(Random& random) {
-  Four x;
+Drawn draw_sizes(Random& random) {
+  Drawn x;
   for (double& value : x) value = std::pow(10, random.uniform(-15, 0)) * (random.uniform() < 0.5 ? -1 : 1);
   return x;
 }
@@ -48,9 +48,9 @@ template <typename Draw, typename Function, typename Error>
 double worst_over(Draw draw_input, Function f, Error error) {
   double worst = 0;
   for (int k = 0; k < 20000; ++k) {
-    const Four x = draw_input();
+    const Drawn x = draw_input();
     Lanes input, output;
-    load(x.data(), input);
+    input = load<Lanes>(x.data());
     f(input, output);
     for (int lane = 0; lane < 4; ++lane) worst = std::max(worst, error(x[lane], output[lane]));
   }
@@ -71,11 +71,9 @@ TEST_CASE("angle_of_is_atan2_to_two_ulp_all_around") {
   Random random(2);
   double worst = 0;
   for (int k = 0; k < 40000; ++k) {
-    const Four xs = k % 2 == 0 ? draw(random, -1, 1) : draw_sizes(random);
-    const Four ys = k % 2 == 0 ? draw(random, -1, 1) : draw_sizes(random);
-    Lanes x, y;
-    load(xs.data(), x);
-    load(ys.data(), y);
+    const Drawn xs = k % 2 == 0 ? draw(random, -1, 1) : draw_sizes(random);
+    const Drawn ys = k % 2 == 0 ? draw(random, -1, 1) : draw_sizes(random);
+    const Lanes x = load<Lanes>(xs.data()), y = load<Lanes>(ys.data());
     const Lanes angle = angle_of(x, y);
     for (int lane = 0; lane < 4; ++lane) {
       worst = std::max(worst, ulps(angle[lane], std::atan2(static_cast<Real>(ys[lane]), static_cast<Real>(xs[lane]))));
@@ -155,3 +153,25 @@ TEST_CASE("short_series_hold_up_to_their_bounds") {
     CHECK(shortening < 2);
   }
 }
+
+TEST_CASE("numbers_in_two_vectors_give_the_same_bits_as_in_one") {
+  using Halves = Twice<Two>;
+  Random random(6);
+  for (int k = 0; k < 1000; ++k) {
+    const Drawn xs = draw_sizes(random), ys = draw_sizes(random);
+    const Lanes x = load<Lanes>(xs.data()), y = load<Lanes>(ys.data());
+    const Halves x_2 = load<Halves>(xs.data()), y_2 = load<Halves>(ys.data());
+    Drawn one, two;
+    store(angle_of(x, y), one.data());
+    store(angle_of(x_2, y_2), two.data());
+    CHECK(one == two);
+    store(sine_versine(x).versine, one.data());
+    store(sine_versine(x_2).versine, two.data());
+    CHECK(one == two);
+    store(choose(negative(x), y, square_root(magnitude(x))), one.data());
+    store(choose(negative(x_2), y_2, square_root(magnitude(x_2))), two.data());
+    CHECK(one == two);
+  }
+}
+
+}  // namespace equidem::simd

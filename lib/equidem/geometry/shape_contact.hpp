@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// An ellipse and its support function.
+/// Contacts of two shapes, or of a shape and a line or a segment: closest points and common normal.
 ///
-/// The exact contact of two ellipses: closest points and common normal.
+/// Of two ellipses, exactly:
 ///
 /// gap = max over unit vectors n of f(n) = branch . n - h_i(n) - h_j(n), h the support functions; the normal is the n
 /// that attains it, the contact points are the points of the ellipses that reach farthest along n and -n. Apart, the
@@ -24,47 +24,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
-#include "equidem/core/vector.hpp"
+#include "equidem/geometry/shapes.hpp"
 
 namespace equidem {
-
-/// Half-axes a >= b, a along `axis` and b across it, m. a = b: a disc, b = 0: a segment, a = 0: a point.
-struct Ellipse {
-  double a = 0, b = 0;
-  Vec2 axis = {1, 0};  ///< unit
-
-  /// \param angle of the half-axis a, rad
-  static Ellipse at_angle(double a, double b, double angle) { return {a, b, {std::cos(angle), std::sin(angle)}}; }
-};
-
-/// In the direction of a unit vector n at the angle phi: h(phi) = max of x . n over the ellipse, x from its centre.
-struct EllipseSupport {
-  double reach = 0;         ///< h, m
-  double slope = 0;         ///< h', m: the point that reaches farthest is h n + h' s, s = (-n_y, n_x)
-  double radius = 0;        ///< R = h + h'', m: radius of curvature at that point
-  double radius_slope = 0;  ///< R', m
-};
-
-/// h = sqrt(a² p² + b² q²), h' = (b² - a²) p q/h, R = a² b²/h³, R' = -3 R h'/h with p = n . axis, q = n across it.
-inline EllipseSupport support(const Ellipse& e, Vec2 n) {
-  const double p = dot(e.axis, n), q = cross(e.axis, n), x = e.a * p, y = e.b * q;
-  const double reach = std::sqrt(x * x + y * y);
-  if (reach == 0) return {};
-  const double inverse = 1 / reach, w = e.a * e.b * inverse;
-  const double slope = (e.b - e.a) * (e.b + e.a) * p * q * inverse, radius = w * w * inverse;
-  return {reach, slope, radius, -3 * radius * slope * inverse};
-}
-
-/// From the centre to the point that reaches farthest along n.
-inline Vec2 support_point(const EllipseSupport& s, Vec2 n) {
-  return s.reach * n + s.slope * perpendicular(n);
-}
-
-/// b/a; 1 for points and segments. The sharpest radius of curvature is b roundness.
-inline double roundness(const Ellipse& e) {
-  return e.b > 0 ? e.b / e.a : 1;
-}
 
 /// Signed distance of two ellipses along n: branch . n - h_i(n) - h_j(n). They are apart if it is positive for any n.
 /// \param branch from the centre of i to that of j, m
@@ -123,6 +87,62 @@ EllipseContact contact_with_line(const Ellipse& i, Vec2 to_line, Vec2 normal);
 /// \param to_start, to_end from the centre of the ellipse to the ends, m; distinct
 /// \return arm_j from the middle of the segment
 EllipseContact contact_with_segment(const Ellipse& i, Vec2 to_start, Vec2 to_end, Vec2 last_normal = {});
+
+/// A contact of body i with body j or a half-plane.
+struct Touch {
+  double overlap = 0;  ///< m; negative: a gap
+  Vec2 normal;         ///< unit, from i
+  Vec2 arm_i, arm_j;   ///< from the centres to the contact point
+  double share = 1;  ///< of the overlap that lies in i, in proportion to the radii of (discs of the area of) the parts
+  std::size_t part_i = 0, part_j = 0;
+};
+
+/// Call visitor(touch) for all contacts of two bodies whose gap is smaller than `gap` >= 0.
+/// \param branch from the centre of i to that of j, m
+template <typename Visitor>
+void for_touches(const Outline& i, const Outline& j, Vec2 branch, double gap, const Visitor& visitor) {
+  for (std::size_t p = 0; p < i.parts(); ++p) {
+    const Ellipse one = i.part(p);
+    const Vec2 from = i.offset(p);
+    for (std::size_t q = 0; q < j.parts(); ++q) {
+      const Ellipse other = j.part(q);
+      const Vec2 to = j.offset(q), between = branch + to - from;
+      const double reach = one.a + other.a + gap, square = dot(between, between);
+      if (square >= reach * reach) continue;
+      if (one.is_round() && other.is_round()) {
+        const double distance = std::sqrt(square), overlap = one.a + other.a - distance;
+        const Vec2 normal = distance > 0 ? between / distance : Vec2{1, 0};
+        visitor(Touch{overlap, normal, from + (one.a - overlap / 2) * normal, to - (other.a - overlap / 2) * normal,
+                      one.a / (one.a + other.a), p, q});
+        continue;
+      }
+      const EllipseContact found =
+          contact_of_ellipses(one, other, between, {}, gap > 0 ? WhenApart::distance : WhenApart::only_that_it_is);
+      if (!(found.gap < gap)) continue;
+      const double size = std::sqrt(one.a * one.b), other_size = std::sqrt(other.a * other.b);
+      visitor(Touch{-found.gap, found.normal, from + found.arm_i, to + found.arm_j, size / (size + other_size), p, q});
+    }
+  }
+}
+
+/// What lies behind a line: `place` has the distance place . normal + offset from it.
+struct HalfPlane {
+  Vec2 normal;  ///< unit, towards the bodies
+  double offset = 0;
+};
+
+/// Call visitor(touch) for all contacts of a body with a half-plane whose gap is smaller than `gap`.
+/// \param place of the centre
+template <typename Visitor>
+void for_touches(const Outline& i, Vec2 place, const HalfPlane& wall, double gap, const Visitor& visitor) {
+  const Vec2 out = -wall.normal;
+  const double distance = wall.offset - dot(place, out);
+  for (std::size_t p = 0; p < i.parts(); ++p) {
+    const Vec2 arm = i.offset(p) + support_point(support(i.part(p), out), out);
+    const double overlap = dot(arm, out) - distance;
+    if (overlap > -gap) visitor(Touch{overlap, out, arm, {}, 1, p});
+  }
+}
 
 /// OBE_i': the image of ellipse i where ellipse j is the unit circle round the origin. Half-axes a' and b', centre
 /// (-h', -k'), turned by -theta' (4.34).

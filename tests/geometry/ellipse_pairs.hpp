@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
 #include "equidem/core/random.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
-#include "contact/ellipse_oracle.hpp"
+#include "geometry/ellipse_oracle.hpp"
 
 namespace equidem::test {
 

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "equidem/contact/shapes/ellipse_contact.hpp"
+#include "equidem/geometry/shape_contact.hpp"
 
 namespace equidem::oracle {
 
