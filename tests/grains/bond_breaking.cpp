@@ -309,6 +309,28 @@ TEST_CASE("discs_that_overlap_under_a_bond_part_with_the_energy_of_the_overlap_w
   CHECK(ledger.kinetic > 1e3 * ledger.initial);
 }
 
+TEST_CASE("bonds_that_break_leave_the_neighbour_lists_of_all_others_alone") {
+  // A chain that is pulled apart at its bonds, one after the other, faster than its discs move by the margin.
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
+  GrainScene scene = scene_of({}, {}, one_second(stepping.law, 1, 0.5));
+  for (std::size_t k = 0; k < 41; ++k) scene.grains.push_back(ball({1.0 * static_cast<double>(k), 0}, 0.5));
+  for (std::size_t k = 0; k + 1 < scene.grains.size(); ++k) {
+    scene.grains[k + 1].velocity.x = scene.grains[k].velocity.x + 0.01 + 1e-4 * static_cast<double>(k);
+    scene.bonds.push_back({.i = k, .j = k + 1, .normal_spring = bond_kN, .tangential_spring = bond_kT});
+  }
+  scene.strengths = ContactStrengths{std::vector<double>(40, 0.05), std::vector<double>(40, never), 0};
+  GrainOptions options = options_of(stepping, 1e-4);
+  options.bodies_per_block = 8;
+  GrainSimulation simulation(scene, options);
+  simulation.advance(300);
+  CAPTURE(stepping.name(), simulation.breaks().size(), simulation.breaks().front().step,
+          simulation.breaks().back().step, simulation.counters().rebuilds);
+  CHECK(simulation.breaks().size() > 20);
+  CHECK(simulation.breaks().back().step > simulation.breaks().front().step + 5);
+  CHECK(simulation.counters().rebuilds <= 2);
+  CHECK(simulation.contacts().empty());
+}
+
 TEST_CASE("strengths_that_mean_nothing_are_refused") {
   const auto refuses = [](const GrainScene& scene, NormalLaw law = NormalLaw::linear_dashpot) {
     CHECK_THROWS_AS(GrainSimulation(scene, options_of(law, 1e-4)), Error);

@@ -8,6 +8,7 @@
 
 #include "equidem/assembly/lattices.hpp"
 #include "equidem/grains/contacts/bond_breaking.hpp"
+#include "equidem/grains/stages/staged_simulation.hpp"
 #include "equidem/homogenize/effective_stiffness.hpp"
 
 #include "grains/bonded_scenes.hpp"
@@ -497,6 +498,87 @@ TEST_CASE("a_cell_whose_last_bond_broke_has_the_stress_of_its_motion_alone") {
   REQUIRE(simulation.breaks().size() == 1);
   CHECK(largest > 10 * std::abs(by_motion));
   CHECK(std::abs(cell.stress.xx - by_motion) < 1e-9 * largest);
+}
+
+namespace {
+
+/// Two discs 1 m apart in a cell of 2.4 m, in which they drift: a bond along x that swings by 0.3 m is shorter than
+/// half a period or longer.
+GrainScene swinging_pair(NormalLaw law) {
+  constexpr double drift = 4.7, parting = 4.2;
+  GrainScene scene = scene_of(
+      {ball({0.7, 1.2}, 0.5, {drift - 0.5 * parting, 0.3}), ball({1.7, 1.2}, 0.5, {drift + 0.5 * parting, 0.3})}, {},
+      one_second(law, 1));
+  scene.bonds = {
+      {.i = 1, .j = 0, .normal_dashpot = 0.01, .normal_spring = 100, .tangential_spring = 50, .bending_spring = 5}};
+  scene.cell = PeriodicCell{.corner = {0, 0}, .width = 2.4, .height = 2.4};
+  return scene;
+}
+
+double relative_speed(const GrainSimulation& simulation) {
+  return simulation.grains()[1].velocity.x - simulation.grains()[0].velocity.x;
+}
+
+}  // namespace
+
+TEST_CASE("a_bond_stretched_past_half_a_period_of_a_cell_pulls_as_without_the_cell") {
+  const Stepping stepping = GENERATE(from_range(spring_bond_steppings));
+  const GrainScene scene = swinging_pair(stepping.law);
+  GrainScene open = scene;
+  open.cell.reset();
+  const GrainOptions options = options_of(stepping, 1e-3);
+  const std::int64_t first = 520, steps = 4000;  // stretched by 0.26 m where the second stage begins
+  std::vector<GrainStage> stages(2, GrainStage{.name = "one", .scene = scene, .steps = first});
+  stages[1].name = "two";
+  stages[1].steps = steps - first;
+  StagedSimulation staged(stages, options);
+  GrainSimulation simulation(scene, options), free(open, options);
+  std::size_t stretched = 0;
+  for (std::int64_t k = 0; k < steps; k += 10) {
+    simulation.advance(10);
+    free.advance(10);
+    staged.advance(10);
+    const double distance = norm(free.grains()[1].position - free.grains()[0].position);
+    CAPTURE(stepping.name(), simulation.step(), distance);
+    if (distance > 1.2) ++stretched;
+    REQUIRE(std::abs(relative_speed(simulation) - relative_speed(free)) < 1e-9);
+    REQUIRE(std::abs(relative_speed(staged.present()) - relative_speed(free)) < 1e-9);
+    REQUIRE(std::abs(simulation.energy().elastic_bond - free.energy().elastic_bond) < 1e-9);
+    if (distance < 1.25) continue;
+    GrainSimulation resumed(scene, options), whole(scene, options);
+    resumed.restore(simulation.save());
+    whole.advance(simulation.step() + 7);
+    resumed.advance(7);
+    REQUIRE(bits_of(resumed) == bits_of(whole));
+  }
+  CHECK(stretched > 40);
+  CHECK(simulation.counters().contacts == 0);
+}
+
+TEST_CASE("the_shift_of_a_bond_across_a_side_is_that_of_its_second_disc_however_the_two_are_numbered") {
+  for (const bool swapped : {false, true}) {
+    GrainScene scene = scene_of({ball({0.2, 4}, 0.5, {0.1, 0}), ball({7.3, 4.3}, 0.4, {-0.1, 0.05})}, {},
+                                one_second(NormalLaw::linear_dashpot, 1, 0.5));
+    if (swapped) std::swap(scene.grains[0], scene.grains[1]);
+    GrainBond bond = sprung();
+    bond.i = 0, bond.j = 1;
+    scene.bonds = {bond};
+    scene.cell = PeriodicCell{.corner = {0, 0}, .width = 8, .height = 8};
+    GrainSimulation simulation(scene, verlet_options(0.001));
+    simulation.advance(50);
+    const std::vector<BodyContact> contacts = simulation.body_contacts();
+    REQUIRE(contacts.size() == 1);
+    const BodyContact& contact = contacts[0];
+    const std::vector<Grain> grains = simulation.grains();
+    const Vec2 branch = grains[contact.j].position + contact.shift - grains[contact.i].position;
+    const double radii = grains[0].radius + grains[1].radius;
+    CAPTURE(swapped, contact.i, contact.j, contact.shift.x, branch.x, branch.y, contact.normal_force);
+    CHECK(contact.i == 0);
+    CHECK(norm(contact.shift - Vec2{swapped ? 8.0 : -8.0, 0}) < 1e-12);
+    CHECK(norm(contact.arm - grains[contact.i].radius / radii * branch) < 1e-12);
+    CHECK(dot(contact.force, branch) > 1);  // they part, and the bond pulls them together
+    CHECK(dot(contact.force, branch) / norm(branch) == Approx(-contact.normal_force).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("the_stress_of_a_cell_is_that_which_its_servo_keeps") {

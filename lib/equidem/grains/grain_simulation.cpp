@@ -52,9 +52,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   std::iota(system.bodies.earliest.begin(), system.bodies.earliest.end(), std::size_t{0});
   order_by_place(system, scene, order);
   set_cell(system);
-  std::vector<std::size_t> numbers = tie_bonds(system, scene);
-  if (scene.strengths)
-    system.bonds.breakable = std::make_shared<BreakableBonds>(system, *scene.strengths, std::move(numbers));
+  tie_bonds(system, scene);
   system.friction =
       std::any_of(scene.pairs.begin(), scene.pairs.end(), [](const PairProperties& pair) { return pair.friction > 0; });
   system.smallest_radius = smallest_inscribed_radius(scene);
@@ -158,12 +156,12 @@ void GrainSimulation::Implementation::step_by_verlet() {
 
 void GrainSimulation::Implementation::find_impulses(BlockMove move) {
   system.cell.bond_sums = {};
-  if (!system.bonds.tied.empty()) push_springs(system);
-  if (system.bonds.breakable && !verlet() && break_bonds(system) && !system.bonds.tied.empty()) push_springs(system);
-  const bool at_once = system.bonds.tied.empty() && touches_walls_alone(system);
+  if (system.bonds.held > 0) push_springs(system);
+  if (system.bonds.breakable && !verlet() && break_bonds(system) && system.bonds.held > 0) push_springs(system);
+  const bool at_once = system.bonds.held == 0 && touches_walls_alone(system);
   if (system.contacts.near_parts.active) load_part_bodies(system);
   collide_bodies(system, collide, at_once ? move : nullptr);
-  if (!system.bonds.tied.empty()) add_bond_impulses(system);
+  if (system.bonds.held > 0) add_bond_impulses(system);
   if (at_once || !move) return;
   system.bodies.blocks.each([&](std::size_t block) { move(system, block); });
 }
@@ -500,7 +498,7 @@ double GrainSimulation::bytes_per_body() const {
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
       (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +
-      (system.bonds.breakable ? system.bonds.breakable->bytes() : 0) + system.scene.grains.capacity() * sizeof(Grain));
+      system.bonds.breaks.capacity() * sizeof(BondBreak) + system.scene.grains.capacity() * sizeof(Grain));
   return bytes / static_cast<double>(system.bodies.constants.size());
 }
 

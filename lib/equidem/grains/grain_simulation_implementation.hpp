@@ -20,7 +20,7 @@ struct GrainState {
   std::vector<GrainMotion> motions = {};
   std::vector<ContactState> contacts = {};
   std::vector<BodyImpulse> impulses = {};  ///< of the last step, if the next step needs them
-  std::vector<BondModes> bonds = {};       ///< impulses of the last step
+  std::vector<BondState> bonds = {};       ///< of all, broken ones too
   std::vector<BondBreak> breaks = {};
   EnergyLedger lost = {};
   GrainCounters counters = {};

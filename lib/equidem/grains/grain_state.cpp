@@ -52,10 +52,6 @@ constexpr auto impulse_numbers = [](auto& push, const auto& visit) {
   visit(push.impulse.x), visit(push.impulse.y), visit(push.torque);
 };
 
-constexpr auto mode_numbers = [](auto& m, const auto& visit) {
-  visit(m.normal), visit(m.tangential), visit(m.rolling);
-};
-
 constexpr auto loss_numbers = [](auto& ledger, const auto& visit) {
   for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) visit(ledger.*term.value);
 };
@@ -189,8 +185,8 @@ GrainState GrainSimulation::Implementation::state() const {
                    .cell = system.cell,
                    .crossed = system.cell.crossed};
   if (keeps_impulses()) state.impulses = system.bodies.impulses;  // the others find all of a step in that step
-  for (const TiedPair& bond : system.bonds.tied) state.bonds.push_back(last_impulse(system, bond));
-  if (const auto& breakable = system.bonds.breakable) state.breaks = breakable->breaks;
+  for (const TiedPair& bond : system.bonds.tied) state.bonds.push_back(state_of(system, bond));
+  state.breaks = system.bonds.breaks;
   return state;
 }
 
@@ -201,7 +197,7 @@ SavedState GrainSimulation::save() const {
                    .arrays = {saved_rows("motions", std::move(state.motions), motion_numbers),
                               saved_rows("contacts", std::move(state.contacts), numbers_of_contact(system)),
                               saved_rows("impulses", std::move(state.impulses), impulse_numbers),
-                              saved_rows("bonds", std::move(state.bonds), mode_numbers),
+                              saved_rows("bonds", std::move(state.bonds), bond_numbers_of_state),
                               saved_rows("breaks", std::move(state.breaks), break_numbers),
                               saved_rows("losses", std::vector{state.lost}, loss_numbers),
                               saved_rows("counters", std::vector{state.counters}, counter_numbers),
@@ -223,20 +219,17 @@ void GrainSimulation::restore(const SavedState& saved) {
                    .motions = rows_in<GrainMotion>(saved, "motions", motion_numbers),
                    .contacts = rows_in<ContactState>(saved, "contacts", numbers_of_contact(system)),
                    .impulses = rows_in<BodyImpulse>(saved, "impulses", impulse_numbers),
-                   .bonds = rows_in<BondModes>(saved, "bonds", mode_numbers),
+                   .bonds = rows_in<BondState>(saved, "bonds", bond_numbers_of_state),
                    .breaks = rows_in<BondBreak>(saved, "breaks", break_numbers),
                    .walls = rows_in<WallLoad>(saved, "walls", load_numbers),
                    .servos = rows_in<ServoMotion>(saved, "servos", servo_numbers)};
-  std::size_t bonds = system.bonds.tied.size();
-  if (const auto& breakable = system.bonds.breakable) {
-    check_breaks(system, state.breaks);
-    bonds = breakable->all.size() - state.breaks.size();
-  }
+  check_breaks(system, state.breaks);
   const std::size_t bodies = system.bodies.motions.size();
   if (state.motions.size() != bodies || !are_of_scene(system, state.contacts) ||
-      state.impulses.size() != (implementation_->keeps_impulses() ? bodies : 0) || state.bonds.size() != bonds ||
-      losses.size() != 1 || counters.size() != 1 || state.walls.size() != system.walls.loads.size() ||
-      state.servos.size() != system.walls.servos.size() || start.size() != 2) {
+      state.impulses.size() != (implementation_->keeps_impulses() ? bodies : 0) ||
+      state.bonds.size() != system.bonds.tied.size() || losses.size() != 1 || counters.size() != 1 ||
+      state.walls.size() != system.walls.loads.size() || state.servos.size() != system.walls.servos.size() ||
+      start.size() != 2) {
     bad_input(fmt::format("the state is of {}", counted(std::ssize(state.motions), "grain")),
               fmt::format("the scene has {}", bodies), go_on_with);
   }
@@ -256,8 +249,7 @@ void GrainSimulation::restore(const SavedState& saved) {
 }
 
 std::vector<BondBreak> GrainSimulation::breaks() const {
-  const auto& breakable = implementation_->system.bonds.breakable;
-  return breakable ? breakable->breaks : std::vector<BondBreak>{};
+  return implementation_->system.bonds.breaks;
 }
 
 void GrainSimulation::stop_all() {
@@ -270,7 +262,6 @@ void GrainSimulation::stop_all() {
 
 void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   const bool shapes = !system.shapes.parts.empty();
-  if (system.bonds.breakable) restore_breaks(system, state.breaks);
   system.step = state.step;
   potential_at_start = state.potential;
   energy_at_start = state.energy;
@@ -283,12 +274,12 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   system.bodies.motions = state.motions;
   if (!state.impulses.empty()) system.bodies.impulses = state.impulses;
   system.bodies.cleared = false;
-  for (std::size_t b = 0; b < state.bonds.size(); ++b) take_last_impulse(system, system.bonds.tied[b], state.bonds[b]);
+  restore_breaks(system, state.breaks);
+  take_states(system, state.bonds);
   system.walls.loads = state.walls;
   for (std::size_t s = 0; s < state.servos.size(); ++s)
     static_cast<ServoMotion&>(system.walls.servos[s]) = state.servos[s];
   system.deepest = std::numeric_limits<double>::infinity();  // not known: verlet has to look
-  find_images_of_bonds(system);
   place_walls(system);
   turn_axes(system);
   system.contacts.candidates.clear();

@@ -4,12 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <ranges>
 #include <vector>
 
 #include "equidem/contact/exact_contact.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
+#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/kernels/bond_loop.hpp"
@@ -21,8 +22,6 @@
 #include "equidem/grains/scene/wall_joints.hpp"
 
 namespace equidem {
-
-struct BreakableBonds;
 
 struct GrainMotion {
   Vec2 position, velocity;
@@ -199,9 +198,17 @@ struct ContactList {
 };
 
 struct BondList {
-  std::vector<TiedPair> tied;  ///< ordered by i, then j
+  std::vector<TiedPair> tied;  ///< broken ones too; ordered by i, then j
+  std::size_t held = 0;        ///< number of those that have not broken
   PackedBonds packed;
-  std::shared_ptr<BreakableBonds> breakable;  ///< null: no bond breaks
+  bool breakable = false;         ///< bonds have strengths
+  double friction = 0;            ///< of the strengths
+  std::vector<BondBreak> breaks;  ///< in the order of time
+
+  /// The bonds that have not broken.
+  [[nodiscard]] auto holding() const {
+    return tied | std::views::filter([](const TiedPair& bond) { return !bond.broken; });
+  }
 };
 
 struct GrainSystem {

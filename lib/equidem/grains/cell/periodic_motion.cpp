@@ -190,7 +190,7 @@ void measure_resistance(GrainSystem& system) {
                      viscosity);
     }
   });
-  for (const TiedPair& bond : system.bonds.tied) {
+  for (const TiedPair& bond : system.bonds.holding()) {
     const Vec2 branch = branch_of(system, bond);
     const SpringConstants& springs = bond.springs.springs;
     add_resistance(branch, branch / norm(branch),
@@ -315,7 +315,7 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   const auto [forces, flux] = sums_of_stress(system, contacts);
   state.stress = (-1 / cell.area()) * (forces + flux);
   state.void_ratio = cell.area() / cell.solid - 1;
-  state.coordination_number = 2 * static_cast<double>(contacts.size() + system.bonds.tied.size()) /
+  state.coordination_number = 2 * static_cast<double>(contacts.size() + system.bonds.held) /
                               static_cast<double>(system.bodies.constants.size());
   if (!system.scene.cell->servo) return state;
   const CellServo& servo = *system.scene.cell->servo;
@@ -474,7 +474,7 @@ void wrap_bodies(GrainSystem& system) {
   }
   cell.next = cell.now;
   if (!changed) return;
-  find_images_of_bonds(system);
+  move_images_of_bonds(system, columns, moves);
   if (!system.meets_images()) return find_candidates(system);
   for (ContactState& contact : contacts) {
     if (contact.j < 0) continue;

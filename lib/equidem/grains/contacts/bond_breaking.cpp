@@ -20,10 +20,6 @@ double share_of_strength(double load, double strength) {
   return load >= strength ? std::numeric_limits<double>::infinity() : 0;
 }
 
-std::size_t number_of(const BreakableBonds& breakable, const TiedPair& bond) {
-  return static_cast<std::size_t>(place_of_bond(breakable.all, bond.i, bond.j) - breakable.all.begin());
-}
-
 /// The place of the bond as far as the levers say, between both centres.
 Vec2 place_of(const GrainSystem& system, const TiedPair& bond) {
   return system.bodies.motions[bond.i].position + bond.share * branch_of(system, bond);
@@ -60,16 +56,11 @@ void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContac
   on_j.torque -= of_j.torque;
 }
 
-/// The bonds that are left become those of the steps; they keep their last impulses.
-void tie_those_left(GrainSystem& system) {
-  BreakableBonds& breakable = *system.bonds.breakable;
-  std::vector<BondModes> impulses(breakable.all.size());
-  for (const TiedPair& bond : system.bonds.tied) impulses[number_of(breakable, bond)] = last_impulse(system, bond);
-  system.bonds.tied.clear();
-  for (std::size_t b = 0; b < breakable.all.size(); ++b)
-    if (breakable.broken[b] == 0) system.bonds.tied.push_back(breakable.all[b]);
-  pack_bonds(system);
-  for (const TiedPair& bond : system.bonds.tied) take_last_impulse(system, bond, impulses[number_of(breakable, bond)]);
+void set_broken(GrainSystem& system, TiedPair& bond, bool broken) {
+  if (bond.broken == broken) return;
+  bond.broken = broken;
+  broken ? --system.bonds.held : ++system.bonds.held;
+  pack_again(system, bond);
 }
 
 /// Places in BondList::tied of bonds that may have reached their strength, ascending.
@@ -120,61 +111,49 @@ std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const Con
   return by_moment > force.normal ? BreakMode::bending : BreakMode::tension;
 }
 
-BreakableBonds::BreakableBonds(const GrainSystem& system, const ContactStrengths& strengths,
-                               std::vector<std::size_t> numbers)
-    : all(system.bonds.tied), number(std::move(numbers)), friction(strengths.friction), broken(all.size(), 0) {
-  for (const std::size_t bond : number) {
-    tension.push_back(strengths.tension[bond]);
-    shear.push_back(strengths.shear[bond]);
-  }
-}
-
 bool break_bonds(GrainSystem& system) {
-  BreakableBonds& breakable = *system.bonds.breakable;
-  bool any = false;
+  BondList& bonds = system.bonds;
+  std::vector<std::size_t> blocks;  // of bodies that have a partner more
   for (const std::size_t suspect : suspects_of(system)) {
-    const TiedPair& bond = system.bonds.tied[suspect];
-    const std::size_t b = number_of(breakable, bond);
+    TiedPair& bond = bonds.tied[suspect];
+    if (bond.broken) continue;
     const BondMotion<double> motion = motion_of_bond(system, bond);
     const ContactForce force = linear_spring_force(bond.springs.springs, bond_deformation(bond.springs, motion));
     const double moment = bending_moment(bond.springs.kM, motion.theta_i, motion.theta_j);
-    const std::optional<BreakMode> mode = break_of(bond.springs.springs, bond.springs.kM, force, moment,
-                                                   breakable.tension[b], breakable.shear[b], breakable.friction);
+    const std::optional<BreakMode> mode =
+        break_of(bond.springs.springs, bond.springs.kM, force, moment, bond.tension, bond.shear, bonds.friction);
     if (!mode) continue;
     const double energy = bond_energy(bond.springs, motion);
-    breakable.broken[b] = 1;
-    breakable.breaks.push_back({system.step, breakable.number[b], *mode, place_of(system, bond), energy});
+    bonds.breaks.push_back({system.step, bond.number, *mode, place_of(system, bond), energy});
     const NewContact contact = contact_of(system, bond);
     system.lost.lost_breaking += energy - system.law().energy(contact.stiffness, contact.overlap);
     if (system.options.verlet()) replace_impulses(system, bond, contact);
-    any = true;
+    set_broken(system, bond, true);
+    blocks.push_back(system.bodies.blocks.of(static_cast<std::size_t>(bond.i)));
   }
-  if (!any) return false;
-  tie_those_left(system);
-  if (system.contacts.near.active) load_pair_bodies(system);
-  find_candidates(system);
+  if (blocks.empty()) return false;
+  find_near_pairs_of(system, std::move(blocks));
   return true;
 }
 
 void check_breaks(const GrainSystem& system, const std::vector<BondBreak>& breaks) {
-  std::vector<std::uint8_t> broken(system.bonds.breakable->all.size(), 0);
+  const std::size_t bonds = system.bonds.breakable ? system.bonds.tied.size() : 0;
+  std::vector<char> broken(bonds, 0);
   for (const BondBreak& event : breaks) {
-    if (event.bond < broken.size() && std::exchange(broken[event.bond], std::uint8_t{1}) == 0) continue;
+    if (event.bond < bonds && std::exchange(broken[event.bond], char{1}) == 0) continue;
     bad_input(fmt::format("the state has a break of bond {} at step {}", event.bond, event.step),
-              event.bond < broken.size()
-                  ? "it has broken before"
-                  : fmt::format("the scene has {}", counted(static_cast<long long>(broken.size()), "bond")),
+              event.bond < bonds ? "it has broken before"
+                                 : fmt::format("the scene has {}", counted(static_cast<long long>(bonds), "bond")),
               "Resume with the scene that the state was saved from");
   }
 }
 
 void restore_breaks(GrainSystem& system, std::vector<BondBreak> breaks) {
-  BreakableBonds& breakable = *system.bonds.breakable;
-  breakable.breaks = std::move(breaks);
-  std::vector<std::uint8_t> by_number(breakable.all.size(), 0);
-  for (const BondBreak& event : breakable.breaks) by_number[event.bond] = 1;
-  for (std::size_t b = 0; b < breakable.all.size(); ++b) breakable.broken[b] = by_number[breakable.number[b]];
-  tie_those_left(system);
+  BondList& bonds = system.bonds;
+  bonds.breaks = std::move(breaks);
+  std::vector<char> broken(bonds.tied.size(), 0);
+  for (const BondBreak& event : bonds.breaks) broken[event.bond] = 1;
+  for (TiedPair& bond : bonds.tied) set_broken(system, bond, broken[bond.number] != 0);
 }
 
 }  // namespace equidem

@@ -9,7 +9,7 @@
 /// with the friction of the collisions. A contact that is in compression when its bond breaks begins with its overlap
 /// and an unstretched tangential spring.
 ///
-/// Breaks of the bonds of colliding discs.
+/// A bond that breaks switches its lane off; nothing else changes but the pairs of the blocks of its discs.
 #pragma once
 
 #include <cstddef>
@@ -53,24 +53,6 @@ double moment_to_force(const SpringConstants& k, double kM);
 /// \param moment of the bending spring, N m; \param tension, shear its strengths, N/m
 std::optional<BreakMode> break_of(const SpringConstants& k, double kM, const ContactForce& force, double moment,
                                   double tension, double shear, double friction);
-
-/// All bonds of a scene whose bonds break, and those that did.
-struct BreakableBonds {
-  std::vector<TiedPair> all;           ///< ordered by i, then j
-  std::vector<std::size_t> number;     ///< in the order of the scene, of each
-  std::vector<double> tension, shear;  ///< N/m, of each
-  double friction = 0;
-  std::vector<std::uint8_t> broken;  ///< of each
-  std::vector<BondBreak> breaks;     ///< in the order of time
-
-  /// Takes the bonds that tie_bonds has tied. \param numbers of the scene, in the same order
-  BreakableBonds(const GrainSystem& system, const ContactStrengths& strengths, std::vector<std::size_t> numbers);
-
-  [[nodiscard]] std::size_t bytes() const {
-    return all.capacity() * sizeof(TiedPair) + number.capacity() * sizeof(std::size_t) +
-           (tension.capacity() + shear.capacity()) * sizeof(double) + broken.capacity();
-  }
-};
 
 /// Breaks bonds that have reached their strengths at the present motions, where push_springs() saw some that may have,
 /// and lets their discs collide.

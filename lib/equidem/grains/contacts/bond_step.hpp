@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Bonds of discs in a step (contact/finite_bond.hpp): impulses, step limit, deformation.
-///
-/// Bonds in groups of eight for the loops over them.
+/// Bonds of discs (contact/finite_bond.hpp), one by one, and their stages of a step; kernels/bond_loop.hpp has them in
+/// groups of eight.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +29,10 @@ struct TiedPair {
   double share = 0;  ///< lever i over the distance: r_i/(r_i + r_j)
   FiniteBond springs;
   double angle_i = 0, angle_j = 0;  ///< of the bodies at rest, rad
+  double tension = 0, shear = 0;    ///< strengths, N/m, where bonds break
+  std::size_t number = 0;           ///< in the order of the scene
   std::int32_t packed = -1;         ///< lane in PackedBonds, which stores the impulse
+  bool broken = false;              ///< its lane is switched off, and its discs collide
 
   [[nodiscard]] bool has_dashpots() const {
     return dashpots.normal > 0 || dashpots.tangential > 0 || dashpots.rolling > 0;
@@ -38,12 +40,28 @@ struct TiedPair {
   [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
 
+/// What a run goes on from.
+struct BondState {
+  PeriodicImage image;  ///< as in TiedPair
+  BondModes impulse;    ///< of the dashpots in the last step
+};
+
+/// The numbers of a bond in a saved state.
+inline constexpr auto bond_numbers_of_state = [](auto& bond, const auto& visit) {
+  visit(bond.image.a), visit(bond.image.b);
+  visit(bond.impulse.normal), visit(bond.impulse.tangential), visit(bond.impulse.rolling);
+};
+
+BondState state_of(const GrainSystem& system, const TiedPair& bond);
+/// \param states of all bonds
+void take_states(GrainSystem& system, const std::vector<BondState>& states);
+
 /// Two discs that are bonded as they are now; in a periodic cell i and the image of j that is nearest.
 BondRest rest_of(const GrainScene& scene, std::size_t i, std::size_t j);
 
-/// Set the bonds of a sorted scene, sorted in turn, so that results do not depend on the caller's order.
-/// \return their numbers in the scene
-std::vector<std::size_t> tie_bonds(GrainSystem& system, const GrainScene& scene);
+/// Set the bonds of a sorted scene, sorted in turn, so that results do not depend on the caller's order. In a periodic
+/// cell each is of i and the image of j that is nearest.
+void tie_bonds(GrainSystem& system, const GrainScene& scene);
 
 /// The place of the bond of two bodies i < j in a list ordered by them, or that of the first behind it.
 template <class Bonds>
@@ -60,8 +78,10 @@ constexpr double nearest_centres_of_bonds = 1e-3;
 /// \throws Error (computation_failed) naming the first bond whose centres are nearer than nearest_centres_of_bonds
 void refuse_crept_bonds(const GrainSystem& system);
 
-/// In a periodic cell: find the images of all bonds, broken ones too, by where the discs are.
-void find_images_of_bonds(GrainSystem& system);
+/// Bodies have been taken as their images inside a periodic cell: so are those of bonds, however far they are
+/// stretched.
+/// \param columns periods along x that the period along y has lost \param moves periods by which bodies have been moved
+void move_images_of_bonds(GrainSystem& system, std::int32_t columns, const std::vector<PeriodicImage>& moves);
 
 /// From the centre of i to that of j, or of its image, now.
 Vec2 branch_of(const GrainSystem& system, const TiedPair& bond);
@@ -76,7 +96,7 @@ std::array<BodyImpulse, 2> impulses_of_bond(const GrainSystem& system, const Tie
 /// call to call.
 inline bool are_tied(const std::vector<TiedPair>& bonds, std::size_t& next, std::int32_t i, std::int32_t j) {
   while (next < bonds.size() && (bonds[next].i < i || (bonds[next].i == i && bonds[next].j < j))) ++next;
-  return next < bonds.size() && bonds[next].i == i && bonds[next].j == j;
+  return next < bonds.size() && bonds[next].i == i && bonds[next].j == j && !bonds[next].broken;
 }
 
 /// Position of the first bond whose first body is `body` or a later one, for are_tied().
@@ -119,18 +139,5 @@ void check_law_of_bonds(const GrainScene& scene, NormalLaw law);
 ///         one another; centres that coincide; dashpots and springs that are negative, not finite or all 0; a law
 ///         without bonds; a step above the limit
 void check_bonds(const GrainScene& scene, const GrainOptions& options);
-
-struct GrainSystem;
-struct TiedPair;
-
-/// Pack the bonds of the system, with no impulse in the last step.
-void pack_bonds(GrainSystem& system);
-
-/// Take the images of bonds again.
-void pack_images(GrainSystem& system);
-
-/// Impulse of the dashpots of a bond in the last step.
-BondModes last_impulse(const GrainSystem& system, const TiedPair& bond);
-void take_last_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
 
 }  // namespace equidem

@@ -16,14 +16,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "equidem/contact/finite_bond.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/neighbours/near_pairs.hpp"
 
 namespace equidem {
 
+struct GrainSystem;
 struct TiedPair;
 
-/// Eight bonds. An unused lane has the bodies of the first one, and constants with which it does nothing.
+/// Eight bonds. The lane of a bond that broke, or of none, has the bodies of another bond of the group, and constants
+/// with which it does nothing.
 struct alignas(64) BondGroup {
   std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
   PairLanes per_reach;  ///< 1/(r_i + r_j), 1/m
@@ -87,12 +90,10 @@ struct BondBatch {
   std::vector<std::size_t> reached;  ///< groups of which a bond may have reached its strength
 };
 
-struct GrainSystem;
-
 struct PackedBonds {
   static constexpr std::size_t phases = 4;
   using Loop = void (*)(GrainSystem& system, BondBatch& batch);
-  /// Bonds of the lanes of a group, as numbers in BondList::tied; -1: unused.
+  /// Bonds of the lanes of a group, as numbers in BondList::tied; -1: none.
   using Lanes = std::array<std::int32_t, lanes_of_pairs>;
 
   std::vector<Lanes> lanes;
@@ -114,17 +115,22 @@ struct PackedBonds {
   Loop stretch = nullptr;        ///< springs, and strengths; null: no bond has springs
   Loop resist = nullptr;         ///< dashpots; null: no bond has some
   Loop count_opening = nullptr;  ///< likewise
-  double friction = 0;           ///< of the strengths
   bool alone = true;             ///< no body has two bonds
-  bool drifted = false;          ///< whether bodies have drifted in this step
   bool state_is_new = true;      ///< whether reached strengths are unknown since the state was set from outside
 
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// The loops compiled for what the packed bonds have.
-PackedBonds::Loop spring_loop(const GrainSystem& system);
-PackedBonds::Loop dashpot_loop(const GrainSystem& system);
-PackedBonds::Loop opening_loop(const GrainSystem& system);
+/// Pack the bonds of the system, with no impulse in the last step.
+void pack_bonds(GrainSystem& system);
+/// Switch the lane of a bond off or on, as it has broken or not, with no impulse in the last step; those of other bonds
+/// do not change.
+void pack_again(GrainSystem& system, const TiedPair& bond);
+/// Take the images of all bonds.
+void pack_images(GrainSystem& system);
+
+/// Impulse of the dashpots of a bond in the last step.
+BondModes last_impulse(const GrainSystem& system, const TiedPair& bond);
+void take_last_impulse(GrainSystem& system, const TiedPair& bond, const BondModes& impulse);
 
 }  // namespace equidem

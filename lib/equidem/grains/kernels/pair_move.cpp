@@ -112,7 +112,7 @@ auto choose_move(bool clears) {
 }  // namespace
 
 void move_pair_bodies(GrainSystem& system, std::size_t block) {
-  const bool turning = system.friction || !system.bonds.tied.empty() || !system.shapes.parts.empty();
+  const bool turning = system.friction || system.bonds.held > 0 || !system.shapes.parts.empty();
   const auto move = turning ? choose_move<true>(system.bodies.cleared) : choose_move<false>(system.bodies.cleared);
   move(system, block);
 }

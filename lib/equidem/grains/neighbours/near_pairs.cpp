@@ -178,7 +178,7 @@ class PairLists {
 bool is_bonded_image(const GrainSystem& system, std::int32_t i, std::int32_t partner) {
   const std::int32_t j = system.body_of(partner);
   const auto bond = place_of_bond(system.bonds.tied, i, j);
-  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j) return false;
+  if (bond == system.bonds.tied.end() || bond->i != i || bond->j != j || bond->broken) return false;
   const PeriodicImage image = system.is_image(partner) ? system.image(partner) : PeriodicImage{};
   return bond->image.a == image.a && bond->image.b == image.b;
 }
@@ -260,6 +260,14 @@ void find_near_pairs(GrainSystem& system, double reach) {
   near.margin = margin_of_near_pairs(system, system.smallest_radius, reach);
   near.moved = 0;
   system.bodies.blocks.each([&](std::size_t block) { find_pairs_of_block(system, block); });
+  connect_blocks(system);
+}
+
+void find_near_pairs_of(GrainSystem& system, std::vector<std::size_t> blocks) {
+  std::ranges::sort(blocks);
+  const auto twice = std::ranges::unique(blocks);
+  blocks.erase(twice.begin(), twice.end());
+  for (const std::size_t block : blocks) find_pairs_of_block(system, block);
   connect_blocks(system);
 }
 

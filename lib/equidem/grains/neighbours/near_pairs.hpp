@@ -119,6 +119,9 @@ void prepare_near_pairs(GrainSystem& system);
 /// Find the pairs again in the list of the neighbour finder, for bodies that move by about `reach` in a step.
 void find_near_pairs(GrainSystem& system, double reach);
 
+/// Likewise those of some blocks, where bodies may touch that were bonded; of the same margin.
+void find_near_pairs_of(GrainSystem& system, std::vector<std::size_t> blocks);
+
 /// Ensure that the list contains every pair that may touch while no body moves further than `reach`.
 void refresh_near_pairs(GrainSystem& system, double reach);
 

@@ -65,7 +65,7 @@ struct PastImpulses {
 
 bool is_tied(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   const auto at = place_of_bond(system.bonds.tied, i, j);
-  return at != system.bonds.tied.end() && at->i == i && at->j == j;
+  return at != system.bonds.tied.end() && at->i == i && at->j == j && !at->broken;
 }
 
 /// Whether a contact has friction. \param i, j as in Candidate
@@ -76,28 +76,40 @@ bool has_friction(const GrainSystem& system, std::int32_t i, std::int32_t j) {
   return system.properties(candidate).friction > 0;
 }
 
-/// Breaks, and the last impulses of bonds that both have; bonds whose discs are gone push no more.
+/// The image of j that i has in a fresh state, whose bodies are inside the cell, where bodies of both simulations stay
+/// where they were without it; new bodies stay inside.
+void move_image(const Places& places, const GrainState& fresh, std::int32_t i, std::int32_t j, PeriodicImage& image) {
+  const auto moved = [&](std::int32_t body) {
+    return places.bodies_then[body] < 0 ? PeriodicImage{} : fresh.crossed[body];
+  };
+  image.a += moved(i).a - moved(j).a;
+  image.b += moved(i).b - moved(j).b;
+}
+
+/// Breaks, and the states of bonds that both have; bonds whose discs are gone push no more.
 void take_over_bonds(const GrainSystem& old, GrainSystem& own, const Places& places, const SceneOrigins& origins,
-                     GrainState& state) {
+                     const GrainState& fresh, GrainState& state) {
   state.breaks.clear();
-  if (own.bonds.breakable) {
-    for (std::size_t b = 0; old.bonds.breakable && b < old.bonds.breakable->breaks.size(); ++b) {
-      BondBreak event = old.bonds.breakable->breaks[b];
-      const auto now = std::ranges::find(origins.bonds, static_cast<std::int32_t>(event.bond));
-      if (now == origins.bonds.end()) continue;
-      event.bond = static_cast<std::size_t>(now - origins.bonds.begin());
-      state.breaks.push_back(event);
-    }
-    restore_breaks(own, state.breaks);
+  for (BondBreak event : old.bonds.breaks) {
+    const auto now = std::ranges::find(origins.bonds, static_cast<std::int32_t>(event.bond));
+    if (now == origins.bonds.end()) continue;
+    event.bond = static_cast<std::size_t>(now - origins.bonds.begin());
+    state.breaks.push_back(event);
   }
-  state.bonds.clear();
-  for (const TiedPair& bond : own.bonds.tied) {
+  restore_breaks(own, state.breaks);
+  state.bonds = fresh.bonds;
+  for (std::size_t b = 0; b < state.bonds.size(); ++b) {
+    const TiedPair& bond = own.bonds.tied[b];
     const std::int32_t i = places.bodies_then[bond.i], j = places.bodies_then[bond.j];
-    const bool both = i >= 0 && j >= 0 && is_tied(old, i, j);
-    state.bonds.push_back(both ? last_impulse(old, *place_of_bond(old.bonds.tied, i, j)) : BondModes{});
+    if (i >= 0 && j >= 0 && is_tied(old, i, j)) {
+      state.bonds[b] = state_of(old, *place_of_bond(old.bonds.tied, i, j));
+      continue;
+    }
+    state.bonds[b].impulse = {};  // it gives none before its first step
+    if (own.cell.active) move_image(places, fresh, bond.i, bond.j, state.bonds[b].image);
   }
   PastImpulses on_bodies{state.impulses};
-  for (const TiedPair& bond : old.bonds.tied) {
+  for (const TiedPair& bond : old.bonds.holding()) {
     const auto i = places.partner(bond.i), j = places.partner(bond.j);
     if (i && j) continue;
     const auto [on_i, on_j] = impulses_of_bond(old, bond);
@@ -137,16 +149,13 @@ void take_over_contacts(const GrainSystem& old, const GrainSystem& own, const Pl
       kept.push_back(contact);
     }
   }
-  // new bodies stay where they are inside; the state has images seen from where bodies would be without the cell
-  const auto moved = [&](std::int32_t body) {
-    return places.bodies_then[body] < 0 ? PeriodicImage{} : fresh.crossed[body];
-  };
   for (ContactState contact : fresh.contacts) {
     if (!places.is_new(contact.i) && !places.is_new(contact.j)) continue;
     impulses.add(contact, 1, contact.i, contact.j);
     if (own.cell.active && contact.j >= 0) {
-      contact.a += moved(contact.i).a - moved(contact.j).a;
-      contact.b += moved(contact.i).b - moved(contact.j).b;
+      PeriodicImage image{contact.j, contact.b, contact.a};
+      move_image(places, fresh, contact.i, contact.j, image);
+      contact.a = image.a, contact.b = image.b;
     }
     kept.push_back(contact);
     ++state.counters.contacts;
@@ -193,7 +202,7 @@ void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigin
   state.impulses = state.impulses.empty()
                        ? fresh.impulses
                        : rows_now(state.impulses, std::vector<BodyImpulse>(fresh.impulses.size()), places.bodies_then);
-  take_over_bonds(old, own, places, origins, state);
+  take_over_bonds(old, own, places, origins, fresh, state);
   take_over_contacts(old, own, places, fresh, state);
   state.potential = fresh.potential;
   state.energy = fresh.energy;
