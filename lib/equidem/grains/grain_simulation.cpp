@@ -68,19 +68,15 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   const double smallest_size =
       parts.empty() ? system.smallest_radius : std::ranges::min(parts, {}, &GrainPart::size).size;
   system.bodies.next = system.bodies.motions;
-  self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
-                                             : part_candidate_loop(options.law, system.friction);
+  self.collide = candidate_loop(options.law, system.friction);
   self.flow = flow_function(options.law);
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
-  if (const CandidateLoop loop = wall_loop(system)) {
-    self.collide = loop;
-  } else if (self.collide && system.friction) {
-    system.bodies.impulses_before.resize(system.bodies.impulses.size());
-  }
+  prepare_near_walls(system);
+  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =
@@ -92,10 +88,9 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_candidates(system);
   touch_near_pairs(system);
   touch_near_parts(system);
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+  for (Candidate& candidate : system.contacts.candidates) {
     // bodies that overlap at the start touch
-    Candidate& candidate = system.contacts.candidates[c];
-    candidate.touching = overlap_of(system, c) > 0;
+    candidate.touching = geometry_of(system, candidate).overlap > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
   system.contacts.near.record = true;
@@ -160,7 +155,7 @@ void GrainSimulation::Implementation::find_impulses(BlockMove move) {
   system.cell.bond_sums = {};
   if (!system.bonds.tied.empty()) push_springs(system);
   if (system.bonds.breakable && !verlet() && break_bonds(system) && !system.bonds.tied.empty()) push_springs(system);
-  const bool at_once = system.bonds.tied.empty() && touches_walls_alone(system);
+  const bool at_once = system.bonds.tied.empty() && !collide;
   if (system.contacts.near_parts.active) load_part_bodies(system);
   collide_bodies(system, collide, at_once ? move : nullptr);
   if (!system.bonds.tied.empty()) add_bond_impulses(system);
@@ -369,7 +364,7 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
 }
 
 std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic() const {
-  const bool behind = collide && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
+  const bool behind = !flow && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
   return system.bodies.blocks.sum([&](std::size_t block) {
     double potential = 0, kinetic = 0;
     for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
@@ -388,23 +383,22 @@ std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic
 }
 
 std::pair<double, double> GrainSimulation::Implementation::elastic() const {
-  // a force acts wherever bodies overlap; other laws count the spring from the first step of the contact on
-  const bool holds_from_first_step = !gives_force(system.options.law);
+  // a force acts wherever bodies overlap
   auto [normal, tangential] = elastic_of_near_pairs(system);
-  const auto add = [&, &normal = normal, &tangential = tangential](const Candidate& candidate, double overlap) {
-    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-    if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
-    if (!(overlap > 0)) return;
-    normal += system.law().energy(candidate.stiffness, overlap);
-  };
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+  each_list(system.contacts, [&, &normal = normal, &tangential = tangential](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      auto [candidate, pair] = candidate_of(system, list, p);
-      add(candidate, geometry_of_parts(system, candidate, pair).overlap);
+      const auto [of_normal, of_tangential] = elastic_of(system, list, p);
+      normal += of_normal;
+      tangential += of_tangential;
     }
   });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
-    add(system.contacts.candidates[c], overlap_of(system, c));
+  // these laws count the spring from the first step of the contact on
+  for (const Candidate& candidate : system.contacts.candidates) {
+    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+    if (!candidate.touching || candidate.parted) continue;
+    const double overlap = geometry_of(system, candidate).overlap;
+    if (overlap > 0) normal += system.law().energy(candidate.stiffness, overlap);
+  }
   return {normal, tangential};
 }
 
@@ -491,12 +485,11 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
 double GrainSimulation::bytes_per_body() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
+      system.contacts.near.bytes() + system.contacts.near_parts.bytes() + system.contacts.near_walls.bytes() +
       system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
       2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
       (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
-      system.contacts.candidates.capacity() * sizeof(Candidate) +
-      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
+      system.contacts.candidates.capacity() * sizeof(Candidate) + system.shapes.parts.capacity() * sizeof(GrainPart) +
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
       (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +

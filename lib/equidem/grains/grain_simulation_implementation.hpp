@@ -34,7 +34,7 @@ struct GrainState {
 struct GrainSimulation::Implementation {
   GrainSystem system;
   Effects effects;
-  CandidateLoop collide = nullptr;  ///< force laws and maps
+  CandidateLoop collide = nullptr;  ///< maps
   FlowFunction flow = nullptr;      ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
   std::optional<GrainState> kept;  ///< a recent state, restored when a step fails
@@ -60,10 +60,7 @@ struct GrainSimulation::Implementation {
   void start_next_step();
   [[nodiscard]] bool verlet() const { return system.options.verlet(); }
   /// Whether a step needs the impulses of the previous step.
-  [[nodiscard]] bool keeps_impulses() const {
-    return verlet() ||
-           (collide && (system.friction || system.contacts.near.active || system.contacts.near_parts.active));
-  }
+  [[nodiscard]] bool keeps_impulses() const { return gives_force(system.options.law) || (collide && system.friction); }
   /// Potential energy of gravity at the time of the velocities, and kinetic energy, J.
   [[nodiscard]] std::pair<double, double> potential_and_kinetic() const;
   /// Energies of the normal and the tangential springs at the present positions, J.

@@ -17,9 +17,8 @@ namespace {
 /// many cost as much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
-PairLaw law_of(const Candidate& candidate) {
-  return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
-          candidate.sliding.coefficient, candidate.sliding.stiffness};
+PairLaw law_of(const ContactConstants& constants) {
+  return {constants.stiffness, constants.least, constants.sliding.coefficient, constants.sliding.stiffness};
 }
 
 /// All kinds except those of walls only.
@@ -81,14 +80,12 @@ class PairLists {
   }
   /// A new pair.
   void add(std::int32_t i, std::int32_t j) {
-    Candidate candidate;
-    candidate.i = i;
-    const std::int32_t other = candidate.j = system_.body_of(j);
-    set_constants(system_, candidate);
+    const std::int32_t other = system_.body_of(j);
+    const ContactConstants constants = constants_of(system_, i, other);
     const std::size_t k = make_room(i, j);
     near_.groups.back().since[k] = PairGroup::apart;
     near_.groups.back().reach[k] = system_.bodies.constants[i].radius + system_.bodies.constants[other].radius;
-    near_.groups.back().dashpot[k] = dashpot_of(system_, candidate) * system_.dt();
+    near_.groups.back().dashpot[k] = constants.dashpot() * system_.dt();
     const GrainBody &bi = system_.bodies.constants[i], &bj = system_.bodies.constants[other];
     near_.groups.back().half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
     near_.groups.back().impulse[k] = 0;
@@ -96,11 +93,11 @@ class PairLists {
       const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
       PairSlips& slips = near_.slips.back();
       slips.half_turning[k] = 0.5 * (share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment);
-      slips.dashpot[k] = candidate.sliding.dashpot * system_.dt();
+      slips.dashpot[k] = constants.sliding.dashpot * system_.dt();
       slips.stretch[k] = slips.impulse[k] = 0;
     }
     if (!equal_) {
-      const PairLaw law = law_of(candidate);
+      const PairLaw law = law_of(constants);
       PairLaws& laws = near_.laws.back();
       laws.stiffness[k] = law.stiffness;
       laws.least[k] = law.least;
@@ -228,10 +225,7 @@ std::optional<PairLaw> common_law(const GrainSystem& system) {
     return plain && *pair == *pairs[0];
   });
   if (!equal || system.bodies.constants.size() < 2) return {};
-  Candidate candidate;
-  candidate.j = 1;
-  set_constants(system, candidate);
-  return law_of(candidate);
+  return law_of(constants_of(system, 0, 1));
 }
 
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
@@ -293,26 +287,30 @@ void touch_near_pairs(GrainSystem& system) {
   }
 }
 
-Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::size_t p) {
+ContactState state_of(const GrainSystem& system, const PairBlock& block, std::size_t p) {
   const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-  Candidate candidate;
-  candidate.i = near.first(p);
-  candidate.j = near.second(p);
-  candidate.touching = near.touching(p);
-  if (!candidate.touching) return candidate;
-  candidate.steps = system.step + 1 - near.groups[g].since[k];
-  candidate.impulse = near.groups[g].impulse[k];
+  ContactState state{.i = block.first(p), .j = block.second(p), .steps = system.step + 1 - block.groups[g].since[k]};
+  state.impulse = block.groups[g].impulse[k];
   if (system.friction) {
-    candidate.stretch = near.slips[g].stretch[k];
-    candidate.tangential_impulse = near.slips[g].impulse[k];
+    state.stretch = block.slips[g].stretch[k];
+    state.tangential_impulse = block.slips[g].impulse[k];
   }
-  if (g < near.records.size()) {
-    const PairRecords& records = near.records[g];
-    candidate.overlap = records.overlap[k];
-    candidate.closing = records.closing[k];
-    candidate.normal = {records.normal_x[k], records.normal_y[k]};
+  const double radius = system.bodies.constants[state.i].radius, sum = block.groups[g].reach[k];
+  if (g < block.records.size()) {
+    const PairRecords& records = block.records[g];
+    state.overlap = records.overlap[k];
+    state.closing = records.closing[k];
+    state.normal = {records.normal_x[k], records.normal_y[k]};
   }
-  return candidate;
+  const double distance = sum - state.overlap, lever = radius / sum * distance;
+  state.arm_i = lever * state.normal;
+  state.arm_j = (lever - distance) * state.normal;
+  if (!system.shapes.parts.empty()) {
+    state.part_i = system.shapes.first_part[state.i];
+    state.part_j = system.shapes.first_part[state.j];
+  }
+  resolve_image(system, state);
+  return state;
 }
 
 void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {

@@ -3,7 +3,7 @@
 /// Pairs of discs under a force law that touch or nearly touch, packed in groups of eight for the vectorized loop.
 ///
 /// They are a subset of the list of the neighbour finder, with a smaller margin and updated more often: in a packing at
-/// rest it contains hardly more than the contacts. Contacts with walls and contacts under other laws are Candidates.
+/// rest it contains hardly more than the contacts.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,6 @@
 namespace equidem {
 
 struct GrainSystem;
-struct Candidate;
 struct ContactState;
 struct GrainBody;
 struct GrainMotion;
@@ -132,8 +131,8 @@ void touch_near_pairs(GrainSystem& system);
 /// GrainBodies::cleared say where motions go and what is left of the impulses.
 void move_pair_bodies(GrainSystem& system, std::size_t block);
 
-/// A pair with the state of its contact, without its constants; j may be an image.
-Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
+/// The state of a contact.
+ContactState state_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
 
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "equidem/contact/shapes/ellipse_contact.hpp"
@@ -28,14 +29,6 @@ void place_parts(GrainSystem& system) {
   turn_axes(system);
 }
 
-PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
-  PartPair pair;
-  if (system.shapes.parts.empty()) return pair;
-  pair.i = system.shapes.first_part[i];
-  pair.j = system.shapes.first_part[j];
-  return pair;
-}
-
 double longest_turn(const GrainSystem& system) {
   const std::vector<std::int32_t>& shaped = system.shapes.shaped;
   std::vector<double> ways(system.bodies.blocks.count());
@@ -55,44 +48,6 @@ double longest_turn(const GrainSystem& system) {
     if (way != way) break;
   }
   return longest;
-}
-
-std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j) {
-  std::vector<PartPair> near;
-  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
-    for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
-      const GrainPart& part_i = system.shapes.parts[p];
-      const GrainPart& part_j = system.shapes.parts[q];
-      const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
-                          (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
-      const double reach = part_i.a + part_j.a + system.contacts.margin;
-      if (!(dot(branch, branch) < reach * reach)) continue;
-      PartPair pair{p, q, 0, {}, {}, {}};
-      if (!part_i.is_round() || !part_j.is_round()) {
-        const EllipseContact contact = contact_of_ellipses({part_i.a, part_i.b, system.shapes.axes[i]},
-                                                           {part_j.a, part_j.b, system.shapes.axes[j]}, branch);
-        if (contact.gap > system.contacts.margin) continue;
-        pair.apart = contact.normal;
-      }
-      near.push_back(pair);
-    }
-  }
-  return near;
-}
-
-std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall) {
-  std::vector<PartPair> near;
-  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
-    const GrainPart& part = system.shapes.parts[p];
-    const Vec2 centre = system.bodies.motions[i].position + offset_of(part, system.shapes.axes[i]);
-    const Wall& shape = system.scene.walls[wall];
-    const WallContact contact = nearest(shape, system.walls.places[wall].displacement, centre);
-    double reach = part.a;
-    if (shape.shape == Wall::Shape::line)
-      reach = support({part.a, part.b, system.shapes.axes[i]}, contact.normal).reach;
-    if (contact.distance <= reach + system.contacts.margin) near.push_back({p, 0, 0, {}, {}, {}});
-  }
-  return near;
 }
 
 namespace {
@@ -142,20 +97,31 @@ class NewList {
     ++at_;
     return true;
   }
-  /// A new pair. \param apart a direction along which they are apart, or {}
+  /// A new pair, or a part and a wall. \param apart a direction along which they are apart, or {}
   void add(std::int32_t i, std::int32_t j, Vec2 apart) {
-    Candidate candidate;
-    candidate.i = system_.shapes.body_of_part[i];
-    candidate.j = system_.shapes.body_of_part[j];
-    set_constants(system_, candidate);
-    const GrainPart &part_i = system_.shapes.parts[i], &part_j = system_.shapes.parts[j];
-    const GrainBody &body_i = system_.bodies.constants[candidate.i],
-                    &body_j = system_.bodies.constants[system_.body_of(candidate.j)];
     const std::size_t k = make_room(i, j);
+    const Partners of = partners_of(system_, list_, list_.count - 1);
+    const ContactConstants constants = constants_of(system_, of.i, of.j);
     PartGroup& group = list_.groups.back();
     group.since[k] = PairGroup::apart;
     for (PairLanes& column : group.numbers) column[k] = 0;
     const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
+    const GrainBody& body_i = system_.bodies.constants[of.i];
+    set(PartGroup::inverse_mass, 1 / constants.reduced_mass);
+    set(PartGroup::inverse_moment_i, body_i.inverse_moment);
+    set(PartGroup::stiffness, constants.stiffness);
+    set(PartGroup::dashpot, constants.dashpot());
+    set(PartGroup::least, constants.least);
+    set(PartGroup::friction, constants.sliding.coefficient);
+    set(PartGroup::tangential_stiffness, constants.sliding.stiffness);
+    set(PartGroup::tangential_damping, constants.tangential_damping);
+    set(PartGroup::normal_x, apart.x);
+    set(PartGroup::normal_y, apart.y);
+    if (list_.of_walls) return;
+    const GrainPart &part_i = system_.shapes.parts[i], &part_j = system_.shapes.parts[j];
+    const GrainBody& body_j = system_.bodies.constants[system_.body_of(of.j)];
+    set(PartGroup::inverse_mass, body_i.inverse_mass + body_j.inverse_mass);
+    set(PartGroup::inverse_moment_j, body_j.inverse_moment);
     set(PartGroup::reach, part_i.a + part_j.a);
     set(PartGroup::a_i, part_i.a);
     set(PartGroup::b_i, part_i.b);
@@ -164,18 +130,26 @@ class NewList {
     set(PartGroup::share, part_i.size / (part_i.size + part_j.size));
     set(PartGroup::arrived, angle_of_arrival({part_i.a, part_i.b}, {part_j.a, part_j.b}));
     set(PartGroup::sharpest, part_i.b / part_i.a * part_i.b + part_j.b / part_j.a * part_j.b);
-    set(PartGroup::inverse_mass, body_i.inverse_mass + body_j.inverse_mass);
-    set(PartGroup::inverse_moment_i, body_i.inverse_moment);
-    set(PartGroup::inverse_moment_j, body_j.inverse_moment);
-    set(PartGroup::stiffness, candidate.stiffness);
-    set(PartGroup::dashpot, dashpot_of(system_, candidate));
-    set(PartGroup::least, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0);
-    set(PartGroup::friction, candidate.sliding.coefficient);
-    set(PartGroup::tangential_stiffness, candidate.sliding.stiffness);
-    set(PartGroup::tangential_damping,
-        2 * system_.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness));
-    set(PartGroup::normal_x, apart.x);
-    set(PartGroup::normal_y, apart.y);
+  }
+  /// A contact in its present state; j as in the groups.
+  void add(std::int32_t i, std::int32_t j, const ContactState& contact) {
+    add(i, j, contact.normal);
+    const std::size_t k = (list_.count - 1) % lanes_of_pairs;
+    PartGroup& group = list_.groups.back();
+    group.since[k] = system_.step + 1 - contact.steps;
+    const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
+    set(PartGroup::impulse, contact.impulse);
+    set(PartGroup::tangential_impulse, contact.tangential_impulse);
+    set(PartGroup::stretch, contact.stretch);
+    set(PartGroup::overlap, contact.overlap);
+    set(PartGroup::closing, contact.closing);
+    // of discs it is not saved
+    const Vec2 arm_i =
+        system_.shapes.parts.empty() ? system_.bodies.constants[i].radius * contact.normal : contact.arm_i;
+    set(PartGroup::arm_i_x, arm_i.x);
+    set(PartGroup::arm_i_y, arm_i.y);
+    set(PartGroup::arm_j_x, contact.arm_j.x);
+    set(PartGroup::arm_j_y, contact.arm_j.y);
   }
 
  private:
@@ -196,6 +170,7 @@ class NewList {
     ++list_.count;
     list_.groups.back().i[k] = i;
     list_.groups.back().j[k] = j;
+    if (list_.of_walls) return k;
     const std::int32_t body = system_.shapes.body_of_part[j];
     if (body >= end_) {
       list_.first_outward = std::min(list_.first_outward, list_.groups.size() - 1);
@@ -267,17 +242,15 @@ double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double 
 void find_met_parts(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;
   std::fill(near.met.begin(), near.met.end(), char{0});
-  for (const NearParts::Block& block : near.blocks) {
-    for (const NearParts::List& list : block.lists) {
-      for (std::size_t p = 0; p < list.count; ++p) {
-        const PartGroup& group = list.groups[p / lanes_of_pairs];
-        for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]}) {
-          near.met[part] = 1;
-          near.met[system.own_part(part)] = 1;
-        }
-      }
+  each_list(system.contacts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const Partners of = partners_of(system, list, p);
+      near.met[of.part_i] = 1;
+      if (list.of_walls) continue;
+      near.met[of.part_j] = 1;
+      near.met[system.own_part(of.part_j)] = 1;
     }
-  }
+  });
 }
 
 std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
@@ -338,13 +311,42 @@ void find_nearest_parts(GrainSystem& system, double reach) {
 
 }  // namespace
 
+namespace {
+
+std::size_t bytes_of(const NearParts::List& list) {
+  return list.groups.capacity() * sizeof(PartGroup) + list.outward.bytes();
+}
+
+}  // namespace
+
 std::size_t NearParts::bytes() const {
   std::size_t sum = bodies.capacity() * sizeof(PartBody) + met.capacity();
   for (const Block& block : blocks) {
     sum += block.close.capacity() * sizeof(Close);
-    for (const List& list : block.lists) sum += list.groups.capacity() * sizeof(PartGroup) + list.outward.bytes();
+    for (const List& list : block.lists) sum += bytes_of(list);
   }
   return sum;
+}
+
+std::size_t NearWalls::bytes() const {
+  std::size_t sum = 0;
+  for (const NearParts::List& list : blocks) sum += bytes_of(list);
+  return sum;
+}
+
+void NearParts::List::end(std::size_t p) {
+  groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = PairGroup::apart;
+  for (const auto column : {PartGroup::impulse, PartGroup::tangential_impulse, PartGroup::stretch})
+    number(p, column) = 0;
+}
+
+void NearParts::List::move_state(std::size_t from, std::size_t to) {
+  using enum PartGroup::Column;
+  groups[to / lanes_of_pairs].since[to % lanes_of_pairs] = groups[from / lanes_of_pairs].since[from % lanes_of_pairs];
+  for (const auto column :
+       {impulse, tangential_impulse, stretch, normal_x, normal_y, overlap, closing, arm_i_x, arm_i_y})
+    number(to, column) = number(from, column);
+  end(from);
 }
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
@@ -355,12 +357,11 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 }
 
 void prepare_near_parts(GrainSystem& system) {
-  if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !gives_force(system.options.law)) return;
-  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
+  if (system.shapes.parts.empty() || !gives_force(system.options.law)) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.law = common_law(system);
-  near.loops = {near_part_loop(system, true), near_part_loop(system, false)};
+  near.loops = {loop_of_round_parts(system), loop_of_ellipses(system)};
   near.blocks.resize(system.bodies.blocks.count());
   near.bodies.resize(system.shapes.parts.size());
   near.met.resize(system.shapes.parts.size());
@@ -392,21 +393,78 @@ void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts) {
     for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next) {
       const ContactState& contact = *next;
       const std::size_t l = list_of(system, contact.part_i, contact.part_j);
-      taken[l].add(contact.part_i, contact.part_j, contact.normal);
-      PartGroup& group = lists[l].groups.back();
-      const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
-      group.since[k] = system.step + 1 - contact.steps;
-      const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
-      set(PartGroup::impulse, contact.impulse);
-      set(PartGroup::tangential_impulse, contact.tangential_impulse);
-      set(PartGroup::stretch, contact.stretch);
-      set(PartGroup::overlap, contact.overlap);
-      set(PartGroup::closing, contact.closing);
-      set(PartGroup::arm_i_x, contact.arm_i.x);
-      set(PartGroup::arm_i_y, contact.arm_i.y);
-      set(PartGroup::arm_j_x, contact.arm_j.x);
-      set(PartGroup::arm_j_y, contact.arm_j.y);
+      taken[l].add(contact.part_i, contact.part_j, contact);
     }
+  }
+}
+
+void prepare_near_walls(GrainSystem& system) {
+  NearWalls& near = system.contacts.near_walls;
+  if (system.scene.walls.empty() || !gives_force(system.options.law)) return;
+  near.active = true;
+  near.loop = loop_of_walls(system);
+  near.blocks.resize(system.bodies.blocks.count());
+  for (NearParts::List& list : near.blocks) list.of_walls = true;
+}
+
+namespace {
+
+/// Whether a part comes nearer to a wall than the margin; ellipses at a segment by their bounding circle.
+bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& part, std::size_t w) {
+  const Vec2 axis = system.shapes.axes[body];
+  const Wall& wall = system.scene.walls[w];
+  const WallContact contact =
+      nearest(wall, system.walls.places[w].displacement, system.bodies.motions[body].position + offset_of(part, axis));
+  const double reach = wall.shape == Wall::Shape::line ? support({part.a, part.b, axis}, contact.normal).reach : part.a;
+  return contact.distance <= reach + system.contacts.margin;
+}
+
+void find_walls_of_block(const GrainSystem& system, NearParts::List& list, std::size_t block) {
+  NewList walls(system, list, block);
+  const auto see = [&](std::int32_t i, std::size_t w) {
+    const auto j = static_cast<std::int32_t>(w);
+    if (!walls.keep_contact(i, j) && !walls.leave(true)) walls.add(i, j, Vec2{});
+  };
+  const std::size_t count = system.scene.walls.size();
+  std::vector<char> near(count);
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+    for (std::size_t w = 0; w < count; ++w) {
+      const WallContact contact =
+          nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
+      near[w] = contact.distance <= system.bodies.constants[i].radius + system.contacts.margin ? 1 : 0;
+      if (near[w] != 0 && system.shapes.parts.empty()) see(static_cast<std::int32_t>(i), w);
+    }
+    for (std::int32_t p = system.shapes.parts.empty() ? 0 : system.shapes.first_part[i];
+         !system.shapes.parts.empty() && p < system.shapes.first_part[i + 1]; ++p) {
+      for (std::size_t w = 0; w < count; ++w)
+        if (near[w] != 0 && is_near_wall(system, i, system.shapes.parts[p], w)) see(p, w);
+    }
+  }
+  walls.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+}
+
+}  // namespace
+
+void find_near_walls(GrainSystem& system) {
+  NearWalls& near = system.contacts.near_walls;
+  if (!near.active) return;
+  system.bodies.blocks.each([&](std::size_t block) { find_walls_of_block(system, near.blocks[block], block); });
+}
+
+void take_near_walls(GrainSystem& system, const std::vector<ContactState>& contacts) {
+  std::vector<ContactState> walls;
+  std::ranges::copy_if(contacts, std::back_inserter(walls), [](const ContactState& contact) { return contact.j < 0; });
+  if (!system.contacts.near_walls.active) return;
+  const bool shapes = !system.shapes.parts.empty();
+  const auto number_of = [&](const ContactState& contact) { return shapes ? contact.part_i : contact.i; };
+  std::ranges::sort(walls, {}, [&](const ContactState& contact) { return std::pair(number_of(contact), ~contact.j); });
+  auto next = walls.begin();
+  for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
+    NearParts::List& list = system.contacts.near_walls.blocks[b];
+    list.count = 0;
+    NewList taken(system, list, b);
+    for (; next != walls.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next)
+      taken.add(number_of(*next), ~next->j, *next);
   }
 }
 
@@ -436,50 +494,81 @@ void load_part_bodies(GrainSystem& system) {
   });
 }
 
-void touch_near_parts(GrainSystem& system) {
-  for (NearParts::Block& block : system.contacts.near_parts.blocks) {
-    for (NearParts::List& list : block.lists) {
-      for (std::size_t p = 0; p < list.count; ++p) {
-        auto [candidate, pair] = candidate_of(system, list, p);
-        if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
-        PartGroup& group = list.groups[p / lanes_of_pairs];
-        const std::size_t k = p % lanes_of_pairs;
-        group.since[k] = system.step + (system.options.verlet() ? 0 : 1);
-        group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
-        ++system.counters.contacts;
-      }
-    }
-  }
+Partners partners_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const PartGroup& group = list.groups[p / lanes_of_pairs];
+  const std::int32_t i = group.i[p % lanes_of_pairs], j = group.j[p % lanes_of_pairs];
+  if (system.shapes.parts.empty()) return {i, ~j};
+  const std::vector<std::int32_t>& bodies = system.shapes.body_of_part;
+  return list.of_walls ? Partners{bodies[i], ~j, i} : Partners{bodies[i], bodies[j], i, j};
 }
 
-std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+namespace {
+
+/// At the present positions.
+double overlap_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const PartGroup& group = list.groups[p / lanes_of_pairs];
+  const std::size_t k = p % lanes_of_pairs;
+  const Vec2 normal{group.numbers[PartGroup::normal_x][k], group.numbers[PartGroup::normal_y][k]};
+  const bool touching = list.touching(p);
+  if (!list.of_walls) return geometry_of_parts(system, partners_of(system, list, p), touching, normal).overlap;
+  if (group.numbers[PartGroup::covered][k] != 0) return 0;
+  return geometry_with_wall(system, group.i[k], static_cast<std::size_t>(group.j[k]), touching ? normal : Vec2{})
+      .overlap;
+}
+
+}  // namespace
+
+void touch_near_parts(GrainSystem& system) {
+  each_list(system.contacts, [&](NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (!(overlap_of(system, list, p) > 0)) continue;
+      PartGroup& group = list.groups[p / lanes_of_pairs];
+      const std::size_t k = p % lanes_of_pairs;
+      group.since[k] = system.step + (system.options.verlet() ? 0 : 1);
+      group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
+      ++system.counters.contacts;
+    }
+  });
+}
+
+std::pair<double, double> elastic_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const PartGroup& group = list.groups[p / lanes_of_pairs];
+  const auto number = [&](PartColumn column) { return group.numbers[column][p % lanes_of_pairs]; };
+  const double overlap = overlap_of(system, list, p), stretch = number(PartGroup::stretch);
+  return {overlap > 0 ? system.law().energy(number(PartGroup::stiffness), overlap) : 0,
+          0.5 * number(PartGroup::tangential_stiffness) * stretch * stretch};
+}
+
+void resolve_image(const GrainSystem& system, ContactState& state) {
+  if (!system.is_image(state.j)) return;
+  const PeriodicImage& image = system.image(state.j);
+  if (!system.shapes.parts.empty()) state.part_j = system.own_part(state.part_j);
+  state.j = image.body;
+  state.a = image.a;
+  state.b = image.b;
+}
+
+ContactState state_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
   const PartGroup& group = list.groups[p / lanes_of_pairs];
   const std::size_t k = p % lanes_of_pairs;
   const auto number = [&](PartColumn column) { return group.numbers[column][k]; };
-  const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
-  Candidate candidate;
-  candidate.i = system.shapes.body_of_part[group.i[k]];
-  candidate.j = system.shapes.body_of_part[group.j[k]];
-  set_constants(system, candidate);
-  PartPair pair;
-  pair.i = group.i[k];
-  pair.j = group.j[k];
-  pair.tangential_damping = number(PartGroup::tangential_damping);
-  candidate.touching = list.touching(p);
-  if (!candidate.touching) {
-    pair.apart = normal;
-    return {candidate, pair};
-  }
-  candidate.steps = system.step + 1 - group.since[k];
-  candidate.normal = normal;
-  candidate.impulse = number(PartGroup::impulse);
-  candidate.tangential_impulse = number(PartGroup::tangential_impulse);
-  candidate.stretch = number(PartGroup::stretch);
-  candidate.overlap = number(PartGroup::overlap);
-  candidate.closing = number(PartGroup::closing);
-  pair.arm_i = {number(PartGroup::arm_i_x), number(PartGroup::arm_i_y)};
-  pair.arm_j = {number(PartGroup::arm_j_x), number(PartGroup::arm_j_y)};
-  return {candidate, pair};
+  const auto vector = [&](PartColumn x, PartColumn y) { return Vec2{number(x), number(y)}; };
+  const Partners of = partners_of(system, list, p);
+  ContactState state{.i = of.i,
+                     .j = of.j,
+                     .part_i = of.part_i,
+                     .part_j = of.part_j,
+                     .steps = system.step + 1 - group.since[k],
+                     .overlap = number(PartGroup::overlap),
+                     .closing = number(PartGroup::closing),
+                     .normal = vector(PartGroup::normal_x, PartGroup::normal_y),
+                     .impulse = number(PartGroup::impulse),
+                     .tangential_impulse = number(PartGroup::tangential_impulse),
+                     .stretch = number(PartGroup::stretch),
+                     .arm_i = vector(PartGroup::arm_i_x, PartGroup::arm_i_y),
+                     .arm_j = vector(PartGroup::arm_j_x, PartGroup::arm_j_y)};
+  resolve_image(system, state);
+  return state;
 }
 
 }  // namespace equidem
