@@ -30,8 +30,9 @@ struct alignas(64) PartBody {
   Vec2 turned;  ///< ellipse: the axis; round part: the offset of its centre from that of the body, m
 };
 
-/// Eight pairs of parts, i < j; or parts and walls.
-struct alignas(64) PartGroup {
+/// Eight pairs of parts, i < j; that of j may be of an image. With walls: j the wall, and in scenes of discs i the
+/// body.
+struct PartGroup : ContactGroup {
   enum Column {
     // of the last step
     impulse,
@@ -69,29 +70,23 @@ struct alignas(64) PartGroup {
     columns,
     covered = share  ///< walls: not 0 where a wall continues the end of this one (wall_joints.hpp)
   };
-  /// Parts; that of j may be of an image. With walls: j the wall, and in scenes of discs i the body.
-  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];
-  std::int64_t since[lanes_of_pairs];  ///< as PairGroup::since
   PairLanes numbers[columns];
 };
 
 struct NearParts {
-  /// Those of a block of bodies, ordered by i, then j.
-  struct List {
-    LaneVector<PartGroup> groups;
-    std::size_t count = 0;
+  struct List : GroupList<PartGroup> {
     bool of_walls = false;
-    OutwardImpulses outward;
-    std::size_t first_outward = 0;  ///< first group with a body of a later block
-    [[nodiscard]] std::size_t wall(std::size_t p) const {
-      return static_cast<std::size_t>(groups[p / lanes_of_pairs].j[p % lanes_of_pairs]);
-    }
-    [[nodiscard]] bool touching(std::size_t p) const {
-      return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
-    }
+
+    [[nodiscard]] std::size_t wall(std::size_t p) const { return static_cast<std::size_t>(second(p)); }
     [[nodiscard]] double& number(std::size_t p, PartGroup::Column column) {
-      return groups[p / lanes_of_pairs].numbers[column][p % lanes_of_pairs];
+      return group(p).numbers[column][p % lanes_of_pairs];
     }
+    [[nodiscard]] double number(std::size_t p, PartGroup::Column column) const {
+      return group(p).numbers[column][p % lanes_of_pairs];
+    }
+    List emptied();
+    void add_group();
+    void copy(const List& other, std::size_t from, std::size_t to);
     /// End a contact; what its tangential spring held is counted nowhere.
     void end(std::size_t p);
     /// Give the state of a contact to another one.

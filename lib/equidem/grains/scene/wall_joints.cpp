@@ -234,11 +234,10 @@ void cover_single_contacts(GrainSystem& system) {
 
 /// The contact of the part of another one with a wall; list.count: there is none.
 std::size_t place_of_wall(const NearParts::List& list, std::size_t p, std::int32_t wall) {
-  const auto number = [&](std::size_t q) { return list.groups[q / lanes_of_pairs].i[q % lanes_of_pairs]; };
-  const std::int32_t own = number(p);
-  while (p > 0 && number(p - 1) == own) --p;
-  while (p < list.count && number(p) == own && list.wall(p) != static_cast<std::size_t>(wall)) ++p;
-  return p < list.count && number(p) == own ? p : list.count;
+  const std::int32_t own = list.first(p);
+  while (p > 0 && list.first(p - 1) == own) --p;
+  while (p < list.count && list.first(p) == own && list.wall(p) != static_cast<std::size_t>(wall)) ++p;
+  return p < list.count && list.first(p) == own ? p : list.count;
 }
 
 }  // namespace
