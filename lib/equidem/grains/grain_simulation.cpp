@@ -18,7 +18,6 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
@@ -30,10 +29,6 @@ namespace {
 
 /// A refused step costs at most as many steps more; to keep a state so seldom costs less than a hundredth of them.
 constexpr std::int64_t steps_between_kept_states = 1024;
-
-void begin_loads_of_walls(GrainSystem& system) {
-  for (WallLoad& load : system.walls.loads) load.begin_step();
-}
 
 }  // namespace
 
@@ -95,7 +90,7 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   }
   system.contacts.near.record = true;
   if (self.verlet()) {
-    self.find_impulses(nullptr);
+    find_impulses(system, self.collide, nullptr);
     system.lost = {};  // there was no drift before the start
     // The force that servo walls find in the first step: walls got half of it, as from a step with no force before.
     for (WallLoad& load : system.walls.loads)
@@ -109,79 +104,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.potential_at_start = potential;
   const auto [normal, tangential] = self.elastic();
   self.energy_at_start = kinetic + normal + tangential + elastic_of_bonds(system);
-}
-
-void GrainSimulation::Implementation::make_step() {
-  if (flow) return step_together();
-  if (verlet()) {
-    step_by_verlet();
-  } else {
-    step_by_euler();
-  }
-  if (system.cell.active && system.step % steps_between_wraps == 0) wrap_bodies(system);
-}
-
-void GrainSimulation::Implementation::step_together() {
-  system.deepest = 0;
-  begin_loads_of_walls(system);
-  flow(system);  // contacts, motion and candidates
-  start_next_step();
-}
-
-void GrainSimulation::Implementation::step_by_euler() {
-  system.deepest = 0;
-  begin_loads_of_walls(system);
-  find_impulses(move_by_euler);
-  take_longest_way(system);
-  update_candidates();
-  start_next_step();
-}
-
-void GrainSimulation::Implementation::step_by_verlet() {
-  if (system.bonds.breakable) break_bonds(system);  // by the springs of the last kick, which are those of the first one
-  const bool deforms = system.cell.deforms;
-  if (deforms) steer_cell(system);
-  count_opening_kick(system);
-  (deforms ? drift_in_cell : drift_of_verlet)(system);
-  update_candidates();
-  start_next_step();
-  system.deepest = 0;
-  begin_loads_of_walls(system);  // servo walls were steered by those of the last step
-  find_impulses(deforms ? nullptr : kick_of_verlet);
-  if (deforms) kick_in_cell(system);
-}
-
-void GrainSimulation::Implementation::find_impulses(BlockMove move) {
-  system.cell.bond_sums = {};
-  if (!system.bonds.tied.empty()) push_springs(system);
-  if (system.bonds.breakable && !verlet() && break_bonds(system) && !system.bonds.tied.empty()) push_springs(system);
-  const bool at_once = system.bonds.tied.empty() && !collide;
-  if (system.contacts.near_parts.active) load_part_bodies(system);
-  collide_bodies(system, collide, at_once ? move : nullptr);
-  if (!system.bonds.tied.empty()) add_bond_impulses(system);
-  if (at_once || !move) return;
-  system.bodies.blocks.each([&](std::size_t block) { move(system, block); });
-}
-
-void GrainSimulation::Implementation::update_candidates() {
-  const double reach = reach_of(system);
-  refuse_runaway(system, reach);
-  refuse_long_ways_in_cell(system, reach);
-  refresh_candidates(system, reach);
-  if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
-  if (system.bodies.in_place) find_places_before(system);
-  refuse_crossings(system);
-}
-
-void GrainSimulation::Implementation::start_next_step() {
-  if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
-  if (system.cell.deforms) advance_cell(system);
-  ++system.step;
-  if (!system.walls.servos.empty()) steer_walls(system);
-  place_walls(system);
-  turn_axes(system);
-  if (system.meets_images()) turn_images(system);
-  cover_joints(system);
 }
 
 void GrainSimulation::advance(std::int64_t steps) {
