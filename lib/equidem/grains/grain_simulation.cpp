@@ -18,7 +18,6 @@
 #include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
-#include "equidem/grains/contacts/crossing.hpp"
 #include "equidem/grains/contacts/force_step.hpp"
 #include "equidem/grains/grain_simulation_implementation.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
@@ -30,10 +29,6 @@ namespace {
 
 /// A refused step costs at most as many steps more; to keep a state so seldom costs less than a hundredth of them.
 constexpr std::int64_t steps_between_kept_states = 1024;
-
-void begin_loads_of_walls(GrainSystem& system) {
-  for (WallLoad& load : system.walls.loads) load.begin_step();
-}
 
 }  // namespace
 
@@ -66,19 +61,15 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   const double smallest_size =
       parts.empty() ? system.smallest_radius : std::ranges::min(parts, {}, &GrainPart::size).size;
   system.bodies.next = system.bodies.motions;
-  self.collide = system.shapes.parts.empty() ? candidate_loop(options.law, system.friction)
-                                             : part_candidate_loop(options.law, system.friction);
+  self.collide = candidate_loop(options.law, system.friction);
   self.flow = flow_function(options.law);
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
-  if (const CandidateLoop loop = wall_loop(system)) {
-    self.collide = loop;
-  } else if (self.collide && system.friction) {
-    system.bodies.impulses_before.resize(system.bodies.impulses.size());
-  }
+  prepare_near_walls(system);
+  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =
@@ -90,15 +81,14 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   find_candidates(system);
   touch_near_pairs(system);
   touch_near_parts(system);
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
+  for (Candidate& candidate : system.contacts.candidates) {
     // bodies that overlap at the start touch
-    Candidate& candidate = system.contacts.candidates[c];
-    candidate.touching = overlap_of(system, c) > 0;
+    candidate.touching = geometry_of(system, candidate).overlap > 0;
     if (candidate.touching) ++system.counters.contacts;
   }
   system.contacts.near.record = true;
   if (self.verlet()) {
-    self.find_impulses(nullptr);
+    find_impulses(system, self.collide, nullptr);
     system.lost = {};  // there was no drift before the start
     // The force that servo walls find in the first step: walls got half of it, as from a step with no force before.
     for (WallLoad& load : system.walls.loads)
@@ -112,79 +102,6 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   self.potential_at_start = potential;
   const auto [normal, tangential] = self.elastic();
   self.energy_at_start = kinetic + normal + tangential + elastic_of_bonds(system);
-}
-
-void GrainSimulation::Implementation::make_step() {
-  if (flow) return step_together();
-  if (verlet()) {
-    step_by_verlet();
-  } else {
-    step_by_euler();
-  }
-  if (system.cell.active && system.step % steps_between_wraps == 0) wrap_bodies(system);
-}
-
-void GrainSimulation::Implementation::step_together() {
-  system.deepest = 0;
-  begin_loads_of_walls(system);
-  flow(system);  // contacts, motion and candidates
-  start_next_step();
-}
-
-void GrainSimulation::Implementation::step_by_euler() {
-  system.deepest = 0;
-  begin_loads_of_walls(system);
-  find_impulses(move_by_euler);
-  take_longest_way(system);
-  update_candidates();
-  start_next_step();
-}
-
-void GrainSimulation::Implementation::step_by_verlet() {
-  if (system.bonds.breakable) break_bonds(system);  // by the springs of the last kick, which are those of the first one
-  const bool deforms = system.cell.deforms;
-  if (deforms) steer_cell(system);
-  count_opening_kick(system);
-  (deforms ? drift_in_cell : drift_of_verlet)(system);
-  update_candidates();
-  start_next_step();
-  system.deepest = 0;
-  begin_loads_of_walls(system);  // servo walls were steered by those of the last step
-  find_impulses(deforms ? nullptr : kick_of_verlet);
-  if (deforms) kick_in_cell(system);
-}
-
-void GrainSimulation::Implementation::find_impulses(BlockMove move) {
-  system.cell.bond_sums = {};
-  if (system.bonds.held > 0) push_springs(system);
-  if (system.bonds.breakable && !verlet() && break_bonds(system) && system.bonds.held > 0) push_springs(system);
-  const bool at_once = system.bonds.held == 0 && touches_walls_alone(system);
-  if (system.contacts.near_parts.active) load_part_bodies(system);
-  collide_bodies(system, collide, at_once ? move : nullptr);
-  if (system.bonds.held > 0) add_bond_impulses(system);
-  if (at_once || !move) return;
-  system.bodies.blocks.each([&](std::size_t block) { move(system, block); });
-}
-
-void GrainSimulation::Implementation::update_candidates() {
-  const double reach = reach_of(system);
-  refuse_runaway(system, reach);
-  refuse_long_ways_in_cell(system, reach);
-  refresh_candidates(system, reach);
-  if (!system.options.refuse_crossing || !may_cross(system, reach)) return;
-  if (system.bodies.in_place) find_places_before(system);
-  refuse_crossings(system);
-}
-
-void GrainSimulation::Implementation::start_next_step() {
-  if (!system.bodies.in_place) system.bodies.motions.swap(system.bodies.next);
-  if (system.cell.deforms) advance_cell(system);
-  ++system.step;
-  if (!system.walls.servos.empty()) steer_walls(system);
-  place_walls(system);
-  turn_axes(system);
-  if (system.meets_images()) turn_images(system);
-  cover_joints(system);
 }
 
 void GrainSimulation::advance(std::int64_t steps) {
@@ -367,7 +284,7 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
 }
 
 std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic() const {
-  const bool behind = collide && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
+  const bool behind = !flow && system.options.integrator == GrainOptions::Integrator::semi_implicit_euler;
   return system.bodies.blocks.sum([&](std::size_t block) {
     double potential = 0, kinetic = 0;
     for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
@@ -386,23 +303,22 @@ std::pair<double, double> GrainSimulation::Implementation::potential_and_kinetic
 }
 
 std::pair<double, double> GrainSimulation::Implementation::elastic() const {
-  // a force acts wherever bodies overlap; other laws count the spring from the first step of the contact on
-  const bool holds_from_first_step = !gives_force(system.options.law);
+  // a force acts wherever bodies overlap
   auto [normal, tangential] = elastic_of_near_pairs(system);
-  const auto add = [&, &normal = normal, &tangential = tangential](const Candidate& candidate, double overlap) {
-    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
-    if (holds_from_first_step && (!candidate.touching || candidate.parted)) return;
-    if (!(overlap > 0)) return;
-    normal += system.law().energy(candidate.stiffness, overlap);
-  };
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
+  each_list(system.contacts, [&, &normal = normal, &tangential = tangential](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
-      auto [candidate, pair] = candidate_of(system, list, p);
-      add(candidate, geometry_of_parts(system, candidate, pair).overlap);
+      const auto [of_normal, of_tangential] = elastic_of(system, list, p);
+      normal += of_normal;
+      tangential += of_tangential;
     }
   });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c)
-    add(system.contacts.candidates[c], overlap_of(system, c));
+  // these laws count the spring from the first step of the contact on
+  for (const Candidate& candidate : system.contacts.candidates) {
+    tangential += 0.5 * candidate.sliding.stiffness * candidate.stretch * candidate.stretch;
+    if (!candidate.touching || candidate.parted) continue;
+    const double overlap = geometry_of(system, candidate).overlap;
+    if (overlap > 0) normal += system.law().energy(candidate.stiffness, overlap);
+  }
   return {normal, tangential};
 }
 
@@ -489,12 +405,11 @@ Effects effects_of(const GrainScene& scene, const GrainOptions& options) {
 double GrainSimulation::bytes_per_body() const {
   const GrainSystem& system = implementation_->system;
   const double bytes = static_cast<double>(
-      system.contacts.near.bytes() + system.contacts.near_parts.bytes() +
+      system.contacts.near.bytes() + system.contacts.near_parts.bytes() + system.contacts.near_walls.bytes() +
       system.bodies.constants.capacity() * sizeof(GrainBody) + system.bodies.moments.capacity() * sizeof(Vec2) +
       2 * system.bodies.motions.capacity() * sizeof(GrainMotion) +
       (system.bodies.impulses.capacity() + system.bodies.impulses_before.capacity()) * sizeof(BodyImpulse) +
-      system.contacts.candidates.capacity() * sizeof(Candidate) +
-      system.contacts.part_pairs.capacity() * sizeof(PartPair) + system.shapes.parts.capacity() * sizeof(GrainPart) +
+      system.contacts.candidates.capacity() * sizeof(Candidate) + system.shapes.parts.capacity() * sizeof(GrainPart) +
       system.shapes.axes.capacity() * sizeof(Vec2) + system.bonds.tied.capacity() * sizeof(TiedPair) +
       system.bonds.packed.bytes() + system.contacts.exact_pairs.capacity() * sizeof(ExactPair) +
       (system.cell.images.capacity() + system.cell.crossed.capacity()) * sizeof(PeriodicImage) +

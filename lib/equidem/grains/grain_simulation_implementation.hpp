@@ -34,7 +34,7 @@ struct GrainState {
 struct GrainSimulation::Implementation {
   GrainSystem system;
   Effects effects;
-  CandidateLoop collide = nullptr;  ///< force laws and maps
+  CandidateLoop collide = nullptr;  ///< maps
   FlowFunction flow = nullptr;      ///< simultaneous laws
   double potential_at_start = 0, energy_at_start = 0;
   std::optional<GrainState> kept;  ///< a recent state, restored when a step fails
@@ -49,27 +49,20 @@ struct GrainSimulation::Implementation {
   void step_by_euler();
   /// Velocity Verlet: half kick, drift, impulses from the velocities at the half step, half kick.
   void step_by_verlet();
-  // Stages of both schemes:
-  /// Compute the impulses of contacts and bonds from the present positions and velocities, and move the bodies by them.
-  /// \param move null: none
-  void find_impulses(BlockMove move);
-  /// Update the pairs that may touch at the positions after the step.
-  /// \throws Error (computation_failed) if bodies would pass through one another
-  void update_candidates();
-  /// Advance bodies, walls and axes to the end of the step.
-  void start_next_step();
   [[nodiscard]] bool verlet() const { return system.options.verlet(); }
   /// Whether a step needs the impulses of the previous step.
-  [[nodiscard]] bool keeps_impulses() const {
-    return verlet() ||
-           (collide && (system.friction || system.contacts.near.active || system.contacts.near_parts.active));
-  }
+  [[nodiscard]] bool keeps_impulses() const { return gives_force(system.options.law) || (collide && system.friction); }
   /// Potential energy of gravity at the time of the velocities, and kinetic energy, J.
   [[nodiscard]] std::pair<double, double> potential_and_kinetic() const;
   /// Energies of the normal and the tangential springs at the present positions, J.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] EnergyLedger energy() const;
 };
+
+/// Compute the impulses of contacts and bonds from the present positions and velocities.
+/// \param collide the loop of a map; null: force laws
+/// \param move of the bodies of a block by them; null: none
+void find_impulses(GrainSystem& system, CandidateLoop collide, BlockMove move);
 
 /// The effects of a scene of colliding bodies, with the reason for each inactive one.
 Effects effects_of(const GrainScene& scene, const GrainOptions& options);

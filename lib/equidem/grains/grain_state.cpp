@@ -17,19 +17,6 @@ namespace {
 
 constexpr const char* go_on_with = "Resume with the scene that the state was saved from";
 
-/// As they were in the last step.
-void set_arms_of_discs(const GrainSystem& system, const Candidate& candidate, PartPair& parts) {
-  const double radius = system.bodies.constants[candidate.i].radius;
-  if (candidate.j < 0) {
-    parts.arm_i = radius * candidate.normal;
-    return;
-  }
-  const double sum = radius + system.bodies.constants[system.body_of(candidate.j)].radius;
-  const double distance = sum - candidate.overlap, lever = radius / sum * distance;
-  parts.arm_i = lever * candidate.normal;
-  parts.arm_j = (lever - distance) * candidate.normal;
-}
-
 // The numbers of rows of a saved state.
 
 constexpr auto motion_numbers = [](auto& m, const auto& visit) {
@@ -99,11 +86,13 @@ bool are_of_scene(const GrainSystem& system, const std::vector<ContactState>& co
 
 }  // namespace
 
-ContactState state_of(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+namespace {
+
+/// The lever at a wall is the radius; those of two discs add up to the distance of their centres.
+ContactState state_of(const GrainSystem& system, const Candidate& candidate) {
+  const double radius = system.bodies.constants[candidate.i].radius;
   ContactState state{.i = candidate.i,
                      .j = candidate.j,
-                     .part_i = parts.i,
-                     .part_j = parts.j,
                      .mode = candidate.mode,
                      .parted = candidate.parted,
                      .steps = candidate.steps,
@@ -114,14 +103,12 @@ ContactState state_of(const GrainSystem& system, const Candidate& candidate, con
                      .moment = candidate.moment,
                      .tangential_impulse = candidate.tangential_impulse,
                      .stretch = candidate.stretch,
-                     .arm_i = parts.arm_i,
-                     .arm_j = parts.arm_j};
-  if (!system.is_image(candidate.j)) return state;
-  const PeriodicImage& image = system.image(candidate.j);
-  state.j = image.body;
-  state.a = image.a;
-  state.b = image.b;
-  if (!system.shapes.parts.empty()) state.part_j = system.own_part(parts.j);
+                     .arm_i = radius * candidate.normal};
+  if (candidate.j < 0) return state;
+  const double sum = radius + system.bodies.constants[candidate.j].radius;
+  const double distance = sum - candidate.overlap, lever = radius / sum * distance;
+  state.arm_i = lever * candidate.normal;
+  state.arm_j = (lever - distance) * candidate.normal;
   return state;
 }
 
@@ -139,33 +126,18 @@ void take(const ContactState& state, Candidate& candidate) {
   candidate.stretch = state.stretch;
 }
 
+}  // namespace
+
 std::vector<ContactState> contact_states(const GrainSystem& system) {
-  const bool shapes = !system.shapes.parts.empty();
   std::vector<ContactState> states;
-  for (const PairBlock& block : system.contacts.near.blocks) {
-    for (std::size_t p = 0; p < block.count; ++p) {
-      if (!block.touching(p)) continue;
-      const Candidate candidate = candidate_of(system, block, p);
-      PartPair parts = parts_of_discs(system, candidate.i, candidate.j);
-      set_arms_of_discs(system, candidate, parts);
-      states.push_back(state_of(system, candidate, parts));
-    }
-  }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      if (!list.touching(p)) continue;
-      const auto [candidate, parts] = candidate_of(system, list, p);
-      states.push_back(state_of(system, candidate, parts));
-    }
-  });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
-    const Candidate& candidate = system.contacts.candidates[c];
-    if (!candidate.touching) continue;
-    PartPair parts;
-    if (shapes) parts = system.contacts.part_pairs[c];
-    if (!shapes) set_arms_of_discs(system, candidate, parts);
-    states.push_back(state_of(system, candidate, parts));
-  }
+  const auto add_touching = [&](const auto& list) {
+    for (std::size_t p = 0; p < list.count; ++p)
+      if (list.touching(p)) states.push_back(state_of(system, list, p));
+  };
+  for (const PairBlock& block : system.contacts.near.blocks) add_touching(block);
+  each_list(system.contacts, add_touching);
+  for (const Candidate& candidate : system.contacts.candidates)
+    if (candidate.touching) states.push_back(state_of(system, candidate));
   return states;
 }
 
@@ -261,7 +233,6 @@ void GrainSimulation::stop_all() {
 }
 
 void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
-  const bool shapes = !system.shapes.parts.empty();
   system.step = state.step;
   potential_at_start = state.potential;
   energy_at_start = state.energy;
@@ -284,26 +255,19 @@ void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   turn_axes(system);
   system.contacts.candidates.clear();
   system.contacts.exact_pairs.clear();
-  system.contacts.part_pairs.clear();
   if (system.contacts.near.active) load_pair_bodies(system);
   list_contacts(system, state.contacts);
+  take_near_walls(system, state.contacts);
   find_candidates(system);
-  std::vector<Candidate>& candidates = system.contacts.candidates;
-  std::size_t c = 0;
-  for (const ContactState& contact : state.contacts) {
-    if (is_listed(system, contact)) continue;
-    const auto is_it = [&] {
-      if (candidates[c].i != contact.i || candidates[c].j != contact.j) return false;
-      const auto& parts = system.contacts.part_pairs;
-      return !shapes || (parts[c].i == contact.part_i && parts[c].j == contact.part_j);
-    };
-    while (c < candidates.size() && !is_it()) ++c;
-    if (c == candidates.size())
-      bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged", go_on_with);
-    take(contact, candidates[c]);
-    if (!shapes) continue;
-    system.contacts.part_pairs[c].arm_i = contact.arm_i;
-    system.contacts.part_pairs[c].arm_j = contact.arm_j;
+  if (!gives_force(system.options.law)) {
+    auto candidate = system.contacts.candidates.begin();
+    const auto end = system.contacts.candidates.end();
+    for (const ContactState& contact : state.contacts) {
+      while (candidate != end && (candidate->i != contact.i || candidate->j != contact.j)) ++candidate;
+      if (candidate == end)
+        bad_input("the state has a contact of bodies that are apart", "it is of another scene, or damaged", go_on_with);
+      take(contact, *candidate);
+    }
   }
   system.counters = state.counters;
 }

@@ -3,6 +3,7 @@
 /// Data of the steps of colliding bodies: bodies and walls sorted by position, candidates for contact.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <ranges>
 #include <vector>
@@ -34,35 +35,40 @@ struct GrainBody {
   std::int32_t kind = 0;
 };
 
-/// Two bodies, or a body and a wall, that may touch soon, with the state of their contact.
-struct Candidate {
-  // members read in every step come first: pairs that do not touch read one cache line
+/// Constants of a contact of two bodies, or of a body and a wall.
+struct ContactConstants {
+  double reduced_mass = 0;        ///< kg
+  double stiffness = 0;           ///< normal, N/m, hertz: N/m^(3/2)
+  double a = 0;                   ///< dimensionless stiffness
+  double dissipation = 0;         ///< Law::dissipation
+  double least = 0;               ///< least normal impulse: 0, or minus infinity if contacts may attract
+  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): the dashpot over the root of the tangential mass
+  Sliding sliding;                ///< of discs that just touch, as large as the bodies
+
+  /// Coefficient of the normal dashpot under a force law: Law::dissipation sqrt(k m).
+  [[nodiscard]] double dashpot() const { return dissipation * std::sqrt(stiffness * reduced_mass); }
+};
+
+/// Two discs, or a disc and a wall, that may touch soon, with the state of their contact: maps and simultaneous laws.
+struct Candidate : ContactConstants {
   std::int32_t i = 0;
   std::int32_t j = 0;  ///< negative: wall ~j
   bool touching = false;
-  bool parted = false;      // a map ended the contact in this step: a later overlap is a new contact
-  bool attraction = false;  // constant, like the next three
-  bool covered = false;     // contact with the end of a wall that another wall continues: ignored (wall_joints.hpp)
+  bool parted = false;   ///< a map ended the contact in this step: a later overlap is a new contact
+  bool covered = false;  ///< contact with the end of a wall that another wall continues: ignored (wall_joints.hpp)
   int mode = 0;
-  double reduced_mass = 0;
-  double a = 0;  // dimensionless stiffness
-  /// Force laws: dashpot coefficient over m/dt, Law::dissipation sqrt(a); others: Law::dissipation.
-  double dissipation = 0;
   std::int64_t steps = 0;
   // state after the last step
   double overlap = 0, closing = 0;
   Vec2 normal;
   double impulse = 0, moment = 0, tangential_impulse = 0;
-  // springs
-  double stretch = 0;    // stretch of the tangential spring, m
-  double stiffness = 0;  // normal stiffness, N/m, hertz: N/m^(3/2); constant
-  Sliding sliding;       // constant
+  double stretch = 0;  ///< of the tangential spring, m
 };
 
 /// A contact as it is reported, saved and handed on.
 struct ContactState {
   std::int32_t i = 0, j = 0;            ///< bodies, or a body and a wall ~j
-  std::int32_t part_i = 0, part_j = 0;  ///< as in PartPair
+  std::int32_t part_i = 0, part_j = 0;  ///< indices in Shapes::parts; 0: of a wall, or in scenes of discs
   std::int32_t a = 0, b = 0;            ///< of the image of j that i meets, as in PeriodicImage
   int mode = 0;
   bool parted = false;
@@ -187,10 +193,10 @@ struct Walls {
 struct ContactList {
   NearPairs near;
   NearParts near_parts;
-  /// Contacts in none of the near lists, ordered by i, then j (walls last), then parts.
+  NearWalls near_walls;
+  /// Contacts by maps and simultaneous laws, ordered by i, then j (walls last).
   std::vector<Candidate> candidates;
   std::vector<ExactPair> exact_pairs;  ///< simultaneous laws: one for each candidate
-  std::vector<PartPair> part_pairs;    ///< scenes with shapes: one for each candidate
   NeighbourFinder finder;
   std::vector<Circle> circles;   ///< bodies, for the finder
   double margin = 0, moved = 0;  ///< margin of the candidates; upper bound of the motion since they were found, m
@@ -236,9 +242,10 @@ struct GrainSystem {
   [[nodiscard]] const LawDescription& law() const { return describe(options.law); }
   [[nodiscard]] double dt() const { return options.time_step; }
   [[nodiscard]] double time() const { return static_cast<double>(step) * options.time_step; }
-  [[nodiscard]] const PairProperties& properties(const Candidate& candidate) const {
-    const int other = candidate.j >= 0 ? bodies.constants[body_of(candidate.j)].kind : scene.walls[~candidate.j].kind;
-    return scene.between(bodies.constants[candidate.i].kind, other);
+  /// Of a body and another one, or an image of it, or a wall ~j.
+  [[nodiscard]] const PairProperties& properties(std::int32_t i, std::int32_t j) const {
+    const int other = j >= 0 ? bodies.constants[body_of(j)].kind : scene.walls[~j].kind;
+    return scene.between(bodies.constants[i].kind, other);
   }
   /// The image that a number behind those of all bodies stands for.
   [[nodiscard]] const PeriodicImage& image(std::int32_t j) const {
@@ -268,9 +275,6 @@ struct GrainSystem {
     const Vec2 own = bodies.next[body_of(j)].position;
     return is_image(j) ? own + cell.next.shift(image(j)) : own;
   }
-  [[nodiscard]] double dissipation(const Candidate& candidate) const {
-    return dissipations[&properties(candidate) - scene.pairs.data()];
-  }
 };
 
 /// Sort grains and walls by position, so that results do not depend on the caller's order.
@@ -280,28 +284,22 @@ void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vec
 /// Compute Law::dissipation for every pair of kinds.
 void find_dissipations(GrainSystem& system);
 
-/// Coefficient of the normal dashpot of a pair under a force law: Law::dissipation sqrt(k m).
-double dashpot_of(const GrainSystem& system, const Candidate& candidate);
-
-/// Set the constants of a pair that the law needs.
-void set_constants(const GrainSystem& system, Candidate& candidate);
+/// \param j a body, an image of one, or a wall ~j
+ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// Connect the impulses of pairs with bodies of later blocks, when lists of near pairs have been found, and set
 /// GrainBodies::earliest.
 void connect_blocks(GrainSystem& system);
 
-/// Find all candidates within the margin again; existing contacts keep their state.
+/// Find all pairs within the margin again; existing contacts keep their state.
 void find_candidates(GrainSystem& system);
 
 /// Ensure that the candidates contain every pair that may touch while no body moves further than `reach`, and add
 /// `reach` to the motion counted. \return whether the candidates were found again
 bool refresh_candidates(GrainSystem& system, double reach);
 
-/// The contacts of pairs and of walls, those of pairs of discs first.
+/// The contacts of pairs of discs, of parts, of walls.
 std::vector<ContactState> contact_states(const GrainSystem& system);
-ContactState state_of(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
-/// Set the state of a contact, its bodies and constants aside.
-void take(const ContactState& state, Candidate& candidate);
 
 /// Longest displacement of a body or wall in this step, m.
 double reach_of(const GrainSystem& system);

@@ -77,16 +77,26 @@ struct Resistance {
 Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direction) {
   const LawDescription& law = system.law();
   Resistance resistance;
-  for (const Candidate& candidate : system.contacts.candidates) {
-    if (candidate.j != ~static_cast<std::int32_t>(wall) || !candidate.touching || candidate.steps == 0) continue;
-    const double along = dot(candidate.normal, direction), across = cross(candidate.normal, direction);
-    const double overlap = std::max(candidate.overlap, 0.0), c = dashpot_of(system, candidate);
-    const double k = law.spring_power * candidate.stiffness * std::pow(overlap, law.spring_power - 1);
-    resistance.spring += system.dt() * (k * along * along + candidate.sliding.stiffness * across * across);
-    resistance.impedance += std::sqrt(k * candidate.reduced_mass) * along * along;
-    resistance.dashpot += (law.dashpot != nullptr ? law.dashpot(c, overlap) : c) * along * along +
-                          candidate.sliding.dashpot * across * across;
+  const auto add = [&](Vec2 normal, double overlap, const ContactConstants& of) {
+    const double along = dot(normal, direction), across = cross(normal, direction), c = of.dashpot();
+    overlap = std::max(overlap, 0.0);
+    const double k = law.spring_power * of.stiffness * std::pow(overlap, law.spring_power - 1);
+    resistance.spring += system.dt() * (k * along * along + of.sliding.stiffness * across * across);
+    resistance.impedance += std::sqrt(k * of.reduced_mass) * along * along;
+    resistance.dashpot +=
+        (law.dashpot != nullptr ? law.dashpot(c, overlap) : c) * along * along + of.sliding.dashpot * across * across;
+  };
+  const std::int32_t j = ~static_cast<std::int32_t>(wall);
+  for (const NearParts::List& list : system.contacts.near_walls.blocks) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (list.wall(p) != wall || !list.touching(p)) continue;
+      const ContactState contact = state_of(system, list, p);
+      add(contact.normal, contact.overlap, constants_of(system, contact.i, j));
+    }
   }
+  for (const Candidate& candidate : system.contacts.candidates)
+    if (candidate.j == j && candidate.touching && candidate.steps > 0)
+      add(candidate.normal, candidate.overlap, candidate);
   return resistance;
 }
 
@@ -102,12 +112,8 @@ double speed_of_push(const GrainSystem& system, std::size_t wall) {
   const double p = system.law().spring_power;
   double least = INFINITY;
   for (std::size_t body = 0; body < system.bodies.constants.size(); ++body) {
-    Candidate candidate;
-    candidate.i = static_cast<std::int32_t>(body);
-    candidate.j = ~static_cast<std::int32_t>(wall);
-    set_constants(system, candidate);
-    least =
-        std::min(least, std::sqrt(2 / ((p + 1) * candidate.reduced_mass)) * std::pow(candidate.stiffness, -0.5 / p));
+    const ContactConstants of = constants_of(system, static_cast<std::int32_t>(body), ~static_cast<std::int32_t>(wall));
+    least = std::min(least, std::sqrt(2 / ((p + 1) * of.reduced_mass)) * std::pow(of.stiffness, -0.5 / p));
   }
   return least;
 }

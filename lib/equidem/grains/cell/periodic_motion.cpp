@@ -182,12 +182,13 @@ void measure_resistance(GrainSystem& system) {
   each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
-      const auto [candidate, pair] = candidate_of(system, list, p);
-      Resistances of = along(candidate.stiffness, dashpot_of(system, candidate), std::max(candidate.overlap, 0.0));
-      of.k_t = candidate.sliding.stiffness;
-      of.c_t = candidate.sliding.dashpot;
-      add_resistance(system.position_of(candidate.j) - system.position_of(candidate.i), candidate.normal, of, stiffness,
-                     viscosity);
+      const Partners pair = partners_of(system, list, p);
+      const ContactConstants constants = constants_of(system, pair.i, pair.j);
+      const ContactState contact = state_of(system, list, p);
+      Resistances of = along(constants.stiffness, constants.dashpot(), std::max(contact.overlap, 0.0));
+      of.k_t = constants.sliding.stiffness;
+      of.c_t = constants.sliding.dashpot;
+      add_resistance(system.position_of(pair.j) - system.position_of(pair.i), contact.normal, of, stiffness, viscosity);
     }
   });
   for (const TiedPair& bond : system.bonds.holding()) {
@@ -369,11 +370,6 @@ Periods periods_of(const PeriodicCell& cell) {
   return {{cell.width, 0}, rows ? Vec2{cell.shift, cell.height} : Vec2{}};
 }
 
-bool is_listed(const GrainSystem& system, const ContactState& contact) {
-  if (contact.j < 0) return false;
-  return are_discs(system, contact.i, contact.j) ? system.contacts.near.active : system.contacts.near_parts.active;
-}
-
 void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts) {
   const std::size_t count = system.bodies.constants.size();
   std::vector<PeriodicImage>& images = system.cell.images;
@@ -387,7 +383,7 @@ void list_contacts(GrainSystem& system, const std::vector<ContactState>& contact
   }
   std::vector<ContactState> discs, parts;
   for (ContactState contact : contacts) {
-    if (!is_listed(system, contact)) continue;
+    if (contact.j < 0) continue;
     std::vector<ContactState>& list = are_discs(system, contact.i, contact.j) ? discs : parts;
     if (contact.a != 0 || contact.b != 0) {
       const auto place = std::ranges::lower_bound(images, PeriodicImage{contact.j, contact.b, contact.a});

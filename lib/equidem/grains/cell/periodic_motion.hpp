@@ -26,8 +26,6 @@ struct PeriodicCell;
 
 Periods periods_of(const PeriodicCell& cell);
 
-/// Whether a contact is one of near pairs or parts, not of candidates.
-bool is_listed(const GrainSystem& system, const ContactState& contact);
 /// Find the images again, and replace the near pairs and parts by contacts, in any order; those with walls are not
 /// read.
 void list_contacts(GrainSystem& system, const std::vector<ContactState>& contacts);

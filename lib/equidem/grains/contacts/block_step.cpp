@@ -37,17 +37,11 @@ void complete_impulses(GrainSystem& system, std::size_t block, bool turning) {
 }
 
 /// The contacts of a block with walls.
-void collide_with_walls(GrainSystem& system, std::size_t block, CandidateLoop loop) {
-  const std::vector<Candidate>& candidates = system.contacts.candidates;
-  const auto from = [&](std::size_t body) {
-    return static_cast<std::size_t>(
-        std::ranges::lower_bound(candidates, static_cast<std::int32_t>(body), {}, &Candidate::i) - candidates.begin());
-  };
-  const std::size_t begin = from(system.bodies.blocks.begin(block)), end = from(system.bodies.blocks.end(block));
-  if (begin == end) return;
-  BlockSums& sums = system.bodies.sums[block];
-  sums.on_walls.assign(system.walls.loads.size(), {});
-  loop(system, begin, end, sums);
+void collide_with_walls(GrainSystem& system, std::size_t block) {
+  NearWalls& near = system.contacts.near_walls;
+  if (!near.active || near.blocks[block].count == 0) return;
+  system.bodies.sums[block].on_walls.assign(system.walls.loads.size(), {});
+  near.loop(system, near.blocks[block], block);
 }
 
 void count_sums(GrainSystem& system, BlockSums& sums) {
@@ -61,12 +55,6 @@ void count_sums(GrainSystem& system, BlockSums& sums) {
 
 }  // namespace
 
-bool touches_walls_alone(const GrainSystem& system) {
-  if (system.shapes.parts.empty() || system.cell.active) return system.contacts.near.active;
-  const bool discs = system.bodies.constants.size() > system.shapes.shaped.size();
-  return system.contacts.near_parts.active && (system.contacts.near.active || !discs);
-}
-
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   if (!system.cell.images.empty()) place_images(system);
   const bool keeps = !system.bodies.impulses_before.empty();
@@ -77,18 +65,17 @@ void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move) {
   system.bodies.cleared = system.bodies.in_place && !system.contacts.near.record;
   if (clear) std::fill(system.bodies.moments.begin(), system.bodies.moments.end(), Vec2{});
   const bool turning = system.contacts.near.active && system.friction && system.options.verlet();
-  const bool walls_alone = touches_walls_alone(system);
   system.bodies.blocks.each_in_turn(
       system.bodies.earliest, [&](std::size_t block) { collide_block(system, block, clear); },
       [&](std::size_t block) {
         complete_impulses(system, block, turning);
-        if (walls_alone) collide_with_walls(system, block, loop);
+        collide_with_walls(system, block);
         if (move) move(system, block);
       });
-  if (!walls_alone) {
+  if (loop) {
     BlockSums& sums = system.bodies.sums[0];
     sums.on_walls.assign(system.walls.loads.size(), {});
-    loop(system, 0, system.contacts.candidates.size(), sums);
+    loop(system, sums);
   }
   for (BlockSums& sums : system.bodies.sums) count_sums(system, sums);
 }

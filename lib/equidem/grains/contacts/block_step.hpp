@@ -10,18 +10,15 @@
 
 namespace equidem {
 
-/// Add the impulses of candidates begin .. end, and what they add to sums.
-using CandidateLoop = void (*)(GrainSystem& system, std::size_t begin, std::size_t end, BlockSums& sums);
+/// Add the impulses of all candidates, and what they add to sums.
+using CandidateLoop = void (*)(GrainSystem& system, BlockSums& sums);
 
 /// Advance the bodies of a block by their impulses.
 using BlockMove = void (*)(GrainSystem& system, std::size_t block);
 
-/// Whether all candidates are contacts with walls: the impulses on a block are then known before those on later ones.
-bool touches_walls_alone(const GrainSystem& system);
-
 /// Set the impulses of all bodies to those of their contacts in this step, and count their sums.
-/// \param move of each block, made as soon as its impulses are known, while they are in the cache, if
-///        touches_walls_alone(); null: none
+/// \param loop of a map; null: force laws
+/// \param move of each block, made as soon as its impulses are known, while they are in the cache; null: none, or a map
 void collide_bodies(GrainSystem& system, CandidateLoop loop, BlockMove move);
 
 /// \param gain,turn change of velocity and of spin by the contacts in the last step

@@ -31,14 +31,10 @@ struct NewContact {
 };
 
 NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
-  Candidate candidate;
-  candidate.i = bond.i;
-  candidate.j = bond.j;
-  set_constants(system, candidate);
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const double overlap =
       system.bodies.constants[i].radius + system.bodies.constants[j].radius - norm(branch_of(system, bond));
-  return {candidate.stiffness, std::max(overlap, 0.0)};
+  return {constants_of(system, bond.i, bond.j).stiffness, std::max(overlap, 0.0)};
 }
 
 /// Verlet schemes kick bodies at the start of a step by the impulses of the last one: those of a bond that has broken

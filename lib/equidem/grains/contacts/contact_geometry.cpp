@@ -6,18 +6,40 @@
 namespace equidem {
 namespace {
 
-PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
-  const auto i = static_cast<std::size_t>(candidate.i), j = static_cast<std::size_t>(candidate.j);
-  const GrainPart& part_i = system.shapes.parts[pair.i];
-  const GrainPart& part_j = system.shapes.parts[pair.j];
+EllipseContact contact_with_wall(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w,
+                                 Vec2 last_normal) {
+  const Wall& wall = system.scene.walls[w];
+  const Ellipse ellipse{part.a, part.b, system.shapes.axes[i]};
+  const Vec2 to_point = wall.point + system.walls.places[w].displacement - system.bodies.motions[i].position;
+  if (wall.shape == Wall::Shape::line) return contact_with_line(ellipse, to_point, wall.normal);
+  return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
+}
+
+/// Conservative test without a square root.
+bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
+  const Wall& wall = system.scene.walls[w];
+  if (wall.shape != Wall::Shape::line) return false;
+  const double height =
+      dot(system.bodies.motions[i].position - (wall.point + system.walls.places[w].displacement), wall.normal);
+  const double x = part.a * dot(system.shapes.axes[i], wall.normal),
+               y = part.b * cross(system.shapes.axes[i], wall.normal);
+  return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;
+}
+
+}  // namespace
+
+PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bool touching, Vec2 normal) {
+  const auto i = static_cast<std::size_t>(of.i), j = static_cast<std::size_t>(of.j);
+  const GrainPart& part_i = system.shapes.parts[of.part_i];
+  const GrainPart& part_j = system.shapes.parts[of.part_j];
   const Vec2 to_i = offset_of(part_i, system.shapes.axes[i]), to_j = offset_of(part_j, system.shapes.axes[j]);
-  const Vec2 branch = system.position_of(candidate.j) - system.bodies.motions[i].position + (to_j - to_i);
+  const Vec2 branch = system.position_of(of.j) - system.bodies.motions[i].position + (to_j - to_i);
   const double reach = part_i.a + part_j.a, square = dot(branch, branch);
   if (square >= reach * reach) return {};
   const double share = part_i.size / (part_i.size + part_j.size);
   if (part_i.is_round() && part_j.is_round()) {
     const double distance = std::sqrt(square), lever = share * distance, overlap = reach - distance;
-    const Vec2 normal = distance > 0 ? branch / distance : Vec2{1, 0};
+    normal = distance > 0 ? branch / distance : Vec2{1, 0};
     return {overlap,
             normal,
             to_i + lever * normal,
@@ -31,12 +53,8 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
     if (!contact.is_contact()) return {};
     return {-contact.gap, contact.normal, to_i + contact.arm_i, to_j + contact.arm_j, 0, 0};
   }
-  const EllipseContact contact =
-      contact_of_parts(e_i, e_j, branch, candidate.touching, candidate.touching ? candidate.normal : pair.apart);
-  if (contact.gap > 0) {
-    pair.apart = contact.normal;
-    return {};
-  }
+  const EllipseContact contact = contact_of_parts(e_i, e_j, branch, touching, normal);
+  if (contact.gap > 0) return {};
   const double overlap = -contact.gap, sunk_i = share * overlap, sunk_j = overlap - sunk_i;
   return {overlap,
           contact.normal,
@@ -46,48 +64,30 @@ PartGeometry geometry_of_grain_parts(const GrainSystem& system, const Candidate&
           sunk_j};
 }
 
-EllipseContact contact_with_wall(const GrainSystem& system, std::int32_t grain, const GrainPart& part,
-                                 std::int32_t wall_index, Vec2 last_normal) {
-  const auto i = static_cast<std::size_t>(grain), w = static_cast<std::size_t>(wall_index);
-  const Wall& wall = system.scene.walls[w];
-  const Vec2 displacement = system.walls.places[w].displacement;
-  const Ellipse ellipse{part.a, part.b, system.shapes.axes[i]};
-  const Vec2 to_point = wall.point + displacement - system.bodies.motions[i].position;
-  if (wall.shape == Wall::Shape::line) return contact_with_line(ellipse, to_point, wall.normal);
-  return contact_with_segment(ellipse, to_point, to_point + (wall.end - wall.point), last_normal);
-}
-
-/// Surely, without a root.
-bool is_clear_of_line(const GrainSystem& system, std::size_t i, const GrainPart& part, std::size_t w) {
-  const Wall& wall = system.scene.walls[w];
-  if (wall.shape != Wall::Shape::line) return false;
-  const double height =
-      dot(system.bodies.motions[i].position - (wall.point + system.walls.places[w].displacement), wall.normal);
-  const double x = part.a * dot(system.shapes.axes[i], wall.normal),
-               y = part.b * cross(system.shapes.axes[i], wall.normal);
-  return height > 0 && height * height * (1 - 1e-9) > x * x + y * y;
-}
-
-PartGeometry meeting_of_part_with_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& pair) {
-  if (candidate.covered) return {};
-  const auto i = static_cast<std::size_t>(candidate.i), w = static_cast<std::size_t>(~candidate.j);
-  const GrainPart& part = system.shapes.parts[pair.i];
-  if (!part.is_round()) {
-    if (is_clear_of_line(system, i, part, w)) return {};
-    const EllipseContact contact =
-        contact_with_wall(system, candidate.i, part, ~candidate.j, candidate.touching ? candidate.normal : Vec2{});
-    if (contact.gap >= 0) return {};
-    return {-contact.gap, contact.normal, contact.arm_i, {}, 0, 0};
+PartGeometry geometry_with_wall(const GrainSystem& system, std::int32_t number, std::size_t w, Vec2 normal) {
+  const bool discs = system.shapes.parts.empty();
+  const auto i = static_cast<std::size_t>(discs ? number : system.shapes.body_of_part[number]);
+  Vec2 offset;
+  double radius = system.bodies.constants[i].radius;
+  if (!discs) {
+    const GrainPart& part = system.shapes.parts[number];
+    if (!part.is_round()) {
+      if (is_clear_of_line(system, i, part, w)) return {};
+      const EllipseContact contact = contact_with_wall(system, i, part, w, normal);
+      if (contact.gap >= 0) return {};
+      return {-contact.gap, contact.normal, contact.arm_i, {}, 0, 0, cross(contact.arm_i, contact.normal)};
+    }
+    offset = offset_of(part, system.shapes.axes[i]);
+    radius = part.a;
   }
-  const Vec2 offset = offset_of(part, system.shapes.axes[i]);
   const WallContact contact =
       nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position + offset);
-  const double overlap = part.a - contact.distance;
+  const double overlap = radius - contact.distance;
   if (!(overlap > 0)) return {};
-  return {overlap, -contact.normal, offset - part.a * contact.normal, {}, 0, 0};
+  normal = -contact.normal;
+  const Vec2 arm = radius * normal;  // as restored from a saved state of discs
+  return {overlap, normal, discs ? arm : offset + arm, {}, 0, 0, cross(offset, normal)};
 }
-
-}  // namespace
 
 EllipseContact contact_by_enlarged_ellipse(const Ellipse& i, const Ellipse& j, Vec2 branch) {
   struct Symmetric {
@@ -133,24 +133,13 @@ EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch,
   return contact_of_ellipses(i, j, branch, {}, quick);
 }
 
-PartGeometry geometry_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair) {
-  return candidate.j >= 0 ? geometry_of_grain_parts(system, candidate, pair)
-                          : meeting_of_part_with_wall(system, candidate, pair);
-}
-
-double overlap_of(const GrainSystem& system, std::size_t candidate) {
-  if (system.shapes.parts.empty()) return geometry_of(system, system.contacts.candidates[candidate]).overlap;
-  PartPair pair = system.contacts.part_pairs[candidate];
-  return geometry_of_parts(system, system.contacts.candidates[candidate], pair).overlap;
-}
-
 Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t part_index, std::int32_t wall) {
   const auto i = static_cast<std::size_t>(grain);
   const Vec2 position = system.bodies.motions[i].position;
   if (system.shapes.parts.empty()) return position;
   const GrainPart& part = system.shapes.parts[part_index];
   if (part.is_round()) return position + offset_of(part, system.shapes.axes[i]);
-  const EllipseContact contact = contact_with_wall(system, grain, part, wall, {});
+  const EllipseContact contact = contact_with_wall(system, i, part, static_cast<std::size_t>(wall), {});
   return position + contact.arm_i + contact.gap * contact.normal;
 }
 

@@ -29,12 +29,6 @@ inline ContactGeometry geometry_of_grains(const GrainBody& bi, const GrainBody& 
   return geometry;
 }
 
-/// \param position of grain i
-inline ContactGeometry geometry_with_wall(const GrainBody& bi, const Wall& wall, Vec2 displacement, Vec2 position) {
-  const WallContact contact = nearest(wall, displacement, position);
-  return {bi.radius - contact.distance, -contact.normal, bi.radius, 0};
-}
-
 /// Geometry at the start of the step.
 inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& candidate) {
   const auto i = static_cast<std::size_t>(candidate.i);
@@ -46,8 +40,9 @@ inline ContactGeometry geometry_of(const GrainSystem& system, const Candidate& c
   const auto w = static_cast<std::size_t>(~candidate.j);
   const GrainBody& body = system.bodies.constants[candidate.i];
   if (candidate.covered) return {-body.radius, {1, 0}, body.radius, 0};  // apart
-  return geometry_with_wall(system.bodies.constants[i], system.scene.walls[w], system.walls.places[w].displacement,
-                            system.bodies.motions[i].position);
+  const WallContact contact =
+      nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
+  return {body.radius - contact.distance, -contact.normal, body.radius, 0};
 }
 
 /// Velocity of j, or of the wall, relative to i.
@@ -85,22 +80,23 @@ struct PartGeometry {
   Vec2 normal = {};               ///< unit, from i to j
   Vec2 arm_i = {}, arm_j = {};    ///< m
   double sunk_i = 0, sunk_j = 0;  ///< distance from the end of the arm to the surface, m
+  double across_i = 0;            ///< at walls: arm_i x normal, m; of discs exactly 0
 };
 
-/// Geometry at the start of the step: discs as in geometry_of_grains and geometry_with_wall, ellipses by
-/// GrainOptions::EllipseLaw.
-/// \param pair stores the normal along which ellipses are apart. Of earlier steps, the result depends only on the last
-///        normal of a touching candidate, which a saved state contains.
-PartGeometry geometry_of_parts(const GrainSystem& system, const Candidate& candidate, PartPair& pair);
+/// Geometry at the start of the step: discs as in geometry_of_grains, ellipses by GrainOptions::EllipseLaw.
+/// \param touching,normal as in contact_of_parts: the result depends only on the last normal of a touching pair, which
+///        a saved state contains
+PartGeometry geometry_of_parts(const GrainSystem& system, const Partners& of, bool touching, Vec2 normal);
+
+/// \param number of the part, in scenes of discs of the body
+/// \param normal of the last step where it touched, else {}
+PartGeometry geometry_with_wall(const GrainSystem& system, std::int32_t number, std::size_t wall, Vec2 normal);
 
 /// The exact contact of two parts of which one is an ellipse.
 /// \param normal of the last step if touching, else a direction along which they were apart, or {}: start of the
 ///        iteration, without effect on the result
 /// \return if they are apart, only gap > 0 and a normal along which they are
 EllipseContact contact_of_parts(const Ellipse& i, const Ellipse& j, Vec2 branch, bool touching, Vec2 normal);
-
-/// The overlap of any candidate, parts or not, > 0 where it touches.
-double overlap_of(const GrainSystem& system, std::size_t candidate);
 
 /// Reference point of the contact of a part with a wall: the centre of a disc, the contact point of an ellipse.
 Vec2 viewpoint_on(const GrainSystem& system, std::int32_t grain, std::int32_t part, std::int32_t wall);

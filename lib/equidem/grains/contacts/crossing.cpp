@@ -41,27 +41,27 @@ Pose pose_at(const GrainSystem& system, std::int32_t body, std::int32_t part_ind
 
 }  // namespace
 
-PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
-  const Pose start_i = pose_at(system, candidate.i, parts.i, 0), end_i = pose_at(system, candidate.i, parts.i, 1);
-  if (candidate.j < 0) return {start_i.centre, end_i.centre, start_i.part.b, 0};
-  const Pose start_j = pose_at(system, candidate.j, parts.j, 0), end_j = pose_at(system, candidate.j, parts.j, 1);
+PartWay way_of_parts(const GrainSystem& system, const Partners& of) {
+  const Pose start_i = pose_at(system, of.i, of.part_i, 0), end_i = pose_at(system, of.i, of.part_i, 1);
+  if (of.j < 0) return {start_i.centre, end_i.centre, start_i.part.b, 0};
+  const Pose start_j = pose_at(system, of.j, of.part_j, 0), end_j = pose_at(system, of.j, of.part_j, 1);
   return {start_j.centre - start_i.centre, end_j.centre - end_i.centre, start_i.part.b, start_j.part.b};
 }
 
-bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+bool has_ellipse(const GrainSystem& system, const Partners& of) {
   if (system.shapes.parts.empty()) return false;
-  if (!system.shapes.parts[parts.i].is_round()) return true;
-  return candidate.j >= 0 && !system.shapes.parts[parts.j].is_round();
+  if (!system.shapes.parts[of.part_i].is_round()) return true;
+  return of.j >= 0 && !system.shapes.parts[of.part_j].is_round();
 }
 
-const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
+const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of) {
   const auto contact_at = [&](double share) {
-    const Pose i = pose_at(system, candidate.i, parts.i, share), j = pose_at(system, candidate.j, parts.j, share);
+    const Pose i = pose_at(system, of.i, of.part_i, share), j = pose_at(system, of.j, of.part_j, share);
     return contact_of_ellipses(i.ellipse(), j.ellipse(), j.centre - i.centre);
   };
-  const Pose i = pose_at(system, candidate.i, parts.i, 1), j = pose_at(system, candidate.j, parts.j, 1);
+  const Pose i = pose_at(system, of.i, of.part_i, 1), j = pose_at(system, of.j, of.part_j, 1);
   const Vec2 branch = j.centre - i.centre;
-  const PartWay way = way_of_parts(system, candidate, parts);
+  const PartWay way = way_of_parts(system, of);
   const bool inside = holds(i.ellipse(), branch) || holds(j.ellipse(), branch);
   if (inside && norm(branch) < norm(way.before)) return "be pressed into";
   const EllipseContact before = contact_at(0), after = contact_at(1);
@@ -72,7 +72,7 @@ const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& can
     const auto b = static_cast<std::size_t>(system.body_of(body));
     return std::abs(system.bodies.next[b].angle - system.bodies.motions[b].angle) * part.a;
   };
-  const double reach = norm(way.after - way.before) + turn(candidate.i, i.part) + turn(candidate.j, j.part);
+  const double reach = norm(way.after - way.before) + turn(of.i, i.part) + turn(of.j, j.part);
   const double small = std::min(i.part.b, j.part.b);
   if (std::min(before.gap, after.gap) > reach) return nullptr;
   const int samples = static_cast<int>(std::min(1000.0, std::ceil(8 * reach / small)));
@@ -87,16 +87,15 @@ namespace {
 /// Displacement over the smallest radius below which no body can cross another.
 constexpr double slow_way = 0.1;
 
-[[noreturn]] void refuse(const GrainSystem& system, const Candidate& candidate, Vec2 way, double room,
-                         const char* happening) {
-  const auto i = static_cast<std::size_t>(candidate.i);
+[[noreturn]] void refuse(const GrainSystem& system, const Partners& of, Vec2 way, double room, const char* happening) {
+  const auto i = static_cast<std::size_t>(of.i);
   std::string other;
-  if (candidate.j >= 0) {
-    other = fmt::format("grain {}", system.bodies.grain_of[system.body_of(candidate.j)]);
+  if (of.j >= 0) {
+    other = fmt::format("grain {}", system.bodies.grain_of[system.body_of(of.j)]);
   } else {
-    const Wall& wall = system.scene.walls[~candidate.j];
-    other = wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[~candidate.j])
-                              : fmt::format("wall \"{}\"", wall.name);
+    const Wall& wall = system.scene.walls[~of.j];
+    other =
+        wall.name.empty() ? fmt::format("wall {}", system.walls.wall_of[~of.j]) : fmt::format("wall \"{}\"", wall.name);
   }
   const double speed = norm(way) / system.dt();
   computation_failed(
@@ -108,7 +107,7 @@ constexpr double slow_way = 0.1;
           : "Use stiffer contacts, or press less: a shorter step would not hold them");
 }
 
-void check_discs(const GrainSystem& system, const Candidate& candidate, const PartWay& parts) {
+void check_discs(const GrainSystem& system, const Partners& of, const PartWay& parts) {
   const auto [before, after, radius_i, radius_j] = parts;
   const Vec2 way = after - before;
   const double small = std::min(radius_i, radius_j);
@@ -119,37 +118,37 @@ void check_discs(const GrainSystem& system, const Candidate& candidate, const Pa
   const double nearest = norm(before + along * way);
   // centres that come this near and change sides were pressed through each other
   if (nearest < 0.5 * sum && dot(before, after) < 0) {
-    refuse(system, candidate, way, 0.5 * small, "pass through");
+    refuse(system, of, way, 0.5 * small, "pass through");
   }
   // in short steps they would go round each other instead: no centre enters another body
   const double distance = norm(after);
   if (distance < sum - small && distance < norm(before)) {
-    refuse(system, candidate, way, 0.5 * small, "be pressed into");
+    refuse(system, of, way, 0.5 * small, "be pressed into");
   }
   const bool seen = norm(before) < sum || norm(after) < sum;
-  if (!seen && nearest < sum - 0.5 * small) refuse(system, candidate, way, 0.5 * small, "pass through");
+  if (!seen && nearest < sum - 0.5 * small) refuse(system, of, way, 0.5 * small, "pass through");
 }
 
-void check_wall(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
-  const auto i = static_cast<std::size_t>(candidate.i);
-  const auto w = static_cast<std::size_t>(~candidate.j);
+void check_wall(const GrainSystem& system, const Partners& of) {
+  const auto i = static_cast<std::size_t>(of.i);
+  const auto w = static_cast<std::size_t>(~of.j);
   const WallPlace& place = system.walls.places[w];
-  const auto [start, end, radius_i, radius_j] = way_of_parts(system, candidate, parts);
+  const auto [start, end, radius_i, radius_j] = way_of_parts(system, of);
   const Vec2 before = start - place.displacement;
   const Vec2 after = end - place.displacement - system.dt() * place.velocity;
   if (passes_through(system.scene.walls[w], before, after)) {
-    refuse(system, candidate, after - before, 0.5 * system.bodies.constants[i].radius, "pass through");
+    refuse(system, of, after - before, 0.5 * system.bodies.constants[i].radius, "pass through");
   }
 }
 
 }  // namespace
 
-void check_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts) {
-  const PartWay way = way_of_parts(system, candidate, parts);
-  if (!has_ellipse(system, candidate, parts)) {
-    check_discs(system, candidate, way);
-  } else if (const char* happening = crossing_of_ellipses(system, candidate, parts)) {
-    refuse(system, candidate, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
+void check_parts(const GrainSystem& system, const Partners& of) {
+  const PartWay way = way_of_parts(system, of);
+  if (!has_ellipse(system, of)) {
+    check_discs(system, of, way);
+  } else if (const char* happening = crossing_of_ellipses(system, of)) {
+    refuse(system, of, way.after - way.before, 0.5 * std::min(way.radius_i, way.radius_j), happening);
   }
 }
 
@@ -187,33 +186,27 @@ void find_places_before(GrainSystem& system) {
 }
 
 void refuse_crossings(const GrainSystem& system) {
+  const auto check = [&](const Partners& of) {
+    if (of.j < 0) {
+      check_wall(system, of);
+    } else {
+      check_parts(system, of);
+    }
+  };
   for (const PairBlock& block : system.contacts.near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
-      Candidate pair;
-      pair.i = block.first(p);
-      pair.j = block.second(p);
-      const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(system.body_of(pair.j));
-      check_discs(system, pair,
-                  {system.position_of(pair.j) - system.bodies.motions[i].position,
-                   system.next_position_of(pair.j) - system.bodies.next[i].position, system.bodies.constants[i].radius,
+      const Partners of{block.first(p), block.second(p)};
+      const auto i = static_cast<std::size_t>(of.i), j = static_cast<std::size_t>(system.body_of(of.j));
+      check_discs(system, of,
+                  {system.position_of(of.j) - system.bodies.motions[i].position,
+                   system.next_position_of(of.j) - system.bodies.next[i].position, system.bodies.constants[i].radius,
                    system.bodies.constants[j].radius});
     }
   }
-  each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
-    for (std::size_t p = 0; p < list.count; ++p) {
-      const auto [candidate, pair] = candidate_of(system, list, p);
-      check_parts(system, candidate, pair);
-    }
+  each_list(system.contacts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) check(partners_of(system, list, p));
   });
-  for (std::size_t c = 0; c < system.contacts.candidates.size(); ++c) {
-    const Candidate& candidate = system.contacts.candidates[c];
-    const PartPair parts = system.shapes.parts.empty() ? PartPair{} : system.contacts.part_pairs[c];
-    if (candidate.j < 0) {
-      check_wall(system, candidate, parts);
-    } else {
-      check_parts(system, candidate, parts);
-    }
-  }
+  for (const Candidate& candidate : system.contacts.candidates) check({candidate.i, candidate.j});
 }
 
 }  // namespace equidem

@@ -15,15 +15,15 @@ struct PartWay {
   double radius_i = 0, radius_j = 0;  ///< radii of the inscribed circles, m
 };
 
-PartWay way_of_parts(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
+PartWay way_of_parts(const GrainSystem& system, const Partners& of);
 
 /// Whether a part of a pair is an ellipse.
-bool has_ellipse(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
+bool has_ellipse(const GrainSystem& system, const Partners& of);
 
 /// The error of two ellipses in the step: one approaches with its centre in the other, the normal of an overlap
 /// reverses, an overlap of more than half the smaller short half-axis occurs undetected between the two instants, or
 /// one larger than that half-axis occurs without a contact before. \return nullptr: no error
-const char* crossing_of_ellipses(const GrainSystem& system, const Candidate& candidate, const PartPair& parts);
+const char* crossing_of_ellipses(const GrainSystem& system, const Partners& of);
 
 /// \param reach longest displacement in the step, m
 /// \throws Error (computation_failed) if it is not finite

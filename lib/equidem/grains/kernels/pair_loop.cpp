@@ -4,7 +4,7 @@
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/slide_lanes.hpp"
+#include "equidem/grains/kernels/respond.hpp"
 
 namespace equidem {
 namespace {
@@ -15,23 +15,15 @@ using namespace eight;
 /// does not wait for the roots and quotients of one.
 constexpr std::size_t groups_at_once = 8;
 
-/// Compile-time properties of a loop.
-struct PairLoopKind {
-  bool friction = false;
-  bool equal = false;   ///< one law for all pairs
-  bool verlet = false;  ///< friction by the explicit step, else by the midpoint rule
-};
-
 template <class Lanes>
 struct LoopNumbers {
   LawLanes<Lanes> law;  ///< where equal
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
   bool record = false;
-  BlockSums* block = nullptr;
 };
 
-template <PairLoopKind kind, class Lanes>
+template <ResponseKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, const PairLaws* laws) {
   if constexpr (kind.equal) {
     return numbers.law;
@@ -45,7 +37,7 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const LoopNumbers<Lanes>& numbers, 
 
 /// Relative positions and velocities of eight pairs: from i to j, along the normal and across it.
 template <class Lanes>
-struct Geometry {
+struct DiscGeometry {
   Lanes square, distance, share, overlap, nx, ny, opening;
   Lanes inverse, along, rims;  ///< Verlet schemes; 1/distance
   /// With half of what the last step did; of the slip all but the rims.
@@ -56,12 +48,12 @@ struct Geometry {
 template <class Lanes>
 struct Outcome {
   Lanes px, py, rim;  ///< impulse on j
-  Lanes normal_loss, slip_loss, dashpot_loss;
-  bool any;
+  ContactLosses<Lanes> losses;
+  bool any, changes;
 };
 
-template <PairLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, Geometry<Lanes>& found) {
+template <ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& group, DiscGeometry<Lanes>& found) {
   // differences j - i, sums of the speeds of the rims
   constexpr long long minus = std::numeric_limits<long long>::min();
   alignas(64) constexpr long long difference[lanes_of_pairs] = {minus, minus, minus, minus, minus, minus, 0, 0};
@@ -105,7 +97,7 @@ EQUIDEM_ALWAYS_INLINE void measure(const PairBody* bodies, const PairGroup& grou
 /// expansion: to the sixth order, without a root or quotient.
 /// \param mean_closing q = 1 + mean_closing dt/distance, but for the third order
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const Lanes& rims, const Lanes& now,
+EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const DiscGeometry<Lanes>& geometry, const Lanes& rims, const Lanes& now,
                                          const Lanes& mean_closing, double dt) {
   const Lanes part = dt * geometry.inverse, opened = part * geometry.opening, closed = part * mean_closing;
   const Lanes square = 1 + (closed + closed + opened * opened), near = 1 - closed * (1 - closed);
@@ -113,160 +105,92 @@ EQUIDEM_ALWAYS_INLINE Lanes mean_slip_of(const Geometry<Lanes>& geometry, const 
   return 0.5 * (now + (geometry.along - rims * square) * inverse);
 }
 
-/// A lane apart gives zeros: its impulse and its stretch are zero, and so is the yield of friction.
-template <class Law, PairLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void respond(const LoopNumbers<Lanes>& numbers, const Geometry<Lanes>& geometry, PairGroup& group,
-                                   PairSlips* slips, const PairLaws* laws, PairRecords* records, LaneSums<Lanes>& sums,
-                                   Outcome<Lanes>& outcome) {
-  const double dt = numbers.dt;
-  const Lanes &overlap = geometry.overlap, &nx = geometry.nx, &ny = geometry.ny, &opening = geometry.opening;
-  const auto since = load<Bits<Lanes>>(group.since);
-  const Lanes zero{};
-  const Bits<Lanes> touch = negative(zero - overlap), alive = ~(since >> 63);
-  const long long which = bits_of_all((touch & 1) | ((touch ^ alive) & 2));
-  const bool changes = (which & 2) != 0;
-  outcome.any = which != 0;
-  if (which == 0) return;
-  const Bits<Lanes> begun = touch & ~alive, ended = alive & ~touch;
-  if (changes) {
-    store(choose(begun, all<Bits<Lanes>>(numbers.now), choose(ended, all<Bits<Lanes>>(PairGroup::apart), since)),
-          group.since);
-    sums.begun -= begun;
-  }
-  sums.evaluations -= touch;
-
-  const LawLanes<Lanes> law = law_of<kind>(numbers, laws);
-  const auto dashpot = load<Lanes>(group.dashpot), half_mobility = load<Lanes>(group.half_mobility);
-  const Lanes deep = only(touch, overlap);
-  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * opening;
-  const Lanes impulse = only(touch, larger(law.least, elastic - drag));  // in this order a NaN persists
-  const auto impulse_before = load<Lanes>(group.impulse);
-  store(impulse, group.impulse);
-  Lanes mean_closing, deep_before, elastic_before;
+/// Their motion at the contact points; over the drift in Verlet schemes, in which the normal turns.
+template <ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const DiscGeometry<Lanes>& geometry, const PairGroup& group,
+                                                     const PairSlips* slips, double dt) {
+  ContactMotion<Lanes> motion;
+  motion.overlap = geometry.overlap;
+  motion.closing = -geometry.opening;
   if constexpr (kind.verlet) {
-    // over the drift, in which the normal turns; the dashpot gives half of the kicks before and after it each
-    mean_closing = (0.5 * dt) * geometry.inverse * geometry.along * geometry.along - opening;
-    deep_before = larger(overlap - mean_closing * dt, zero);
-    elastic_before = Law::spring(law.stiffness, deep_before);
-    outcome.normal_loss =
-        only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before) + (impulse - elastic)));
+    motion.mean_closing = (0.5 * dt) * geometry.inverse * geometry.along * geometry.along - geometry.opening;
+    motion.overlap_before = larger(geometry.overlap - motion.mean_closing * dt, Lanes{});
+    if constexpr (kind.friction) {
+      const Lanes rims = geometry.share * geometry.rims;
+      motion.slip = geometry.along - rims;
+      motion.mean_slip = mean_slip_of(geometry, rims, motion.slip, motion.mean_closing, dt);
+    }
   } else {
-    // of the mean over the step the part of this contact is known, not only that of the last step
-    mean_closing = half_mobility * (impulse_before - impulse) - geometry.middle_opening;
-    outcome.normal_loss = (impulse - elastic) * mean_closing;
+    motion.half_mobility = load<Lanes>(group.half_mobility);
+    motion.middle_closing = -geometry.middle_opening;
+    if constexpr (kind.friction) {
+      motion.mobility = motion.half_mobility + load<Lanes>(slips->half_turning) * geometry.square;
+      motion.slip = geometry.middle_slip - geometry.share * geometry.middle_rims;
+    }
   }
-  sums.deepest = larger(deep, sums.deepest);
-  Lanes px = impulse * nx, py = impulse * ny;
+  return motion;
+}
+
+template <class Law, ResponseKind kind, class Lanes>
+EQUIDEM_ALWAYS_INLINE void respond_discs(const LoopNumbers<Lanes>& numbers, const DiscGeometry<Lanes>& geometry,
+                                         PairGroup& group, PairSlips* slips, const PairLaws* laws, PairRecords* records,
+                                         LaneSums<Lanes>& sums, Outcome<Lanes>& outcome) {
+  ContactChanges<Lanes> at;
+  outcome.any = begin_and_end(negative(Lanes{} - geometry.overlap), numbers.now, group.since, at, sums);
+  if (!outcome.any) return;
+  outcome.changes = at.any;
+  const ContactMotion<Lanes> motion = motion_of<kind>(geometry, group, slips, numbers.dt);
+  sums.deepest = larger(only(at.touch, motion.overlap), sums.deepest);
+  ContactMemory<Lanes> memory;
+  Lanes slip_dashpot;
+  memory.impulse = load<Lanes>(group.impulse);
   if constexpr (kind.friction) {
-    auto stretch = load<Lanes>(slips->stretch);
-    const auto slip_dashpot = load<Lanes>(slips->dashpot);
-    const auto tangential_before = load<Lanes>(slips->impulse);
-    const Lanes& share = geometry.share;
-    Lanes velocity, mean_slip{}, mobility{};
-    if constexpr (!kind.verlet) {
-      mobility = half_mobility + load<Lanes>(slips->half_turning) * geometry.square;
-      // without this contact's own part in it
-      velocity = geometry.middle_slip - share * geometry.middle_rims - mobility * tangential_before;
-    }
-    if constexpr (kind.verlet) {
-      const Lanes rims = share * geometry.rims;
-      const Lanes now = geometry.along - rims;
-      velocity = now;
-      mean_slip = mean_slip_of(geometry, rims, now, mean_closing, dt);
-      if (changes || numbers.now == 0) [[unlikely]]  // as of parts, whose places before are not known
-        stretch += only(numbers.now == 0 ? touch : begun, (velocity - mean_slip) * dt);
-    }
-    const Lanes yield = law.friction * larger(impulse, zero);
-    Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
-                                                            tangential_before, yield, dt);
-    if constexpr (!kind.equal) tangent.impulse = only(touch, tangent.impulse);
-    const Lanes tangential = -tangent.impulse;
-    if (changes || !kind.equal) {
-      const Bits<Lanes> lasting = kind.verlet ? touch & alive : touch;
-      tangent.slip_loss = only(lasting, tangent.slip_loss);
-      tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
-    }
-    if (changes) [[unlikely]] {
-      const Lanes stored = law.half_spring * stretch * stretch;
-      if constexpr (kind.verlet) {
-        const FirstSlip<Lanes> first =
-            first_slip_of(law, tangent, slip_dashpot * velocity, tangential, mean_slip, begun);
-        tangent.slip_loss += first.slip_loss;
-        tangent.dashpot_loss += first.dashpot_loss;
-        add_release(only(ended, stored - 0.5 * tangential_before * mean_slip), sums);
-      } else {
-        add_release(only(ended, stored), sums);
-      }
-    }
-    store(tangent.stretch, slips->stretch);
-    store(tangential, slips->impulse);
-    outcome.slip_loss = tangent.slip_loss;
-    outcome.dashpot_loss = tangent.dashpot_loss;
-    px -= tangential * ny;
-    py += tangential * nx;
-    outcome.rim = share * tangential;
+    memory.tangential = load<Lanes>(slips->impulse);
+    memory.stretch = load<Lanes>(slips->stretch);
+    slip_dashpot = load<Lanes>(slips->dashpot);
   }
-  outcome.px = px;
-  outcome.py = py;
-  if constexpr (kind.verlet) {
-    if (changes) [[unlikely]]
-      outcome.normal_loss += normal_loss_at_ends<Law>(begun, ended, mean_closing, impulse - elastic, impulse_before,
-                                                      elastic_before, deep_before, dt);
+  outcome.losses = respond<Law, kind>(law_of<kind>(numbers, laws), load<Lanes>(group.dashpot), slip_dashpot, motion, at,
+                                      numbers.dt, memory);
+  store(memory.impulse, group.impulse);
+  outcome.px = memory.impulse * geometry.nx;
+  outcome.py = memory.impulse * geometry.ny;
+  if constexpr (kind.friction) {
+    store(memory.tangential, slips->impulse);
+    store(memory.stretch, slips->stretch);
+    outcome.px -= memory.tangential * geometry.ny;
+    outcome.py += memory.tangential * geometry.nx;
+    outcome.rim = geometry.share * memory.tangential;
   }
   if (numbers.record) {
-    store(overlap, records->overlap);
-    store(-opening, records->closing);
-    store(nx, records->normal_x);
-    store(ny, records->normal_y);
+    store(geometry.overlap, records->overlap);
+    store(motion.closing, records->closing);
+    store(geometry.nx, records->normal_x);
+    store(geometry.ny, records->normal_y);
   }
 }
-
-/// Where the impulses of a group go.
-struct Receivers {
-  BodyImpulse* impulses = nullptr;
-  BodyImpulse* outward = nullptr;  ///< next place for a body behind the block
-  std::int32_t end = 0;            ///< of the bodies of the block
-};
 
 /// \tparam outward some bodies are behind the block
-template <PairLoopKind kind, bool outward, class Lanes>
-EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, Receivers& to,
-                                LaneSums<Lanes>& sums) {
-  if (!outcome.any) {
-    for (std::size_t k = 0; outward && k < lanes_of_pairs; ++k) {
-      if (group.j[k] >= to.end) *to.outward++ = {};
-    }
-    return;
-  }
-  Row<Lanes> row[lanes_of_pairs];
-  if constexpr (kind.friction) {
-    add_losses(outcome.normal_loss, outcome.slip_loss, outcome.dashpot_loss, sums);
-    rows_of(outcome.px, outcome.py, Lanes{}, outcome.rim, row);
-  } else {
-    add_losses(outcome.normal_loss, sums);
-    rows_of(outcome.px, outcome.py, Lanes{}, Lanes{}, row);
-  }
-  // of both bodies the rim is pushed the same way round, and its lever is the radius
+template <ResponseKind kind, bool outward, class Lanes>
+EQUIDEM_ALWAYS_INLINE void give(const PairGroup& group, const Outcome<Lanes>& outcome, const Receivers& to,
+                                BodyImpulse*& next, LaneSums<Lanes>& sums) {
+  if (!outcome.any) return give_nothing<outward>(group.j, to, next);
+  add_losses<kind>(outcome.losses, outcome.changes, sums);
+  Row<Lanes> on_i[lanes_of_pairs];
+  rows_of(outcome.px, outcome.py, Lanes{}, kind.friction ? outcome.rim : Lanes{}, on_i);
+  // the tangential impulse turns both bodies the same way round, and its lever is the radius
   alignas(32) constexpr long long rim[4] = {0, 0, 0, std::numeric_limits<long long>::min()};
   const auto turned = load<Bits<Row<Lanes>>>(rim);
-  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    subtract(&to.impulses[group.i[k]], row[k]);
-    if constexpr (kind.friction) row[k] = as<Row<Lanes>>(bits_of(row[k]) ^ turned);
-    if (outward && group.j[k] >= to.end) {
-      store(row[k], to.outward++);
-    } else {
-      add(&to.impulses[group.j[k]], row[k]);
-    }
-  }
+  scatter<outward>(group.i, group.j, to, next, on_i,
+                   [&](std::size_t k) { return kind.friction ? as<Row<Lanes>>(bits_of(on_i[k]) ^ turned) : on_i[k]; });
 }
 
-template <class Law, PairLoopKind kind>
+template <class Law, ResponseKind kind>
 struct CollidePairs {
   template <class Lanes>
   EQUIDEM_ALWAYS_INLINE static void run(GrainSystem& system, std::size_t b);
 };
 
-template <class Law, PairLoopKind kind>
+template <class Law, ResponseKind kind>
 template <class Lanes>
 void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const NearPairs& near = system.contacts.near;
@@ -275,13 +199,13 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const LoopNumbers<Lanes> numbers{
       law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
                 all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
-      system.dt(), system.step + (system.options.verlet() ? 0 : 1), near.record, &system.bodies.sums[b]};
+      system.dt(), system.step + (system.options.verlet() ? 0 : 1), near.record};
   block.records.resize(near.record ? block.groups.size() : 0);
   LaneSums<Lanes> sums;
   const PairBody* bodies = near.bodies.data();
-  Receivers to{system.bodies.impulses.data(), block.outward.impulses.data(),
-               static_cast<std::int32_t>(system.bodies.blocks.end(b))};
-  Geometry<Lanes> geometry[groups_at_once];
+  const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(b)), nullptr};
+  BodyImpulse* outward = block.outward.impulses.data();
+  DiscGeometry<Lanes> geometry[groups_at_once];
   Outcome<Lanes> outcome[groups_at_once];
   const std::size_t count = block.groups.size();
   PairGroup* groups = block.groups.data();
@@ -292,20 +216,20 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
     const std::size_t here = std::min(groups_at_once, count - first);
     for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
-      respond<Law, kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
-                         kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr, sums,
-                         outcome[g]);
+      respond_discs<Law, kind>(numbers, geometry[g], groups[first + g], kind.friction ? slips + (first + g) : nullptr,
+                               kind.equal ? nullptr : laws + (first + g), near.record ? records + (first + g) : nullptr,
+                               sums, outcome[g]);
     }
     if (first + here <= block.first_outward) {
-      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward, sums);
     } else {
-      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, sums);
+      for (std::size_t g = 0; g < here; ++g) give<kind, true>(groups[first + g], outcome[g], to, outward, sums);
     }
   }
-  add(sums, *numbers.block);
+  add(sums, system.bodies.sums[b]);
 }
 
-template <class Law, PairLoopKind kind>
+template <class Law, ResponseKind kind>
 NearPairs::Loop choose_pair_loop() {
   return by_vector_width<CollidePairs<Law, kind>, GrainSystem&, std::size_t>();
 }
@@ -313,11 +237,11 @@ NearPairs::Loop choose_pair_loop() {
 template <class Law, bool equal>
 NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
   if (system.options.verlet()) {
-    return system.friction ? choose_pair_loop<Law, PairLoopKind{true, equal, true}>()
-                           : choose_pair_loop<Law, PairLoopKind{false, equal, true}>();
+    return system.friction ? choose_pair_loop<Law, ResponseKind{true, true, equal, equal}>()
+                           : choose_pair_loop<Law, ResponseKind{false, true, equal, equal}>();
   }
-  return system.friction ? choose_pair_loop<Law, PairLoopKind{true, equal, false}>()
-                         : choose_pair_loop<Law, PairLoopKind{false, equal, false}>();
+  return system.friction ? choose_pair_loop<Law, ResponseKind{true, false, equal, equal}>()
+                         : choose_pair_loop<Law, ResponseKind{false, false, equal, equal}>();
 }
 
 }  // namespace

@@ -186,6 +186,26 @@ struct HardLanes {
   }
 }
 
+[[gnu::noinline]] inline void meet_by_enlarged_ellipse(const PartGroup& group, HardLanes& lanes) {
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
+    EllipseContact contact;
+    contact.gap = 1;
+    if (lanes.hard[k] != 0)
+      contact = contact_by_enlarged_ellipse(
+          {number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
+          {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
+          {lanes.branch_x[k], lanes.branch_y[k]});
+    lanes.gap[k] = contact.gap;
+    lanes.normal_x[k] = contact.normal.x;
+    lanes.normal_y[k] = contact.normal.y;
+    lanes.arm_i_x[k] = contact.arm_i.x;
+    lanes.arm_i_y[k] = contact.arm_i.y;
+    lanes.arm_j_x[k] = contact.arm_j.x;
+    lanes.arm_j_y[k] = contact.arm_j.y;
+  }
+}
+
 /// Meet one by one where it is hard.
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lanes>& s, const Bits<Lanes>& hard,
@@ -275,6 +295,30 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_ellipses(PartGroup& group
   result.sunk_j = result.overlap - result.sunk_i;
   result.arm_i = s.offset_i + to_i - result.sunk_i * normal;
   result.arm_j = s.offset_j + to_j + result.sunk_j * normal;
+  return result;
+}
+
+/// contact_by_enlarged_ellipse() one by one; round parts meet as in geometry_of_round_parts().
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_enlarged_ellipses(const PartGroup& group,
+                                                                         const Standing<Lanes>& s,
+                                                                         const Bits<Lanes>& used) {
+  HardLanes lanes;
+  store(used, lanes.hard);
+  store(s.branch.x, lanes.branch_x);
+  store(s.branch.y, lanes.branch_y);
+  store(s.axis_i.x, lanes.axis_i_x);
+  store(s.axis_i.y, lanes.axis_i_y);
+  store(s.axis_j.x, lanes.axis_j_x);
+  store(s.axis_j.y, lanes.axis_j_y);
+  meet_by_enlarged_ellipse(group, lanes);
+  GeometryLanes<Lanes> result;
+  result.overlap = -load<Lanes>(lanes.gap);
+  result.touch = used & negative(Lanes{} - result.overlap);
+  result.normal = {load<Lanes>(lanes.normal_x), load<Lanes>(lanes.normal_y)};
+  result.arm_i = s.offset_i + Vectors<Lanes>{load<Lanes>(lanes.arm_i_x), load<Lanes>(lanes.arm_i_y)};
+  result.arm_j = s.offset_j + Vectors<Lanes>{load<Lanes>(lanes.arm_j_x), load<Lanes>(lanes.arm_j_y)};
+  result.sunk_i = result.sunk_j = Lanes{};
   return result;
 }
 

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-
+/// \file
+/// Contacts of parts of bodies, and of bodies with walls, by a force law, eight at a time.
+///
+/// An impulse p at the contact point exerts arm x p on both bodies; velocities are those of the material points there.
+/// Stiffness and dashpot are those of a central impact: c = 2 zeta sqrt(m k) with 1/m = 1/m_i + 1/m_j, without the arms
+/// (Sukegawa 2010, (2.27)). An eccentric impact has the smaller mass m', 1/m' = 1/m + (arm_i x n)²/I_i + (arm_j x
+/// n)²/I_j: its duration is shorter by sqrt(m'/m), and zeta' = zeta sqrt(m/m') makes its restitution smaller than
+/// prescribed. The tangential dashpot is 2 zeta_T sqrt(m_T kT) with the tangential mass of the present arms.
 #include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
-#include "equidem/grains/kernels/slide_lanes.hpp"
+#include "equidem/grains/kernels/respond.hpp"
 
 namespace equidem {
 namespace {
@@ -15,9 +22,12 @@ static_assert(offsetof(PartBody, middle_velocity) == 2 * sizeof(Vec2) &&
 
 using namespace eight;
 
+/// What the contacts of a list are between.
+enum class Meets { round_parts, ellipses, enlarged_ellipses, walls };
+
 struct PartLoopKind {
-  bool round = false, friction = false, verlet = false;
-  bool equal = false;  ///< with friction, by NearParts::law
+  Meets meets = Meets::round_parts;
+  ResponseKind response;
 };
 
 template <class Lanes>
@@ -26,8 +36,6 @@ struct PartLoopNumbers {
   double dt = 0;
   std::int64_t now = 0;  ///< the step that is being made, as PairGroup::since
   bool record = false;
-  BlockSums* block = nullptr;
-  std::int32_t end = 0;  ///< of the bodies of the block
 };
 
 template <class Lanes>
@@ -43,7 +51,7 @@ EQUIDEM_ALWAYS_INLINE Lanes slip_of(const Standing<Lanes>& s, const Vectors<Lane
 
 template <PartLoopKind kind, class Lanes>
 EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbers, const PartGroup& group) {
-  if constexpr (kind.equal) {
+  if constexpr (kind.response.equal) {
     return numbers.law;
   } else {
     const auto spring = column<Lanes>(group, PartGroup::tangential_stiffness);
@@ -53,158 +61,279 @@ EQUIDEM_ALWAYS_INLINE LawLanes<Lanes> law_of(const PartLoopNumbers<Lanes>& numbe
   }
 }
 
-/// \tparam some the group has bodies behind the block
-/// \param[in,out] outward next place for the impulse on such a body
-template <bool some, class Numbers>
-EQUIDEM_ALWAYS_INLINE void give(const PartGroup& group, const Numbers (&on_i)[lanes_of_pairs],
-                                const Numbers (&on_j)[lanes_of_pairs], const std::int32_t* body_of_part,
-                                std::int32_t end, BodyImpulse* impulses, BodyImpulse*& outward) {
-  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
-    subtract(&impulses[body_of_part[group.i[k]]], on_i[k]);
-    const std::int32_t receiver = body_of_part[group.j[k]];
-    if (some && receiver >= end) {
-      store(on_j[k], outward++);
+/// Parts of the arms along and across the normal, and the inverse of the tangential mass at the surfaces.
+template <class Lanes>
+struct Levers {
+  Lanes across_i, across_j, along_i, along_j, at_rim;
+};
+
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE Vectors<Lanes> vectors(const PartGroup& group, PartGroup::Column x, PartGroup::Column y) {
+  return {column<Lanes>(group, x), column<Lanes>(group, y)};
+}
+
+/// \param drift velocities over the drift in Verlet schemes: of walls not those at the instant
+/// \param[in,out] levers of walls with across_i
+template <PartLoopKind parts, class Lanes>
+EQUIDEM_ALWAYS_INLINE ContactMotion<Lanes> motion_of(const PartGroup& group, const Standing<Lanes>& s,
+                                                     const Standing<Lanes>& drift, const GeometryLanes<Lanes>& found,
+                                                     const Vectors<Lanes>& normal_before,
+                                                     const ContactChanges<Lanes>& at, Levers<Lanes>& levers) {
+  constexpr ResponseKind kind = parts.response;
+  const Vectors<Lanes>& n = found.normal;
+  if constexpr (parts.meets != Meets::walls) {
+    levers.across_i = cross(found.arm_i, n);
+    levers.across_j = cross(found.arm_j, n);
+  }
+  const auto inverse_mass = column<Lanes>(group, PartGroup::inverse_mass);
+  const auto turning_i = column<Lanes>(group, PartGroup::inverse_moment_i);
+  const auto turning_j = column<Lanes>(group, PartGroup::inverse_moment_j);
+  ContactMotion<Lanes> motion;
+  motion.overlap = found.overlap;
+  motion.closing = -(dot(s.velocity, n) + (s.spin_j * levers.across_j - s.spin_i * levers.across_i));
+  Vectors<Lanes> arm_i_before, arm_j_before;
+  if constexpr (kind.verlet) {
+    // over the drift, from the places at both ends of it
+    arm_i_before = vectors<Lanes>(group, PartGroup::arm_i_x, PartGroup::arm_i_y);
+    arm_j_before = vectors<Lanes>(group, PartGroup::arm_j_x, PartGroup::arm_j_y);
+    const Lanes here = closing_of(drift, n, found.arm_i, found.arm_j);
+    const Lanes there = choose(at.begun, here, closing_of(drift, normal_before, arm_i_before, arm_j_before));
+    motion.mean_closing = choose(at.ended, there, 0.5 * (here + there));
+    motion.overlap_before = larger(column<Lanes>(group, PartGroup::overlap), Lanes{});
+  } else {
+    motion.half_mobility = 0.5 * (inverse_mass + levers.across_i * levers.across_i * turning_i +
+                                  levers.across_j * levers.across_j * turning_j);
+    motion.middle_closing =
+        -(dot(s.middle, n) + (s.middle_spin_j * levers.across_j - s.middle_spin_i * levers.across_i));
+  }
+  if constexpr (kind.friction) {
+    const Lanes &along_i = levers.along_i = dot(found.arm_i, n), &along_j = levers.along_j = dot(found.arm_j, n);
+    const Lanes rim_i = along_i + found.sunk_i, rim_j = along_j - found.sunk_j;
+    levers.at_rim = inverse_mass + rim_i * rim_i * turning_i + rim_j * rim_j * turning_j;
+    const Vectors<Lanes> t = perpendicular(n);
+    if constexpr (kind.verlet) {
+      motion.slip = dot(s.velocity, t) + (s.spin_j * along_j - s.spin_i * along_i);
+      const Bits<Lanes> first = at.first ? at.touch : at.begun;  // no place before is known
+      const Lanes here = slip_of(drift, n, found.arm_i, found.arm_j);
+      const Lanes there = choose(first, here, slip_of(drift, normal_before, arm_i_before, arm_j_before));
+      motion.mean_slip = choose(at.ended, there, 0.5 * (here + there));
     } else {
-      add(&impulses[receiver], on_j[k]);
+      motion.mobility = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
+      motion.slip = dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i);
     }
+  }
+  return motion;
+}
+
+/// Contacts with walls, found one by one.
+struct WallLanes {
+  PairLanes overlap, normal_x, normal_y, arm_x, arm_y, across;
+  PairLanes u, v, spin;                    ///< of the wall relative to the body; of the body
+  PairLanes other_u, other_v, other_spin;  ///< Euler: in the middle of the step; Verlet: over the drift before
+};
+
+EQUIDEM_ALWAYS_INLINE std::int32_t body_of(const std::int32_t* body_of_part, std::int32_t part) {
+  return body_of_part == nullptr ? part : body_of_part[part];
+}
+
+/// Discs at lines here, all others by geometry_with_wall(). Lanes without a contact, and covered ones, are apart.
+inline void measure_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
+                          WallLanes& found) {
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    found.overlap[k] = -1;
+    found.normal_x[k] = found.normal_y[k] = found.arm_x[k] = found.arm_y[k] = found.across[k] = 0;
+    if (group.since[k] == PairGroup::unused || group.numbers[PartGroup::covered][k] != 0) continue;
+    const auto w = static_cast<std::size_t>(group.j[k]);
+    const Wall& wall = system.scene.walls[w];
+    if (body_of_part == nullptr && wall.shape == Wall::Shape::line) {
+      const auto i = static_cast<std::size_t>(group.i[k]);
+      const double radius = system.bodies.constants[i].radius;
+      const Vec2 from = system.bodies.motions[i].position - system.walls.places[w].displacement - wall.point;
+      found.overlap[k] = radius - dot(wall.normal, from);
+      found.normal_x[k] = -wall.normal.x;
+      found.normal_y[k] = -wall.normal.y;
+      found.arm_x[k] = radius * found.normal_x[k];
+      found.arm_y[k] = radius * found.normal_y[k];
+      continue;
+    }
+    const bool touching = group.since[k] > PairGroup::apart;
+    const Vec2 normal{group.numbers[PartGroup::normal_x][k], group.numbers[PartGroup::normal_y][k]};
+    const PartGeometry geometry = geometry_with_wall(system, group.i[k], w, touching ? normal : Vec2{});
+    found.overlap[k] = geometry.overlap;
+    found.normal_x[k] = geometry.normal.x;
+    found.normal_y[k] = geometry.normal.y;
+    found.arm_x[k] = geometry.arm_i.x;
+    found.arm_y[k] = geometry.arm_i.y;
+    found.across[k] = geometry.across_i;
+  }
+}
+
+/// \tparam verlet else semi-implicit Euler
+template <bool verlet>
+inline void find_velocities_at_walls(const GrainSystem& system, const PartGroup& group,
+                                     const std::int32_t* body_of_part, WallLanes& found) {
+  const Vec2 half_fall = (0.5 * system.dt()) * system.scene.gravity;
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    const auto part = static_cast<std::size_t>(group.i[k]);
+    const auto i = static_cast<std::size_t>(body_of(body_of_part, group.i[k]));
+    const GrainMotion& motion = system.bodies.motions[i];
+    const WallPlace& wall = system.walls.places[group.since[k] == PairGroup::unused ? 0 : group.j[k]];
+    const Vec2 velocity = wall.acting_velocity - motion.velocity;
+    Vec2 other = wall.passed_velocity - motion.velocity;
+    double spin = motion.spin;
+    if constexpr (!verlet) {
+      // all that other forces do to the velocity of the body in the step, gravity included: as in the last step
+      const bool discs = body_of_part == nullptr;
+      const Vec2 middle = discs ? system.contacts.near.bodies[i].middle_velocity
+                                : system.contacts.near_parts.bodies[part].middle_velocity;
+      other = wall.acting_velocity - (middle + half_fall);
+      spin = discs ? system.contacts.near.bodies[i].middle_rim_speed / system.bodies.constants[i].radius
+                   : system.contacts.near_parts.bodies[part].middle_spin;
+    }
+    found.u[k] = velocity.x;
+    found.v[k] = velocity.y;
+    found.spin[k] = motion.spin;
+    found.other_u[k] = other.x;
+    found.other_v[k] = other.y;
+    found.other_spin[k] = spin;
+  }
+}
+
+/// The impulses of bodies on walls, those of a Verlet drift half of each of the kicks at its ends.
+/// \param kicks on the walls, N s
+template <bool verlet>
+inline void push_walls(const GrainSystem& system, const PartGroup& group, const std::int32_t* body_of_part,
+                       const std::int64_t (&acts)[lanes_of_pairs], const PairLanes (&kicks)[2],
+                       const PairLanes (&arms)[2], BlockSums& sums) {
+  for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
+    if (acts[k] == 0) continue;
+    const auto i = static_cast<std::size_t>(body_of(body_of_part, group.i[k]));
+    const Vec2 point = system.bodies.motions[i].position + Vec2{arms[0][k], arms[1][k]};
+    const WallPlace& wall = system.walls.places[group.j[k]];
+    push_wall(system, ~group.j[k], point, {kicks[0][k], kicks[1][k]},
+              verlet ? wall.passed_velocity : wall.acting_velocity, sums.sums());
   }
 }
 
 /// \param[in,out] outward next place for the impulse on a body behind the block; null: no body of the group is there
 template <class Law, PartLoopKind kind, class Lanes>
-EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, const PartBody* bodies,
-                                         const std::int32_t* body_of_part, BodyImpulse* impulses, PartGroup& group,
-                                         BodyImpulse*& outward, LaneSums<Lanes>& sums) {
+EQUIDEM_ALWAYS_INLINE void collide_group(const PartLoopNumbers<Lanes>& numbers, GrainSystem& system,
+                                         const Receivers& to, PartGroup& group, BodyImpulse*& outward,
+                                         LaneSums<Lanes>& sums, BlockSums& block) {
+  constexpr bool verlet = kind.response.verlet, walls = kind.meets == Meets::walls;
   const double dt = numbers.dt;
   const auto since = load<Bits<Lanes>>(group.since);
   const Bits<Lanes> used = ~((since - PairGroup::apart) >> 63), alive = ~(since >> 63);
-  const Standing<Lanes> s = standing_of<kind.round, Lanes>(bodies, group);
-  const Vectors<Lanes> normal_before{column<Lanes>(group, PartGroup::normal_x),
-                                     column<Lanes>(group, PartGroup::normal_y)};
-  GeometryLanes<Lanes> at;
-  if constexpr (kind.round) {
-    at = geometry_of_round_parts(group, s, used);
+  const Vectors<Lanes> normal_before = vectors<Lanes>(group, PartGroup::normal_x, PartGroup::normal_y);
+  Standing<Lanes> s, drift;
+  GeometryLanes<Lanes> found;
+  Levers<Lanes> levers;
+  WallLanes at_walls;
+  if constexpr (walls) {
+    measure_walls(system, group, to.bodies, at_walls);
+    found.overlap = load<Lanes>(at_walls.overlap);
+    found.touch = negative(Lanes{} - found.overlap);
   } else {
-    at = geometry_of_ellipses(group, s, used, alive);
-  }
-  const Bits<Lanes> touch = at.touch, begun = touch & ~alive, ended = alive & ~touch;
-  const bool changes = any(touch ^ alive);
-  if (changes) {
-    store(choose(begun, all<Bits<Lanes>>(numbers.now), choose(ended, all<Bits<Lanes>>(PairGroup::apart), since)),
-          group.since);
-    sums.begun -= begun;
-  } else if (!any(touch)) {
-    for (std::size_t k = 0; outward && k < lanes_of_pairs; ++k) {
-      if (body_of_part[group.j[k]] >= numbers.end) *outward++ = {};
+    s = standing_of<kind.meets == Meets::round_parts, Lanes>(system.contacts.near_parts.bodies.data(), group);
+    if constexpr (kind.meets == Meets::round_parts) {
+      found = geometry_of_round_parts(group, s, used);
+    } else if constexpr (kind.meets == Meets::ellipses) {
+      found = geometry_of_ellipses(group, s, used, alive);
+    } else {
+      found = geometry_of_enlarged_ellipses(group, s, used);
     }
+  }
+  ContactChanges<Lanes> at;
+  if (!begin_and_end(found.touch, numbers.now, group.since, at, sums)) {
+    if (outward) give_nothing<true>(group.j, to, outward);
     return;
   }
-  sums.evaluations -= touch;
-
-  const Vectors<Lanes> n = at.normal, t = perpendicular(n);
-  const Lanes across_i = cross(at.arm_i, n), across_j = cross(at.arm_j, n);
-  const Lanes closing = -(dot(s.velocity, n) + (s.spin_j * across_j - s.spin_i * across_i));
-  const auto inverse_mass = column<Lanes>(group, PartGroup::inverse_mass);
-  const auto turning_i = column<Lanes>(group, PartGroup::inverse_moment_i);
-  const auto turning_j = column<Lanes>(group, PartGroup::inverse_moment_j);
-  const LawLanes<Lanes> law = law_of<kind>(numbers, group);
-  const Lanes dashpot = dt * column<Lanes>(group, PartGroup::dashpot);
-  const Lanes deep = only(touch, at.overlap);
-  const Lanes elastic = Law::spring(law.stiffness, deep), drag = Law::dashpot(dashpot, deep) * closing;
-  const Lanes impulse = only(touch, larger(law.least, elastic + drag));  // in this order a NaN persists
-  const auto impulse_before = column<Lanes>(group, PartGroup::impulse);
-  store(impulse, group.numbers[PartGroup::impulse]);
-  Lanes normal_loss, mean_closing, deep_before, elastic_before;
-  Vectors<Lanes> arm_i_before, arm_j_before;
-  if constexpr (kind.verlet) {
-    // over the drift, from the places at both ends of it; the dashpot gives half of the kicks before and after it each
-    arm_i_before = {column<Lanes>(group, PartGroup::arm_i_x), column<Lanes>(group, PartGroup::arm_i_y)};
-    arm_j_before = {column<Lanes>(group, PartGroup::arm_j_x), column<Lanes>(group, PartGroup::arm_j_y)};
-    mean_closing = choose(begun, closing, closing_of(s, normal_before, arm_i_before, arm_j_before));
-    mean_closing = choose(ended, mean_closing, 0.5 * (closing + mean_closing));
-    deep_before = larger(column<Lanes>(group, PartGroup::overlap), Lanes{});
-    elastic_before = Law::spring(law.stiffness, deep_before);
-    normal_loss = only(touch & alive, 0.5 * mean_closing * ((impulse_before - elastic_before) + (impulse - elastic)));
-    if (changes) [[unlikely]]
-      normal_loss += normal_loss_at_ends<Law>(begun, ended, mean_closing, impulse - elastic, impulse_before,
-                                              elastic_before, deep_before, dt);
-  } else {
-    // of the mean over the step the part of this contact is known, not only that of the last step
-    const Lanes mobility = inverse_mass + across_i * across_i * turning_i + across_j * across_j * turning_j;
-    mean_closing = 0.5 * mobility * (impulse_before - impulse) -
-                   (dot(s.middle, n) + (s.middle_spin_j * across_j - s.middle_spin_i * across_i));
-    normal_loss = only(touch, (impulse - elastic) * mean_closing);
+  if constexpr (walls) {
+    find_velocities_at_walls<verlet>(system, group, to.bodies, at_walls);
+    const Vectors<Lanes> other{load<Lanes>(at_walls.other_u), load<Lanes>(at_walls.other_v)};
+    s = Standing<Lanes>{};
+    s.velocity = {load<Lanes>(at_walls.u), load<Lanes>(at_walls.v)};
+    s.spin_i = load<Lanes>(at_walls.spin);
+    s.middle = other;
+    s.middle_spin_i = load<Lanes>(at_walls.other_spin);
+    drift = s;
+    drift.velocity = other;
+    found.normal = {load<Lanes>(at_walls.normal_x), load<Lanes>(at_walls.normal_y)};
+    found.arm_i = {load<Lanes>(at_walls.arm_x), load<Lanes>(at_walls.arm_y)};
+    found.arm_j = {Lanes{}, Lanes{}};
+    found.sunk_i = found.sunk_j = Lanes{};
+    levers.across_i = load<Lanes>(at_walls.across);
+    levers.across_j = Lanes{};
   }
-  sums.deepest = larger(deep, sums.deepest);
-  Vectors<Lanes> push = impulse * n;
-  Lanes torque_i = impulse * across_i, torque_j = impulse * across_j;
-  if constexpr (kind.friction) {
-    const Lanes along_i = dot(at.arm_i, n), along_j = dot(at.arm_j, n);
-    const Lanes rim_i = along_i + at.sunk_i, rim_j = along_j - at.sunk_j;
-    const Lanes at_rim = inverse_mass + rim_i * rim_i * turning_i + rim_j * rim_j * turning_j;
-    const Lanes slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / at_rim);
-    const auto tangential_before = column<Lanes>(group, PartGroup::tangential_impulse);
-    const Lanes yield = law.friction * larger(impulse, Lanes{});
-    const auto stretch = column<Lanes>(group, PartGroup::stretch);
-    Lanes velocity, mobility{}, mean_slip{};
-    if constexpr (kind.verlet) {
-      velocity = dot(s.velocity, t) + (s.spin_j * along_j - s.spin_i * along_i);
-      const Bits<Lanes> first = numbers.now == 0 ? touch : begun;  // no place before is known
-      mean_slip = choose(first, velocity, slip_of(s, normal_before, arm_i_before, arm_j_before));
-      mean_slip = choose(ended, mean_slip, 0.5 * (velocity + mean_slip));
+  const ContactMotion<Lanes> motion = motion_of<kind>(group, s, walls ? drift : s, found, normal_before, at, levers);
+  sums.deepest = larger(only(at.touch, motion.overlap), sums.deepest);
+  Lanes slip_dashpot;
+  if constexpr (kind.response.friction)
+    slip_dashpot = dt * column<Lanes>(group, PartGroup::tangential_damping) * square_root(1 / levers.at_rim);
+  const ContactMemory<Lanes> before{column<Lanes>(group, PartGroup::impulse),
+                                    column<Lanes>(group, PartGroup::tangential_impulse),
+                                    column<Lanes>(group, PartGroup::stretch)};
+  ContactMemory<Lanes> memory = before;
+  const ContactLosses<Lanes> losses =
+      respond<Law, kind.response>(law_of<kind>(numbers, group), dt * column<Lanes>(group, PartGroup::dashpot),
+                                  slip_dashpot, motion, at, dt, memory);
+  add_losses<kind.response>(losses, at.any, sums);
+  const Vectors<Lanes> n = found.normal, t = perpendicular(n);
+  Vectors<Lanes> push = memory.impulse * n;
+  Lanes torque_i = memory.impulse * levers.across_i, torque_j = memory.impulse * levers.across_j;
+  if constexpr (kind.response.friction) {
+    push = push + memory.tangential * t;
+    torque_i += memory.tangential * levers.along_i;
+    torque_j += memory.tangential * levers.along_j;
+  }
+  push = {only(at.touch, push.x), only(at.touch, push.y)};
+  if constexpr (walls) {
+    Vectors<Lanes> kicks = push, arms = found.arm_i;
+    Bits<Lanes> acts = at.touch;
+    if constexpr (verlet) {
+      const Vectors<Lanes> kicks_before =
+          before.impulse * normal_before + before.tangential * perpendicular(normal_before);
+      acts = at.touch | at.ended;
+      kicks = {0.5 * (kicks.x + only(at.alive, kicks_before.x)), 0.5 * (kicks.y + only(at.alive, kicks_before.y))};
+      arms = choose(at.ended, vectors<Lanes>(group, PartGroup::arm_i_x, PartGroup::arm_i_y), arms);
+    }
+    std::int64_t which[lanes_of_pairs];
+    PairLanes on_walls[2], to_points[2];
+    store(acts, which);
+    store(kicks.x, on_walls[0]);
+    store(kicks.y, on_walls[1]);
+    store(arms.x, to_points[0]);
+    store(arms.y, to_points[1]);
+    push_walls<verlet>(system, group, to.bodies, which, on_walls, to_points, block);
+  }
+  store(memory.impulse, group.numbers[PartGroup::impulse]);
+  store(memory.tangential, group.numbers[PartGroup::tangential_impulse]);
+  if constexpr (kind.response.friction) store(memory.stretch, group.numbers[PartGroup::stretch]);
+  if (walls || verlet || numbers.record) {
+    store(found.overlap, group.numbers[PartGroup::overlap]);
+    store(motion.closing, group.numbers[PartGroup::closing]);
+    store(found.arm_i.x, group.numbers[PartGroup::arm_i_x]);
+    store(found.arm_i.y, group.numbers[PartGroup::arm_i_y]);
+    store(found.arm_j.x, group.numbers[PartGroup::arm_j_x]);
+    store(found.arm_j.y, group.numbers[PartGroup::arm_j_y]);
+    if constexpr (kind.meets != Meets::ellipses) {
+      store(n.x, group.numbers[PartGroup::normal_x]);
+      store(n.y, group.numbers[PartGroup::normal_y]);
+    }
+  }
+  Row<Lanes> on_i[lanes_of_pairs];
+  rows_of(push.x, push.y, only(at.touch, torque_i), Lanes{}, on_i);
+  if constexpr (walls) {
+    for (std::size_t k = 0; k < lanes_of_pairs; ++k) subtract(&to.impulses[to.of(group.i[k])], on_i[k]);
+  } else {
+    Row<Lanes> on_j[lanes_of_pairs];
+    rows_of(push.x, push.y, only(at.touch, torque_j), Lanes{}, on_j);
+    const auto of_j = [&](std::size_t k) { return on_j[k]; };
+    if (outward) {
+      scatter<true>(group.i, group.j, to, outward, on_i, of_j);
     } else {
-      mobility = 0.5 * (inverse_mass + along_i * along_i * turning_i + along_j * along_j * turning_j);
-      // without this contact's own part in it
-      velocity =
-          dot(s.middle, t) + (s.middle_spin_j * along_j - s.middle_spin_i * along_i) - mobility * tangential_before;
+      scatter<false>(group.i, group.j, to, outward, on_i, of_j);
     }
-    Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, slip_dashpot, stretch, velocity, mean_slip, mobility,
-                                                            tangential_before, yield, dt);
-    const Lanes tangential = only(touch, -tangent.impulse);
-    store(only(touch, tangent.stretch), group.numbers[PartGroup::stretch]);
-    store(tangential, group.numbers[PartGroup::tangential_impulse]);
-    const Bits<Lanes> lasting = kind.verlet ? touch & alive : touch;
-    tangent.slip_loss = only(lasting, tangent.slip_loss);
-    tangent.dashpot_loss = only(lasting, tangent.dashpot_loss);
-    if (changes) [[unlikely]] {
-      const Lanes stored = law.half_spring * stretch * stretch;
-      if constexpr (kind.verlet) {
-        const FirstSlip<Lanes> first =
-            first_slip_of(law, tangent, slip_dashpot * velocity, tangential, mean_slip, begun);
-        tangent.slip_loss += first.slip_loss;
-        tangent.dashpot_loss += first.dashpot_loss;
-        add_release(only(ended, stored - 0.5 * tangential_before * mean_slip), sums);
-      } else {
-        add_release(only(ended, stored), sums);
-      }
-    }
-    add_losses(normal_loss, tangent.slip_loss, tangent.dashpot_loss, sums);
-    push = push + tangential * t;
-    torque_i += tangential * along_i;
-    torque_j += tangential * along_j;
-  } else {
-    store(Lanes{}, group.numbers[PartGroup::tangential_impulse]);  // the friction of an earlier stage may have left one
-    add_losses(normal_loss, sums);
-  }
-  if (kind.verlet || numbers.record) {
-    store(at.overlap, group.numbers[PartGroup::overlap]);
-    store(closing, group.numbers[PartGroup::closing]);
-    store(at.arm_i.x, group.numbers[PartGroup::arm_i_x]);
-    store(at.arm_i.y, group.numbers[PartGroup::arm_i_y]);
-    store(at.arm_j.x, group.numbers[PartGroup::arm_j_x]);
-    store(at.arm_j.y, group.numbers[PartGroup::arm_j_y]);
-  }
-  if (kind.round && (kind.verlet || numbers.record)) {
-    store(n.x, group.numbers[PartGroup::normal_x]);
-    store(n.y, group.numbers[PartGroup::normal_y]);
-  }
-  Row<Lanes> on_i[lanes_of_pairs], on_j[lanes_of_pairs];
-  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_i), Lanes{}, on_i);
-  rows_of(only(touch, push.x), only(touch, push.y), only(touch, torque_j), Lanes{}, on_j);
-  if (outward) {
-    give<true>(group, on_i, on_j, body_of_part, numbers.end, impulses, outward);
-  } else {
-    give<false>(group, on_i, on_j, body_of_part, numbers.end, impulses, outward);
   }
 }
 
@@ -221,50 +350,57 @@ void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, st
   const PartLoopNumbers<Lanes> numbers{
       law_lanes(all<Lanes>(law.stiffness), all<Lanes>(law.least), all<Lanes>(law.friction),
                 all<Lanes>(law.tangential_stiffness), all<Lanes>(1 / law.tangential_stiffness), system.dt()),
-      system.dt(),
-      system.step + (kind.verlet ? 0 : 1),
-      system.contacts.near.record,
-      &system.bodies.sums[block],
-      static_cast<std::int32_t>(system.bodies.blocks.end(block))};
+      system.dt(), system.step + (kind.response.verlet ? 0 : 1), system.contacts.near.record};
   LaneSums<Lanes> sums;
+  const bool shapes = !system.shapes.parts.empty();
+  const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),
+                     shapes ? system.shapes.body_of_part.data() : nullptr};
   BodyImpulse *outward = list.outward.impulses.data(), *none = nullptr;
   for (std::size_t g = 0; g < list.groups.size(); ++g) {
-    collide_group<Law, kind>(numbers, system.contacts.near_parts.bodies.data(), system.shapes.body_of_part.data(),
-                             system.bodies.impulses.data(), list.groups[g], g < list.first_outward ? none : outward,
-                             sums);
+    collide_group<Law, kind>(numbers, system, to, list.groups[g], g < list.first_outward ? none : outward, sums,
+                             system.bodies.sums[block]);
   }
-  add(sums, *numbers.block);
+  add(sums, system.bodies.sums[block]);
 }
 
-template <class Law, PartLoopKind kind>
+template <class Law, Meets meets, ResponseKind kind>
 NearParts::Loop choose_part_loop() {
-  return by_vector_width<CollideParts<Law, kind>, GrainSystem&, NearParts::List&, std::size_t>();
+  return by_vector_width<CollideParts<Law, PartLoopKind{meets, kind}>, GrainSystem&, NearParts::List&, std::size_t>();
 }
 
-template <class Law, bool round>
+template <class Law, Meets meets, bool verlet>
 NearParts::Loop choose_part_loop(const GrainSystem& system) {
-  if (system.friction && system.contacts.near_parts.law) {
-    return system.options.verlet() ? choose_part_loop<Law, PartLoopKind{round, true, true, true}>()
-                                   : choose_part_loop<Law, PartLoopKind{round, true, false, true}>();
+  if constexpr (meets == Meets::round_parts || meets == Meets::ellipses) {
+    if (system.friction && system.contacts.near_parts.law)
+      return choose_part_loop<Law, meets, ResponseKind{true, verlet, true, false}>();
   }
-  if (system.options.verlet()) {
-    return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, true}>()
-                           : choose_part_loop<Law, PartLoopKind{round, false, true}>();
-  }
-  return system.friction ? choose_part_loop<Law, PartLoopKind{round, true, false}>()
-                         : choose_part_loop<Law, PartLoopKind{round, false, false}>();
+  return system.friction ? choose_part_loop<Law, meets, ResponseKind{true, verlet, false, false}>()
+                         : choose_part_loop<Law, meets, ResponseKind{false, verlet, false, false}>();
 }
 
-}  // namespace
-
-NearParts::Loop near_part_loop(const GrainSystem& system, bool round) {
+template <Meets meets>
+NearParts::Loop loop_for(const GrainSystem& system) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::Loop {
     if constexpr (Law::kind == LawKind::force) {
-      return round ? choose_part_loop<Law, true>(system) : choose_part_loop<Law, false>(system);
+      return system.options.verlet() ? choose_part_loop<Law, meets, true>(system)
+                                     : choose_part_loop<Law, meets, false>(system);
     } else {
       return nullptr;
     }
   });
+}
+
+}  // namespace
+
+NearParts::Loop loop_of_round_parts(const GrainSystem& system) {
+  return loop_for<Meets::round_parts>(system);
+}
+NearParts::Loop loop_of_ellipses(const GrainSystem& system) {
+  return system.options.ellipse_law == GrainOptions::EllipseLaw::exact ? loop_for<Meets::ellipses>(system)
+                                                                       : loop_for<Meets::enlarged_ellipses>(system);
+}
+NearParts::Loop loop_of_walls(const GrainSystem& system) {
+  return loop_for<Meets::walls>(system);
 }
 
 }  // namespace equidem

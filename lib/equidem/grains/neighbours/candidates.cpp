@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -77,14 +78,7 @@ namespace {
 
 ExactPair exact_pair_of(const GrainSystem& system, const Candidate& candidate) {
   return system.law().prepare(candidate.reduced_mass, candidate.stiffness, candidate.dissipation,
-                              system.properties(candidate).end, system.dt());
-}
-
-/// The dashpot across the normal by the spring alone: the mass is that of the arms at the time.
-PartPair with_damping(const GrainSystem& system, const Candidate& candidate, PartPair parts) {
-  parts.tangential_damping =
-      2 * system.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness);
-  return parts;
+                              system.properties(candidate.i, candidate.j).end, system.dt());
 }
 
 /// Order of partners of one body: grains ascending, then walls ascending.
@@ -100,36 +94,78 @@ void find_dissipations(GrainSystem& system) {
   }
 }
 
-double dashpot_of(const GrainSystem& system, const Candidate& candidate) {
-  return system.dissipation(candidate) * std::sqrt(candidate.stiffness * candidate.reduced_mass);
-}
-
-void set_constants(const GrainSystem& system, Candidate& candidate) {
-  const GrainBody& bi = system.bodies.constants[candidate.i];
-  double inverse_mass = bi.inverse_mass;
-  const auto other = static_cast<std::size_t>(system.body_of(candidate.j));
-  if (candidate.j >= 0) inverse_mass += system.bodies.constants[other].inverse_mass;
-  const PairProperties& properties = system.properties(candidate);
-  const double dt = system.dt();
-  const double m = candidate.reduced_mass = 1 / inverse_mass;
-  const double length_factor = system.law().length_factor(system.length);
-  candidate.stiffness = properties.stiffness > 0
+ContactConstants constants_of(const GrainSystem& system, std::int32_t i, std::int32_t j) {
+  static constexpr GrainBody wall{};
+  const GrainBody& bi = system.bodies.constants[i];
+  const GrainBody& bj = j >= 0 ? system.bodies.constants[system.body_of(j)] : wall;
+  const double inverse_mass = bi.inverse_mass + bj.inverse_mass;
+  const PairProperties& properties = system.properties(i, j);
+  const double dt = system.dt(), length_factor = system.law().length_factor(system.length);
+  ContactConstants constants;
+  const double m = constants.reduced_mass = 1 / inverse_mass;
+  constants.stiffness = properties.stiffness > 0
                             ? properties.stiffness
                             : stiffness_from_dimensionless(properties.dimensionless, m, dt) / length_factor;
-  candidate.a =
+  constants.a =
       properties.stiffness > 0 ? properties.stiffness * length_factor * dt * dt / m : properties.dimensionless;
-  candidate.attraction = properties.end == ContactEnd::at_zero_overlap;
-  candidate.dissipation = system.dissipation(candidate);
-  if (gives_force(system.options.law)) candidate.dissipation *= std::sqrt(candidate.a);
+  constants.dissipation = system.dissipations[&properties - system.scene.pairs.data()];
+  if (properties.end == ContactEnd::at_zero_overlap) constants.least = -std::numeric_limits<double>::infinity();
   if (system.friction && properties.friction > 0) {
-    candidate.sliding.coefficient = properties.friction;
-    candidate.sliding.stiffness = properties.tangential_ratio * candidate.stiffness * length_factor;
+    Sliding& sliding = constants.sliding;
+    sliding.coefficient = properties.friction;
+    sliding.stiffness = properties.tangential_ratio * constants.stiffness * length_factor;
     // of bodies that just touch: it must not depend on where they were when they were found
-    const ContactGeometry geometry{0, {}, bi.radius, candidate.j >= 0 ? system.bodies.constants[other].radius : 0};
-    const double mass = 1 / inverse_tangential_mass(system, candidate, geometry);
-    candidate.sliding.dashpot = 2 * properties.tangential_damping * std::sqrt(mass * candidate.sliding.stiffness);
+    const double inverse =
+        inverse_mass + bi.radius * bi.radius * bi.inverse_moment + bj.radius * bj.radius * bj.inverse_moment;
+    sliding.dashpot = 2 * properties.tangential_damping * std::sqrt(1 / inverse * sliding.stiffness);
+    constants.tangential_damping = 2 * properties.tangential_damping * std::sqrt(sliding.stiffness);
+  }
+  return constants;
+}
+
+namespace {
+
+/// The pairs of discs and the contacts of discs with walls of maps and simultaneous laws.
+void find_single_contacts(GrainSystem& system, const NeighbourList& list) {
+  std::vector<Candidate> before;
+  std::vector<ExactPair> pairs_before;
+  before.swap(system.contacts.candidates);
+  pairs_before.swap(system.contacts.exact_pairs);
+  const bool exact = is_simultaneous(system.options.law);
+  std::size_t k = 0;
+  const auto add = [&](std::size_t body, std::int32_t j) {
+    const auto i = static_cast<std::int32_t>(body);
+    const auto key = [](std::int32_t a, std::int32_t b) { return std::pair(a, rank(b)); };
+    const auto key_before = [&] { return key(before[k].i, before[k].j); };
+    while (k < before.size() && key_before() < key(i, j)) ++k;
+    if (k < before.size() && key_before() == key(i, j)) {
+      system.contacts.candidates.push_back(before[k]);
+      if (exact) system.contacts.exact_pairs.push_back(pairs_before[k]);
+      return;
+    }
+    Candidate candidate;
+    static_cast<ContactConstants&>(candidate) = constants_of(system, i, j);
+    candidate.i = i;
+    candidate.j = j;
+    system.contacts.candidates.push_back(candidate);
+    if (exact) system.contacts.exact_pairs.push_back(exact_pair_of(system, candidate));
+  };
+  std::size_t next_bond = 0;
+  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
+    for (std::int64_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+      const std::int32_t j = list.partner[p];
+      if (!are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), j)) add(i, j);
+    }
+    for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
+      const WallContact contact =
+          nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
+      if (contact.distance <= system.bodies.constants[i].radius + system.contacts.margin)
+        add(i, ~static_cast<std::int32_t>(w));
+    }
   }
 }
+
+}  // namespace
 
 void find_candidates(GrainSystem& system) {
   std::vector<Circle>& circles = system.contacts.circles;
@@ -145,62 +181,8 @@ void find_candidates(GrainSystem& system) {
     }
   }
   const NeighbourList& list = system.contacts.finder.within(circles, system.contacts.margin);
-  std::vector<Candidate> before;
-  std::vector<ExactPair> pairs_before;
-  std::vector<PartPair> parts_before;
-  before.swap(system.contacts.candidates);
-  pairs_before.swap(system.contacts.exact_pairs);
-  parts_before.swap(system.contacts.part_pairs);
-  const bool exact = is_simultaneous(system.options.law);
-  std::size_t k = 0;
-  const bool shapes = !system.shapes.parts.empty();
-  const auto add = [&](std::int32_t i, std::int32_t j, const PartPair* parts = nullptr) {
-    const auto key = [&](std::int32_t a, std::int32_t b, const PartPair* p) {
-      return std::tuple(a, rank(b), p ? p->i : 0, p ? p->j : 0);
-    };
-    const auto key_before = [&] { return key(before[k].i, before[k].j, shapes ? &parts_before[k] : nullptr); };
-    while (k < before.size() && key_before() < key(i, j, parts)) ++k;
-    if (k < before.size() && key_before() == key(i, j, parts)) {
-      system.contacts.candidates.push_back(before[k]);
-      if (exact) system.contacts.exact_pairs.push_back(pairs_before[k]);
-      if (shapes) system.contacts.part_pairs.push_back(parts_before[k]);
-      return;
-    }
-    Candidate candidate;
-    candidate.i = i;
-    candidate.j = j;
-    set_constants(system, candidate);
-    if (shapes) system.contacts.part_pairs.push_back(with_damping(system, candidate, *parts));
-    system.contacts.candidates.push_back(candidate);
-    if (exact) system.contacts.exact_pairs.push_back(exact_pair_of(system, candidate));
-  };
-  std::size_t next_bond = 0;
-  const bool all_near = system.cell.active ? true
-                        : shapes           ? system.contacts.near_parts.active && system.contacts.near.active
-                                           : system.contacts.near.active;
-  for (std::size_t i = 0; i < system.bodies.constants.size(); ++i) {
-    for (std::int64_t p = list.begin[i]; !all_near && p < list.begin[i + 1]; ++p) {
-      const std::int32_t j = list.partner[p];
-      if (are_discs(system, static_cast<std::int32_t>(i), j) ? system.contacts.near.active
-                                                             : system.contacts.near_parts.active)
-        continue;
-      if (are_tied(system.bonds.tied, next_bond, static_cast<std::int32_t>(i), j)) continue;
-      if (!shapes) add(static_cast<std::int32_t>(i), j);
-      if (!shapes) continue;
-      for (const PartPair& parts : near_parts(system, i, static_cast<std::size_t>(j))) {
-        add(static_cast<std::int32_t>(i), j, &parts);
-      }
-    }
-    for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
-      const WallContact contact =
-          nearest(system.scene.walls[w], system.walls.places[w].displacement, circles[i].centre);
-      if (!(contact.distance <= circles[i].radius + system.contacts.margin)) continue;
-      const std::int32_t j = ~static_cast<std::int32_t>(w);
-      if (!shapes) add(static_cast<std::int32_t>(i), j);
-      if (!shapes) continue;
-      for (const PartPair& parts : near_parts_of_wall(system, i, w)) add(static_cast<std::int32_t>(i), j, &parts);
-    }
-  }
+  if (!gives_force(system.options.law)) find_single_contacts(system, list);
+  find_near_walls(system);
   cover_joints(system);
   system.contacts.near.outer = &list;
   if (system.contacts.near.active) find_near_pairs(system, std::sqrt(system.longest_way));

@@ -17,9 +17,8 @@ namespace {
 /// many cost as much as lists found anew.
 constexpr double least_margin = 0.02, margin_of_mean = 2.5;
 
-PairLaw law_of(const Candidate& candidate) {
-  return {candidate.stiffness, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0,
-          candidate.sliding.coefficient, candidate.sliding.stiffness};
+PairLaw law_of(const ContactConstants& constants) {
+  return {constants.stiffness, constants.least, constants.sliding.coefficient, constants.sliding.stiffness};
 }
 
 /// All kinds except those of walls only.
@@ -37,142 +36,38 @@ std::vector<const PairProperties*> pairs_of_grains(const GrainScene& scene) {
   return pairs;
 }
 
-/// The lists of a block as they come to be, from lanes of the lists before and from new pairs.
-class PairLists {
- public:
-  PairLists(const GrainSystem& system, PairBlock& block, std::size_t end)
-      : system_(system),
-        near_(block),
-        equal_(system.contacts.near.equal),
-        end_(static_cast<std::int32_t>(end)),
-        groups_(std::move(near_.groups)),
-        slips_(std::move(near_.slips)),
-        laws_(std::move(near_.laws)),
-        records_(std::move(near_.records)),
-        count_(near_.count) {
-    near_.groups.clear();
-    near_.slips.clear();
-    near_.laws.clear();
-    near_.records.clear();
-    near_.outward.clear();
-    const std::size_t room = groups_.size() + groups_.size() / 16 + 8;
-    near_.groups.reserve(room);
-    if (system.friction) near_.slips.reserve(room);
-    if (!equal_) near_.laws.reserve(room);
-    if (!records_.empty()) near_.records.reserve(room);
-    near_.count = 0;
-    near_.first_outward = std::numeric_limits<std::size_t>::max();
-  }
+NewList<PairBlock> new_list(const GrainSystem& system, PairBlock& block, std::size_t b) {
+  block.friction = system.friction;
+  block.equal = system.contacts.near.equal;
+  return {block, system.bodies.blocks.end(b), nullptr};
+}
 
-  /// Pairs of the list before up to (i, j): contacts stay until the loop has seen them end.
-  void keep_contacts_before(std::int32_t i, std::int32_t j) {
-    for (; at_ < count_ && std::pair(old().i[lane()], old().j[lane()]) < std::pair(i, j); ++at_) {
-      if (old().since[lane()] > PairGroup::apart) keep();
-    }
+/// Set the constants of a new pair, which is apart.
+void set_constants(const GrainSystem& system, PairBlock& block, std::size_t p) {
+  const std::size_t k = p % lanes_of_pairs;
+  const std::int32_t i = block.first(p), j = system.body_of(block.second(p));
+  const ContactConstants constants = constants_of(system, i, j);
+  const GrainBody &bi = system.bodies.constants[i], &bj = system.bodies.constants[j];
+  PairGroup& group = block.groups.back();
+  group.reach[k] = bi.radius + bj.radius;
+  group.dashpot[k] = constants.dashpot() * system.dt();
+  group.half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
+  group.impulse[k] = 0;
+  if (block.friction) {
+    const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
+    PairSlips& slips = block.slips.back();
+    slips.half_turning[k] = 0.5 * (share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment);
+    slips.dashpot[k] = constants.sliding.dashpot * system.dt();
+    slips.stretch[k] = slips.impulse[k] = 0;
   }
-  void see(std::int32_t i, std::int32_t j, bool near) {
-    keep_contacts_before(i, j);
-    if (at_ < count_ && old().i[lane()] == i && old().j[lane()] == j) {
-      if (near || old().since[lane()] > PairGroup::apart) keep();
-      ++at_;
-    } else if (near) {
-      add(i, j);
-    }
-  }
-  /// A new pair.
-  void add(std::int32_t i, std::int32_t j) {
-    Candidate candidate;
-    candidate.i = i;
-    const std::int32_t other = candidate.j = system_.body_of(j);
-    set_constants(system_, candidate);
-    const std::size_t k = make_room(i, j);
-    near_.groups.back().since[k] = PairGroup::apart;
-    near_.groups.back().reach[k] = system_.bodies.constants[i].radius + system_.bodies.constants[other].radius;
-    near_.groups.back().dashpot[k] = dashpot_of(system_, candidate) * system_.dt();
-    const GrainBody &bi = system_.bodies.constants[i], &bj = system_.bodies.constants[other];
-    near_.groups.back().half_mobility[k] = 0.5 * (bi.inverse_mass + bj.inverse_mass);
-    near_.groups.back().impulse[k] = 0;
-    if (system_.friction) {
-      const double share_i = bi.radius / (bi.radius + bj.radius), share_j = bj.radius / (bi.radius + bj.radius);
-      PairSlips& slips = near_.slips.back();
-      slips.half_turning[k] = 0.5 * (share_i * share_i * bi.inverse_moment + share_j * share_j * bj.inverse_moment);
-      slips.dashpot[k] = candidate.sliding.dashpot * system_.dt();
-      slips.stretch[k] = slips.impulse[k] = 0;
-    }
-    if (!equal_) {
-      const PairLaw law = law_of(candidate);
-      PairLaws& laws = near_.laws.back();
-      laws.stiffness[k] = law.stiffness;
-      laws.least[k] = law.least;
-      laws.friction[k] = law.friction;
-      laws.tangential_stiffness[k] = law.tangential_stiffness;
-    }
-  }
-
- private:
-  [[nodiscard]] const PairGroup& old() const { return groups_[at_ / lanes_of_pairs]; }
-  [[nodiscard]] std::size_t lane() const { return at_ % lanes_of_pairs; }
-
-  std::size_t make_room(std::int32_t i, std::int32_t j) {
-    const std::size_t k = near_.count % lanes_of_pairs;
-    if (k == 0) {
-      near_.groups.emplace_back();
-      // unused lanes have bodies of this block, to which they give nothing
-      std::fill_n(near_.groups.back().i, lanes_of_pairs, i);
-      std::fill_n(near_.groups.back().j, lanes_of_pairs, i);
-      std::fill_n(near_.groups.back().since, lanes_of_pairs, PairGroup::unused);
-      std::fill_n(near_.groups.back().reach, lanes_of_pairs, -1.0);
-      if (system_.friction) near_.slips.emplace_back();
-      if (!equal_) near_.laws.emplace_back();
-      if (!records_.empty()) near_.records.emplace_back();
-    }
-    ++near_.count;
-    near_.groups.back().i[k] = i;
-    near_.groups.back().j[k] = j;
-    if (j >= end_) {
-      near_.first_outward = std::min(near_.first_outward, near_.groups.size() - 1);
-      near_.outward.add(j);
-    }
-    return k;
-  }
-
-  void keep() {
-    const PairGroup& before = old();
-    const std::size_t g = at_ / lanes_of_pairs, from = lane(), to = make_room(before.i[from], before.j[from]);
-    PairGroup& group = near_.groups.back();
-    group.since[to] = before.since[from];
-    copy(before, from, group, to, &PairGroup::reach, &PairGroup::dashpot, &PairGroup::half_mobility,
-         &PairGroup::impulse);
-    if (system_.friction) {
-      copy(slips_[g], from, near_.slips.back(), to, &PairSlips::half_turning, &PairSlips::dashpot, &PairSlips::stretch,
-           &PairSlips::impulse);
-    }
-    if (!equal_) {
-      copy(laws_[g], from, near_.laws.back(), to, &PairLaws::stiffness, &PairLaws::least, &PairLaws::friction,
-           &PairLaws::tangential_stiffness);
-    }
-    if (!records_.empty()) {
-      copy(records_[g], from, near_.records.back(), to, &PairRecords::overlap, &PairRecords::closing,
-           &PairRecords::normal_x, &PairRecords::normal_y);
-    }
-  }
-
-  /// A lane of columns that both have.
-  template <class Group, class... Column>
-  static void copy(const Group& group, std::size_t from, Group& to_group, std::size_t to, Column... columns) {
-    (((to_group.*columns)[to] = (group.*columns)[from]), ...);
-  }
-
-  const GrainSystem& system_;
-  PairBlock& near_;
-  bool equal_;
-  std::int32_t end_;  ///< of the bodies of the block
-  LaneVector<PairGroup> groups_;
-  LaneVector<PairSlips> slips_;
-  LaneVector<PairLaws> laws_;
-  LaneVector<PairRecords> records_;
-  std::size_t count_, at_ = 0;
-};
+  if (block.equal) return;
+  const PairLaw law = law_of(constants);
+  PairLaws& laws = block.laws.back();
+  laws.stiffness[k] = law.stiffness;
+  laws.least[k] = law.least;
+  laws.friction[k] = law.friction;
+  laws.tangential_stiffness[k] = law.tangential_stiffness;
+}
 
 /// Whether a body of a periodic cell is bonded to another one, or to that image of it.
 bool is_bonded_image(const GrainSystem& system, std::int32_t i, std::int32_t partner) {
@@ -187,7 +82,8 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
   const NeighbourList& list = *system.contacts.near.outer;
   NearPairs& near = system.contacts.near;
   const BodyBlocks& blocks = system.bodies.blocks;
-  PairLists lists(system, near.blocks[b], blocks.end(b));
+  PairBlock& block = near.blocks[b];
+  NewList<PairBlock> pairs = new_list(system, block, b);
   const bool shapes = !system.shapes.parts.empty();
   std::size_t next_bond = first_bond_from(system.bonds.tied, static_cast<std::int32_t>(blocks.begin(b)));
   for (std::size_t i = blocks.begin(b); i < blocks.end(b); ++i) {
@@ -203,21 +99,56 @@ void find_pairs_of_block(GrainSystem& system, std::size_t b) {
       if (other != partner && other <= static_cast<std::int32_t>(i)) continue;  // listed with the other one, or itself
       const Vec2 branch = system.position_of(partner) - centre;
       const double far = own + system.bodies.constants[other].radius;
-      lists.see(static_cast<std::int32_t>(i), partner, dot(branch, branch) <= far * far);
+      const bool is_near = dot(branch, branch) <= far * far;
+      const auto first = static_cast<std::int32_t>(i);
+      if (!pairs.keep_contact(first, partner) && !pairs.leave(is_near) && is_near)
+        set_constants(system, block, pairs.add(first, partner));
     }
   }
-  lists.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+  pairs.keep_others();
 }
 
 }  // namespace
 
+PairBlock PairBlock::emptied() {
+  PairBlock before = std::move(*this);
+  *this = {};
+  friction = before.friction;
+  equal = before.equal;
+  const std::size_t room = before.groups.size() + before.groups.size() / 16 + 8;
+  groups.reserve(room);
+  if (friction) slips.reserve(room);
+  if (!equal) laws.reserve(room);
+  if (!before.records.empty()) records.reserve(room);
+  first_outward = std::numeric_limits<std::size_t>::max();
+  return before;
+}
+
+void PairBlock::add_group() {
+  groups.emplace_back();
+  std::fill_n(groups.back().reach, lanes_of_pairs, -1.0);
+  if (friction) slips.emplace_back();
+  if (!equal) laws.emplace_back();
+  if (records.capacity() > 0) records.emplace_back();
+}
+
+void PairBlock::copy(const PairBlock& other, std::size_t from, std::size_t to) {
+  constexpr std::size_t numbers = sizeof(ContactGroup) / sizeof(PairLanes) - 1;  // and the first step
+  const std::size_t g = from / lanes_of_pairs, k = from % lanes_of_pairs, lane = to % lanes_of_pairs;
+  copy_lane(other.groups[g], k, group(to), lane, numbers);
+  if (friction) copy_lane(other.slips[g], k, slips[to / lanes_of_pairs], lane);
+  if (!equal) copy_lane(other.laws[g], k, laws[to / lanes_of_pairs], lane);
+  if (!records.empty()) copy_lane(other.records[g], k, records[to / lanes_of_pairs], lane);
+}
+
+std::size_t PairBlock::bytes() const {
+  return GroupList::bytes() + slips.capacity() * sizeof(PairSlips) + laws.capacity() * sizeof(PairLaws) +
+         records.capacity() * sizeof(PairRecords);
+}
+
 std::size_t NearPairs::bytes() const {
   std::size_t sum = bodies.capacity() * sizeof(PairBody);
-  for (const PairBlock& block : blocks) {
-    sum += block.groups.capacity() * sizeof(PairGroup) + block.slips.capacity() * sizeof(PairSlips) +
-           block.laws.capacity() * sizeof(PairLaws) + block.records.capacity() * sizeof(PairRecords) +
-           block.outward.bytes();
-  }
+  for (const PairBlock& block : blocks) sum += block.bytes();
   return sum;
 }
 
@@ -228,10 +159,7 @@ std::optional<PairLaw> common_law(const GrainSystem& system) {
     return plain && *pair == *pairs[0];
   });
   if (!equal || system.bodies.constants.size() < 2) return {};
-  Candidate candidate;
-  candidate.j = 1;
-  set_constants(system, candidate);
-  return law_of(candidate);
+  return law_of(constants_of(system, 0, 1));
 }
 
 double margin_of_near_pairs(const GrainSystem& system, double size, double reach) {
@@ -295,32 +223,36 @@ void touch_near_pairs(GrainSystem& system) {
       const auto j = static_cast<std::size_t>(system.body_of(block.second(p)));
       const Vec2 branch = system.position_of(block.second(p)) - system.bodies.motions[i].position;
       if (!(geometry_of_grains(system.bodies.constants[i], system.bodies.constants[j], branch).overlap > 0)) continue;
-      block.groups[p / lanes_of_pairs].since[p % lanes_of_pairs] = system.step + (verlet ? 0 : 1);
+      block.since(p) = system.step + (verlet ? 0 : 1);
       ++system.counters.contacts;
     }
   }
 }
 
-Candidate candidate_of(const GrainSystem& system, const PairBlock& near, std::size_t p) {
+ContactState state_of(const GrainSystem& system, const PairBlock& block, std::size_t p) {
   const std::size_t g = p / lanes_of_pairs, k = p % lanes_of_pairs;
-  Candidate candidate;
-  candidate.i = near.first(p);
-  candidate.j = near.second(p);
-  candidate.touching = near.touching(p);
-  if (!candidate.touching) return candidate;
-  candidate.steps = system.step + 1 - near.groups[g].since[k];
-  candidate.impulse = near.groups[g].impulse[k];
+  ContactState state{.i = block.first(p), .j = block.second(p), .steps = system.step + 1 - block.since(p)};
+  state.impulse = block.groups[g].impulse[k];
   if (system.friction) {
-    candidate.stretch = near.slips[g].stretch[k];
-    candidate.tangential_impulse = near.slips[g].impulse[k];
+    state.stretch = block.slips[g].stretch[k];
+    state.tangential_impulse = block.slips[g].impulse[k];
   }
-  if (g < near.records.size()) {
-    const PairRecords& records = near.records[g];
-    candidate.overlap = records.overlap[k];
-    candidate.closing = records.closing[k];
-    candidate.normal = {records.normal_x[k], records.normal_y[k]};
+  const double radius = system.bodies.constants[state.i].radius, sum = block.groups[g].reach[k];
+  if (g < block.records.size()) {
+    const PairRecords& records = block.records[g];
+    state.overlap = records.overlap[k];
+    state.closing = records.closing[k];
+    state.normal = {records.normal_x[k], records.normal_y[k]};
   }
-  return candidate;
+  const double distance = sum - state.overlap, lever = radius / sum * distance;
+  state.arm_i = lever * state.normal;
+  state.arm_j = (lever - distance) * state.normal;
+  if (!system.shapes.parts.empty()) {
+    state.part_i = system.shapes.first_part[state.i];
+    state.part_j = system.shapes.first_part[state.j];
+  }
+  resolve_image(system, state);
+  return state;
 }
 
 void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
@@ -329,16 +261,13 @@ void take_near_pairs(GrainSystem& system, std::vector<ContactState> contacts) {
   auto contact = contacts.begin();
   for (std::size_t b = 0; b < blocks.count(); ++b) {
     PairBlock& block = system.contacts.near.blocks[b];
-    block.groups.clear();
-    block.slips.clear();
-    block.laws.clear();
-    block.count = 0;
+    block = {};
     block.records.resize(1);  // that there are some
-    PairLists lists(system, block, blocks.end(b));
+    NewList<PairBlock> pairs = new_list(system, block, b);
     for (; contact != contacts.end() && blocks.of(static_cast<std::size_t>(contact->i)) == b; ++contact) {
-      lists.add(contact->i, contact->j);
-      const std::size_t k = (block.count - 1) % lanes_of_pairs;
-      block.groups.back().since[k] = system.step + 1 - contact->steps;
+      const std::size_t p = pairs.add(contact->i, contact->j), k = p % lanes_of_pairs;
+      set_constants(system, block, p);
+      block.since(p) = system.step + 1 - contact->steps;
       block.groups.back().impulse[k] = contact->impulse;
       PairRecords& records = block.records.back();
       records.overlap[k] = contact->overlap;

@@ -3,7 +3,7 @@
 /// Pairs of discs under a force law that touch or nearly touch, packed in groups of eight for the vectorized loop.
 ///
 /// They are a subset of the list of the neighbour finder, with a smaller margin and updated more often: in a packing at
-/// rest it contains hardly more than the contacts. Contacts with walls and contacts under other laws are Candidates.
+/// rest it contains hardly more than the contacts.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,15 @@
 
 #include "equidem/core/vector.hpp"
 #include "equidem/geometry/neighbours.hpp"
-#include "equidem/grains/neighbours/body_blocks.hpp"
+#include "equidem/grains/neighbours/contact_list.hpp"
 #include "equidem/motion/lane_vector.hpp"
 
 namespace equidem {
 
 struct GrainSystem;
-struct Candidate;
 struct ContactState;
 struct GrainBody;
 struct GrainMotion;
-
-constexpr std::size_t lanes_of_pairs = 8;
-using PairLanes = double[lanes_of_pairs];
 
 /// Data of a body for the loop over pairs, in loading order.
 struct alignas(64) PairBody {
@@ -37,12 +33,8 @@ struct alignas(64) PairBody {
   double rim_speed = 0;  ///< spin times radius
 };
 
-/// Eight pairs i < j.
-struct alignas(64) PairGroup {
-  static constexpr std::int64_t apart = -1, unused = -2;
-  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< j: a body, or an image (periodic_images.hpp)
-  /// First step of the contact, counted from 1 (Verlet schemes: from 0); `apart`: no contact; `unused`: no pair.
-  std::int64_t since[lanes_of_pairs];
+/// Eight pairs i < j; j: a body, or an image (periodic_images.hpp).
+struct PairGroup : ContactGroup {
   PairLanes reach;          ///< r_i + r_j, m; of lanes without a pair negative, so that they never touch
   PairLanes dashpot;        ///< normal, times dt; kg, hertz: kg/m^(1/4)
   PairLanes half_mobility;  ///< (1/m_i + 1/m_j)/2
@@ -74,21 +66,16 @@ struct alignas(64) PairRecords {
   PairLanes overlap, closing, normal_x, normal_y;
 };
 
-/// The pairs of a block of bodies, ordered by (i, j).
-struct PairBlock {
-  std::size_t count = 0;
-  LaneVector<PairGroup> groups;
-  LaneVector<PairSlips> slips;      ///< with friction
-  LaneVector<PairLaws> laws;        ///< law of each pair, if not equal
-  LaneVector<PairRecords> records;  ///< set after a recorded step
-  OutwardImpulses outward;
-  std::size_t first_outward = 0;  ///< first group with a body of a later block
+struct PairBlock : GroupList<PairGroup> {
+  bool friction = false, equal = false;  ///< which columns there are
+  LaneVector<PairSlips> slips;           ///< with friction
+  LaneVector<PairLaws> laws;             ///< law of each pair, if not equal
+  LaneVector<PairRecords> records;       ///< set after a recorded step
 
-  [[nodiscard]] std::int32_t first(std::size_t p) const { return groups[p / lanes_of_pairs].i[p % lanes_of_pairs]; }
-  [[nodiscard]] std::int32_t second(std::size_t p) const { return groups[p / lanes_of_pairs].j[p % lanes_of_pairs]; }
-  [[nodiscard]] bool touching(std::size_t p) const {
-    return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
-  }
+  PairBlock emptied();
+  void add_group();
+  void copy(const PairBlock& other, std::size_t from, std::size_t to);
+  [[nodiscard]] std::size_t bytes() const;
 };
 
 struct NearPairs {
@@ -135,8 +122,8 @@ void touch_near_pairs(GrainSystem& system);
 /// GrainBodies::cleared say where motions go and what is left of the impulses.
 void move_pair_bodies(GrainSystem& system, std::size_t block);
 
-/// A pair with the state of its contact, without its constants; j may be an image.
-Candidate candidate_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
+/// The state of a contact.
+ContactState state_of(const GrainSystem& system, const PairBlock& block, std::size_t p);
 
 /// Energies of the normal and the tangential springs of the pairs at the present positions, J.
 std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "equidem/geometry/shape_contact.hpp"
@@ -28,14 +29,6 @@ void place_parts(GrainSystem& system) {
   turn_axes(system);
 }
 
-PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
-  PartPair pair;
-  if (system.shapes.parts.empty()) return pair;
-  pair.i = system.shapes.first_part[i];
-  pair.j = system.shapes.first_part[j];
-  return pair;
-}
-
 double longest_turn(const GrainSystem& system) {
   const std::vector<std::int32_t>& shaped = system.shapes.shaped;
   std::vector<double> ways(system.bodies.blocks.count());
@@ -57,166 +50,65 @@ double longest_turn(const GrainSystem& system) {
   return longest;
 }
 
-std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j) {
-  std::vector<PartPair> near;
-  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
-    for (std::int32_t q = system.shapes.first_part[j]; q < system.shapes.first_part[j + 1]; ++q) {
-      const GrainPart& part_i = system.shapes.parts[p];
-      const GrainPart& part_j = system.shapes.parts[q];
-      const Vec2 branch = system.bodies.motions[j].position - system.bodies.motions[i].position +
-                          (offset_of(part_j, system.shapes.axes[j]) - offset_of(part_i, system.shapes.axes[i]));
-      const double reach = part_i.a + part_j.a + system.contacts.margin;
-      if (!(dot(branch, branch) < reach * reach)) continue;
-      PartPair pair{p, q, 0, {}, {}, {}};
-      if (!part_i.is_round() || !part_j.is_round()) {
-        const EllipseContact contact = contact_of_ellipses({part_i.a, part_i.b, system.shapes.axes[i]},
-                                                           {part_j.a, part_j.b, system.shapes.axes[j]}, branch);
-        if (contact.gap > system.contacts.margin) continue;
-        pair.apart = contact.normal;
-      }
-      near.push_back(pair);
-    }
-  }
-  return near;
-}
-
-std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall) {
-  std::vector<PartPair> near;
-  for (std::int32_t p = system.shapes.first_part[i]; p < system.shapes.first_part[i + 1]; ++p) {
-    const GrainPart& part = system.shapes.parts[p];
-    const Vec2 centre = system.bodies.motions[i].position + offset_of(part, system.shapes.axes[i]);
-    const Wall& shape = system.scene.walls[wall];
-    const WallContact contact = nearest(shape, system.walls.places[wall].displacement, centre);
-    double reach = part.a;
-    if (shape.shape == Wall::Shape::line)
-      reach = support({part.a, part.b, system.shapes.axes[i]}, contact.normal).reach;
-    if (contact.distance <= reach + system.contacts.margin) near.push_back({p, 0, 0, {}, {}, {}});
-  }
-  return near;
-}
-
 namespace {
 
 using PartColumn = PartGroup::Column;
 
-/// A list of a block as it comes to be, from lanes of the list before and from new pairs.
-class NewList {
- public:
-  NewList(const GrainSystem& system, NearParts::List& list, std::size_t block)
-      : system_(system),
-        list_(list),
-        end_(static_cast<std::int32_t>(system.bodies.blocks.end(block))),
-        old_(std::move(list.groups)),
-        count_(list.count) {
-    list_.groups.clear();
-    list_.groups.reserve(old_.size() + old_.size() / 16 + 8);
-    list_.outward.clear();
-    list_.first_outward = std::numeric_limits<std::size_t>::max();
-    list_.count = 0;
-  }
+NewList<NearParts::List> new_list(const GrainSystem& system, NearParts::List& list, std::size_t b) {
+  if (list.of_walls) return {list, NewList<NearParts::List>::nothing(), nullptr};
+  return {list, system.bodies.blocks.end(b), &system.shapes.body_of_part};
+}
 
-  /// Pairs of the list before up to (i, j): contacts stay until the loop has seen them end.
-  void keep_contacts_before(std::int32_t i, std::int32_t j) {
-    for (; at_ < count_ && std::pair(old().i[lane()], old().j[lane()]) < std::pair(i, j); ++at_) {
-      if (old().since[lane()] > PairGroup::apart) keep();
-    }
-  }
-  /// Go on to a pair; it is kept where it touches. \return whether it does
-  bool keep_contact(std::int32_t i, std::int32_t j) {
-    keep_contacts_before(i, j);
-    listed_ = at_ < count_ && old().i[lane()] == i && old().j[lane()] == j;
-    if (!listed_ || old().since[lane()] <= PairGroup::apart) return false;
-    keep();
-    ++at_;
-    return true;
-  }
-  /// For the next pair, if it is apart: a direction along which it was apart, or {}.
-  [[nodiscard]] Vec2 apart() const {
-    if (!listed_) return {};
-    return {old().numbers[PartGroup::normal_x][lane()], old().numbers[PartGroup::normal_y][lane()]};
-  }
-  /// Whether it was listed; then it is kept where it is near.
-  bool leave(bool near) {
-    if (!listed_) return false;
-    if (near) keep();
-    ++at_;
-    return true;
-  }
-  /// A new pair. \param apart a direction along which they are apart, or {}
-  void add(std::int32_t i, std::int32_t j, Vec2 apart) {
-    Candidate candidate;
-    candidate.i = system_.shapes.body_of_part[i];
-    candidate.j = system_.shapes.body_of_part[j];
-    set_constants(system_, candidate);
-    const GrainPart &part_i = system_.shapes.parts[i], &part_j = system_.shapes.parts[j];
-    const GrainBody &body_i = system_.bodies.constants[candidate.i],
-                    &body_j = system_.bodies.constants[system_.body_of(candidate.j)];
-    const std::size_t k = make_room(i, j);
-    PartGroup& group = list_.groups.back();
-    group.since[k] = PairGroup::apart;
-    for (PairLanes& column : group.numbers) column[k] = 0;
-    const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
-    set(PartGroup::reach, part_i.a + part_j.a);
-    set(PartGroup::a_i, part_i.a);
-    set(PartGroup::b_i, part_i.b);
-    set(PartGroup::a_j, part_j.a);
-    set(PartGroup::b_j, part_j.b);
-    set(PartGroup::share, part_i.size / (part_i.size + part_j.size));
-    set(PartGroup::arrived, angle_of_arrival({part_i.a, part_i.b}, {part_j.a, part_j.b}));
-    set(PartGroup::sharpest, part_i.b / part_i.a * part_i.b + part_j.b / part_j.a * part_j.b);
-    set(PartGroup::inverse_mass, body_i.inverse_mass + body_j.inverse_mass);
-    set(PartGroup::inverse_moment_i, body_i.inverse_moment);
-    set(PartGroup::inverse_moment_j, body_j.inverse_moment);
-    set(PartGroup::stiffness, candidate.stiffness);
-    set(PartGroup::dashpot, dashpot_of(system_, candidate));
-    set(PartGroup::least, candidate.attraction ? -std::numeric_limits<double>::infinity() : 0);
-    set(PartGroup::friction, candidate.sliding.coefficient);
-    set(PartGroup::tangential_stiffness, candidate.sliding.stiffness);
-    set(PartGroup::tangential_damping,
-        2 * system_.properties(candidate).tangential_damping * std::sqrt(candidate.sliding.stiffness));
-    set(PartGroup::normal_x, apart.x);
-    set(PartGroup::normal_y, apart.y);
-  }
+/// Set the constants of a new contact, which is apart. \param apart a direction along which it is, or {}
+void set_constants(const GrainSystem& system, NearParts::List& list, std::size_t p, Vec2 apart) {
+  const Partners of = partners_of(system, list, p);
+  const ContactConstants constants = constants_of(system, of.i, of.j);
+  const auto set = [&](PartColumn column, double number) { list.number(p, column) = number; };
+  for (PairLanes& column : list.group(p).numbers) column[p % lanes_of_pairs] = 0;
+  const GrainBody& body_i = system.bodies.constants[of.i];
+  set(PartGroup::inverse_mass, 1 / constants.reduced_mass);
+  set(PartGroup::inverse_moment_i, body_i.inverse_moment);
+  set(PartGroup::stiffness, constants.stiffness);
+  set(PartGroup::dashpot, constants.dashpot());
+  set(PartGroup::least, constants.least);
+  set(PartGroup::friction, constants.sliding.coefficient);
+  set(PartGroup::tangential_stiffness, constants.sliding.stiffness);
+  set(PartGroup::tangential_damping, constants.tangential_damping);
+  set(PartGroup::normal_x, apart.x);
+  set(PartGroup::normal_y, apart.y);
+  if (list.of_walls) return;
+  const GrainPart &part_i = system.shapes.parts[of.part_i], &part_j = system.shapes.parts[of.part_j];
+  const GrainBody& body_j = system.bodies.constants[system.body_of(of.j)];
+  set(PartGroup::inverse_mass, body_i.inverse_mass + body_j.inverse_mass);
+  set(PartGroup::inverse_moment_j, body_j.inverse_moment);
+  set(PartGroup::reach, part_i.a + part_j.a);
+  set(PartGroup::a_i, part_i.a);
+  set(PartGroup::b_i, part_i.b);
+  set(PartGroup::a_j, part_j.a);
+  set(PartGroup::b_j, part_j.b);
+  set(PartGroup::share, part_i.size / (part_i.size + part_j.size));
+  set(PartGroup::arrived, angle_of_arrival({part_i.a, part_i.b}, {part_j.a, part_j.b}));
+  set(PartGroup::sharpest, part_i.b / part_i.a * part_i.b + part_j.b / part_j.a * part_j.b);
+}
 
- private:
-  [[nodiscard]] const PartGroup& old() const { return old_[at_ / lanes_of_pairs]; }
-  [[nodiscard]] std::size_t lane() const { return at_ % lanes_of_pairs; }
-
-  std::size_t make_room(std::int32_t i, std::int32_t j) {
-    const std::size_t k = list_.count % lanes_of_pairs;
-    if (k == 0) {
-      list_.groups.emplace_back();
-      PartGroup& group = list_.groups.back();
-      // unused lanes have parts of this block, to which they give nothing
-      std::fill_n(group.i, lanes_of_pairs, i);
-      std::fill_n(group.j, lanes_of_pairs, i);
-      std::fill_n(group.since, lanes_of_pairs, PairGroup::unused);
-      std::fill_n(&group.numbers[0][0], PartGroup::columns * lanes_of_pairs, 1.0);  // anything that can be divided by
-    }
-    ++list_.count;
-    list_.groups.back().i[k] = i;
-    list_.groups.back().j[k] = j;
-    const std::int32_t body = system_.shapes.body_of_part[j];
-    if (body >= end_) {
-      list_.first_outward = std::min(list_.first_outward, list_.groups.size() - 1);
-      list_.outward.add(body);
-    }
-    return k;
-  }
-  void keep() {
-    const std::size_t to = make_room(old().i[lane()], old().j[lane()]);
-    PartGroup& group = list_.groups.back();
-    group.since[to] = old().since[lane()];
-    for (std::size_t c = 0; c < PartGroup::columns; ++c) group.numbers[c][to] = old().numbers[c][lane()];
-  }
-
-  const GrainSystem& system_;
-  NearParts::List& list_;
-  std::int32_t end_;  ///< of the bodies of the block
-  LaneVector<PartGroup> old_;
-  std::size_t count_, at_ = 0;
-  bool listed_ = false;
-};
+/// Set constants and state of a new contact.
+void set_state(const GrainSystem& system, NearParts::List& list, std::size_t p, const ContactState& contact) {
+  set_constants(system, list, p, contact.normal);
+  list.since(p) = system.step + 1 - contact.steps;
+  const auto set = [&](PartColumn column, double number) { list.number(p, column) = number; };
+  set(PartGroup::impulse, contact.impulse);
+  set(PartGroup::tangential_impulse, contact.tangential_impulse);
+  set(PartGroup::stretch, contact.stretch);
+  set(PartGroup::overlap, contact.overlap);
+  set(PartGroup::closing, contact.closing);
+  // of discs it is not saved
+  const Vec2 arm_i =
+      system.shapes.parts.empty() ? system.bodies.constants[contact.i].radius * contact.normal : contact.arm_i;
+  set(PartGroup::arm_i_x, arm_i.x);
+  set(PartGroup::arm_i_y, arm_i.y);
+  set(PartGroup::arm_j_x, contact.arm_j.x);
+  set(PartGroup::arm_j_y, contact.arm_j.y);
+}
 
 /// A direction along which ellipses are apart by some distance, m.
 struct Apart {
@@ -267,17 +159,15 @@ double gap_of(const GrainSystem& system, std::int32_t p, std::int32_t q, double 
 void find_met_parts(GrainSystem& system) {
   NearParts& near = system.contacts.near_parts;
   std::fill(near.met.begin(), near.met.end(), char{0});
-  for (const NearParts::Block& block : near.blocks) {
-    for (const NearParts::List& list : block.lists) {
-      for (std::size_t p = 0; p < list.count; ++p) {
-        const PartGroup& group = list.groups[p / lanes_of_pairs];
-        for (const std::int32_t part : {group.i[p % lanes_of_pairs], group.j[p % lanes_of_pairs]}) {
-          near.met[part] = 1;
-          near.met[system.own_part(part)] = 1;
-        }
-      }
+  each_list(system.contacts, [&](const NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const Partners of = partners_of(system, list, p);
+      near.met[of.part_i] = 1;
+      if (list.of_walls) continue;
+      near.met[of.part_j] = 1;
+      near.met[system.own_part(of.part_j)] = 1;
     }
-  }
+  });
 }
 
 std::size_t list_of(const GrainSystem& system, std::int32_t p, std::int32_t q) {
@@ -312,18 +202,24 @@ void find_close_parts(const GrainSystem& system, std::size_t block, std::vector<
 /// Those of the close parts of a block that are nearer than the margin.
 void find_nearest_parts(const GrainSystem& system, std::size_t b, NearParts::Block& block) {
   const NearParts& near = system.contacts.near_parts;
-  std::array<NewList, 2> lists{NewList(system, block.lists[0], b), NewList(system, block.lists[1], b)};
+  std::array<NewList<NearParts::List>, 2> lists{new_list(system, block.lists[0], b),
+                                                new_list(system, block.lists[1], b)};
   for (NearParts::Close& pair : block.close) {
     if (pair.clear - 2 * near.travelled > near.margin) continue;
-    NewList& list = lists[list_of(system, pair.i, pair.j)];
+    const std::size_t l = list_of(system, pair.i, pair.j);
+    NewList<NearParts::List>& list = lists[l];
     if (list.keep_contact(pair.i, pair.j)) continue;
-    if (list.apart() != Vec2{}) pair.apart = list.apart();
+    if (const std::size_t before = list.place_before(); before < list.old().count) {
+      // where it was apart: a direction along which it was, or {}
+      const Vec2 apart{list.old().number(before, PartGroup::normal_x), list.old().number(before, PartGroup::normal_y)};
+      if (apart != Vec2{}) pair.apart = apart;
+    }
     const double gap = gap_of(system, pair.i, pair.j, near.margin, pair.apart);
     pair.clear = gap + 2 * near.travelled;
     const bool is_near = gap <= near.margin;
-    if (!list.leave(is_near) && is_near) list.add(pair.i, pair.j, pair.apart);
+    if (!list.leave(is_near) && is_near) set_constants(system, block.lists[l], list.add(pair.i, pair.j), pair.apart);
   }
-  for (NewList& list : lists) list.keep_contacts_before(std::numeric_limits<std::int32_t>::max(), 0);
+  for (NewList<NearParts::List>& list : lists) list.keep_others();
 }
 
 void find_nearest_parts(GrainSystem& system, double reach) {
@@ -342,9 +238,49 @@ std::size_t NearParts::bytes() const {
   std::size_t sum = bodies.capacity() * sizeof(PartBody) + met.capacity();
   for (const Block& block : blocks) {
     sum += block.close.capacity() * sizeof(Close);
-    for (const List& list : block.lists) sum += list.groups.capacity() * sizeof(PartGroup) + list.outward.bytes();
+    for (const List& list : block.lists) sum += list.bytes();
   }
   return sum;
+}
+
+std::size_t NearWalls::bytes() const {
+  std::size_t sum = 0;
+  for (const NearParts::List& list : blocks) sum += list.bytes();
+  return sum;
+}
+
+NearParts::List NearParts::List::emptied() {
+  List before = std::move(*this);
+  *this = {};
+  of_walls = before.of_walls;
+  groups.reserve(before.groups.size() + before.groups.size() / 16 + 8);
+  first_outward = std::numeric_limits<std::size_t>::max();
+  return before;
+}
+
+void NearParts::List::add_group() {
+  groups.emplace_back();
+  std::fill_n(&groups.back().numbers[0][0], PartGroup::columns * lanes_of_pairs, 1.0);  // anything to divide by
+}
+
+void NearParts::List::copy(const List& other, std::size_t from, std::size_t to) {
+  copy_lane(other.group(from), from % lanes_of_pairs, group(to), to % lanes_of_pairs,
+            sizeof(ContactGroup) / sizeof(PairLanes) - 1);
+}
+
+void NearParts::List::end(std::size_t p) {
+  since(p) = ContactGroup::apart;
+  for (const auto column : {PartGroup::impulse, PartGroup::tangential_impulse, PartGroup::stretch})
+    number(p, column) = 0;
+}
+
+void NearParts::List::move_state(std::size_t from, std::size_t to) {
+  using enum PartGroup::Column;
+  since(to) = since(from);
+  for (const auto column :
+       {impulse, tangential_impulse, stretch, normal_x, normal_y, overlap, closing, arm_i_x, arm_i_y})
+    number(to, column) = number(from, column);
+  end(from);
 }
 
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
@@ -355,12 +291,11 @@ bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 }
 
 void prepare_near_parts(GrainSystem& system) {
-  if (system.shapes.parts.empty() || system.bodies.constants.size() < 2 || !gives_force(system.options.law)) return;
-  if (system.options.ellipse_law != GrainOptions::EllipseLaw::exact) return;
+  if (system.shapes.parts.empty() || !gives_force(system.options.law)) return;
   NearParts& near = system.contacts.near_parts;
   near.active = true;
   near.law = common_law(system);
-  near.loops = {near_part_loop(system, true), near_part_loop(system, false)};
+  near.loops = {loop_of_round_parts(system), loop_of_ellipses(system)};
   near.blocks.resize(system.bodies.blocks.count());
   near.bodies.resize(system.shapes.parts.size());
   near.met.resize(system.shapes.parts.size());
@@ -388,25 +323,82 @@ void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts) {
   for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
     auto& lists = system.contacts.near_parts.blocks[b].lists;
     lists[0].count = lists[1].count = 0;
-    std::array<NewList, 2> taken{NewList(system, lists[0], b), NewList(system, lists[1], b)};
+    std::array<NewList<NearParts::List>, 2> taken{new_list(system, lists[0], b), new_list(system, lists[1], b)};
     for (; next != contacts.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next) {
       const ContactState& contact = *next;
       const std::size_t l = list_of(system, contact.part_i, contact.part_j);
-      taken[l].add(contact.part_i, contact.part_j, contact.normal);
-      PartGroup& group = lists[l].groups.back();
-      const std::size_t k = (lists[l].count - 1) % lanes_of_pairs;
-      group.since[k] = system.step + 1 - contact.steps;
-      const auto set = [&](PartColumn column, double number) { group.numbers[column][k] = number; };
-      set(PartGroup::impulse, contact.impulse);
-      set(PartGroup::tangential_impulse, contact.tangential_impulse);
-      set(PartGroup::stretch, contact.stretch);
-      set(PartGroup::overlap, contact.overlap);
-      set(PartGroup::closing, contact.closing);
-      set(PartGroup::arm_i_x, contact.arm_i.x);
-      set(PartGroup::arm_i_y, contact.arm_i.y);
-      set(PartGroup::arm_j_x, contact.arm_j.x);
-      set(PartGroup::arm_j_y, contact.arm_j.y);
+      set_state(system, lists[l], taken[l].add(contact.part_i, contact.part_j), contact);
     }
+  }
+}
+
+void prepare_near_walls(GrainSystem& system) {
+  NearWalls& near = system.contacts.near_walls;
+  if (system.scene.walls.empty() || !gives_force(system.options.law)) return;
+  near.active = true;
+  near.loop = loop_of_walls(system);
+  near.blocks.resize(system.bodies.blocks.count());
+  for (NearParts::List& list : near.blocks) list.of_walls = true;
+}
+
+namespace {
+
+/// Whether a part comes nearer to a wall than the margin; ellipses at a segment by their bounding circle.
+bool is_near_wall(const GrainSystem& system, std::size_t body, const GrainPart& part, std::size_t w) {
+  const Vec2 axis = system.shapes.axes[body];
+  const Wall& wall = system.scene.walls[w];
+  const WallContact contact =
+      nearest(wall, system.walls.places[w].displacement, system.bodies.motions[body].position + offset_of(part, axis));
+  const double reach = wall.shape == Wall::Shape::line ? support({part.a, part.b, axis}, contact.normal).reach : part.a;
+  return contact.distance <= reach + system.contacts.margin;
+}
+
+void find_walls_of_block(const GrainSystem& system, NearParts::List& list, std::size_t block) {
+  NewList<NearParts::List> walls = new_list(system, list, block);
+  const auto see = [&](std::int32_t i, std::size_t w) {
+    const auto j = static_cast<std::int32_t>(w);
+    if (!walls.keep_contact(i, j) && !walls.leave(true)) set_constants(system, list, walls.add(i, j), {});
+  };
+  const std::size_t count = system.scene.walls.size();
+  std::vector<char> near(count);
+  for (std::size_t i = system.bodies.blocks.begin(block); i < system.bodies.blocks.end(block); ++i) {
+    for (std::size_t w = 0; w < count; ++w) {
+      const WallContact contact =
+          nearest(system.scene.walls[w], system.walls.places[w].displacement, system.bodies.motions[i].position);
+      near[w] = contact.distance <= system.bodies.constants[i].radius + system.contacts.margin ? 1 : 0;
+      if (near[w] != 0 && system.shapes.parts.empty()) see(static_cast<std::int32_t>(i), w);
+    }
+    for (std::int32_t p = system.shapes.parts.empty() ? 0 : system.shapes.first_part[i];
+         !system.shapes.parts.empty() && p < system.shapes.first_part[i + 1]; ++p) {
+      for (std::size_t w = 0; w < count; ++w)
+        if (near[w] != 0 && is_near_wall(system, i, system.shapes.parts[p], w)) see(p, w);
+    }
+  }
+  walls.keep_others();
+}
+
+}  // namespace
+
+void find_near_walls(GrainSystem& system) {
+  NearWalls& near = system.contacts.near_walls;
+  if (!near.active) return;
+  system.bodies.blocks.each([&](std::size_t block) { find_walls_of_block(system, near.blocks[block], block); });
+}
+
+void take_near_walls(GrainSystem& system, const std::vector<ContactState>& contacts) {
+  std::vector<ContactState> walls;
+  std::ranges::copy_if(contacts, std::back_inserter(walls), [](const ContactState& contact) { return contact.j < 0; });
+  if (!system.contacts.near_walls.active) return;
+  const bool shapes = !system.shapes.parts.empty();
+  const auto number_of = [&](const ContactState& contact) { return shapes ? contact.part_i : contact.i; };
+  std::ranges::sort(walls, {}, [&](const ContactState& contact) { return std::pair(number_of(contact), ~contact.j); });
+  auto next = walls.begin();
+  for (std::size_t b = 0; b < system.bodies.blocks.count(); ++b) {
+    NearParts::List& list = system.contacts.near_walls.blocks[b];
+    list.count = 0;
+    NewList<NearParts::List> taken = new_list(system, list, b);
+    for (; next != walls.end() && system.bodies.blocks.of(static_cast<std::size_t>(next->i)) == b; ++next)
+      set_state(system, list, taken.add(number_of(*next), ~next->j), *next);
   }
 }
 
@@ -436,50 +428,72 @@ void load_part_bodies(GrainSystem& system) {
   });
 }
 
-void touch_near_parts(GrainSystem& system) {
-  for (NearParts::Block& block : system.contacts.near_parts.blocks) {
-    for (NearParts::List& list : block.lists) {
-      for (std::size_t p = 0; p < list.count; ++p) {
-        auto [candidate, pair] = candidate_of(system, list, p);
-        if (!(geometry_of_parts(system, candidate, pair).overlap > 0)) continue;
-        PartGroup& group = list.groups[p / lanes_of_pairs];
-        const std::size_t k = p % lanes_of_pairs;
-        group.since[k] = system.step + (system.options.verlet() ? 0 : 1);
-        group.numbers[PartGroup::normal_x][k] = group.numbers[PartGroup::normal_y][k] = 0;
-        ++system.counters.contacts;
-      }
-    }
-  }
+Partners partners_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const std::int32_t i = list.first(p), j = list.second(p);
+  if (system.shapes.parts.empty()) return {i, ~j};
+  const std::vector<std::int32_t>& bodies = system.shapes.body_of_part;
+  return list.of_walls ? Partners{bodies[i], ~j, i} : Partners{bodies[i], bodies[j], i, j};
 }
 
-std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
-  const PartGroup& group = list.groups[p / lanes_of_pairs];
-  const std::size_t k = p % lanes_of_pairs;
-  const auto number = [&](PartColumn column) { return group.numbers[column][k]; };
-  const Vec2 normal{number(PartGroup::normal_x), number(PartGroup::normal_y)};
-  Candidate candidate;
-  candidate.i = system.shapes.body_of_part[group.i[k]];
-  candidate.j = system.shapes.body_of_part[group.j[k]];
-  set_constants(system, candidate);
-  PartPair pair;
-  pair.i = group.i[k];
-  pair.j = group.j[k];
-  pair.tangential_damping = number(PartGroup::tangential_damping);
-  candidate.touching = list.touching(p);
-  if (!candidate.touching) {
-    pair.apart = normal;
-    return {candidate, pair};
-  }
-  candidate.steps = system.step + 1 - group.since[k];
-  candidate.normal = normal;
-  candidate.impulse = number(PartGroup::impulse);
-  candidate.tangential_impulse = number(PartGroup::tangential_impulse);
-  candidate.stretch = number(PartGroup::stretch);
-  candidate.overlap = number(PartGroup::overlap);
-  candidate.closing = number(PartGroup::closing);
-  pair.arm_i = {number(PartGroup::arm_i_x), number(PartGroup::arm_i_y)};
-  pair.arm_j = {number(PartGroup::arm_j_x), number(PartGroup::arm_j_y)};
-  return {candidate, pair};
+namespace {
+
+/// At the present positions.
+double overlap_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const Vec2 normal{list.number(p, PartGroup::normal_x), list.number(p, PartGroup::normal_y)};
+  const bool touching = list.touching(p);
+  if (!list.of_walls) return geometry_of_parts(system, partners_of(system, list, p), touching, normal).overlap;
+  if (list.number(p, PartGroup::covered) != 0) return 0;
+  return geometry_with_wall(system, list.first(p), list.wall(p), touching ? normal : Vec2{}).overlap;
+}
+
+}  // namespace
+
+void touch_near_parts(GrainSystem& system) {
+  each_list(system.contacts, [&](NearParts::List& list) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      if (!(overlap_of(system, list, p) > 0)) continue;
+      list.since(p) = system.step + (system.options.verlet() ? 0 : 1);
+      list.number(p, PartGroup::normal_x) = list.number(p, PartGroup::normal_y) = 0;
+      ++system.counters.contacts;
+    }
+  });
+}
+
+std::pair<double, double> elastic_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const auto number = [&](PartColumn column) { return list.number(p, column); };
+  const double overlap = overlap_of(system, list, p), stretch = number(PartGroup::stretch);
+  return {overlap > 0 ? system.law().energy(number(PartGroup::stiffness), overlap) : 0,
+          0.5 * number(PartGroup::tangential_stiffness) * stretch * stretch};
+}
+
+void resolve_image(const GrainSystem& system, ContactState& state) {
+  if (!system.is_image(state.j)) return;
+  const PeriodicImage& image = system.image(state.j);
+  if (!system.shapes.parts.empty()) state.part_j = system.own_part(state.part_j);
+  state.j = image.body;
+  state.a = image.a;
+  state.b = image.b;
+}
+
+ContactState state_of(const GrainSystem& system, const NearParts::List& list, std::size_t p) {
+  const auto number = [&](PartColumn column) { return list.number(p, column); };
+  const auto vector = [&](PartColumn x, PartColumn y) { return Vec2{number(x), number(y)}; };
+  const Partners of = partners_of(system, list, p);
+  ContactState state{.i = of.i,
+                     .j = of.j,
+                     .part_i = of.part_i,
+                     .part_j = of.part_j,
+                     .steps = system.step + 1 - list.since(p),
+                     .overlap = number(PartGroup::overlap),
+                     .closing = number(PartGroup::closing),
+                     .normal = vector(PartGroup::normal_x, PartGroup::normal_y),
+                     .impulse = number(PartGroup::impulse),
+                     .tangential_impulse = number(PartGroup::tangential_impulse),
+                     .stretch = number(PartGroup::stretch),
+                     .arm_i = vector(PartGroup::arm_i_x, PartGroup::arm_i_y),
+                     .arm_j = vector(PartGroup::arm_j_x, PartGroup::arm_j_y)};
+  resolve_image(system, state);
+  return state;
 }
 
 }  // namespace equidem

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Pairs of parts, not both whole discs, that touch or nearly touch, packed in groups of eight for the vectorized
-/// loops.
+/// Pairs of parts, not both whole discs, and contacts with walls, that touch or nearly touch, packed in groups of eight
+/// for the vectorized loops.
 ///
 /// One list for each shape of pair: round parts (of clumps, and discs that meet them), and pairs with an ellipse; empty
 /// where the scene has none. Like the near pairs of discs they are subsets of the list of the neighbour finder, updated
@@ -30,15 +30,16 @@ struct alignas(64) PartBody {
   Vec2 turned;  ///< ellipse: the axis; round part: the offset of its centre from that of the body, m
 };
 
-/// Eight pairs of parts, i < j.
-struct alignas(64) PartGroup {
+/// Eight pairs of parts, i < j; that of j may be of an image. With walls: j the wall, and in scenes of discs i the
+/// body.
+struct PartGroup : ContactGroup {
   enum Column {
     // of the last step
     impulse,
     tangential_impulse,  ///< N s
     stretch,             ///< m
     // constants
-    tangential_damping,  ///< as PartPair::tangential_damping
+    tangential_damping,  ///< as ContactConstants::tangential_damping
     dashpot,             ///< normal; N s/m, hertz: N s/m^(5/4)
     inverse_mass,        ///< 1/m_i + 1/m_j
     inverse_moment_i,
@@ -66,23 +67,30 @@ struct alignas(64) PartGroup {
     arm_i_y,
     arm_j_x,
     arm_j_y,
-    columns
+    columns,
+    covered = share  ///< walls: not 0 where a wall continues the end of this one (wall_joints.hpp)
   };
-  std::int32_t i[lanes_of_pairs], j[lanes_of_pairs];  ///< parts; that of j may be of an image
-  std::int64_t since[lanes_of_pairs];                 ///< as PairGroup::since
   PairLanes numbers[columns];
 };
 
 struct NearParts {
-  /// Those of a block of bodies, ordered by i, then j.
-  struct List {
-    LaneVector<PartGroup> groups;
-    std::size_t count = 0;
-    OutwardImpulses outward;
-    std::size_t first_outward = 0;  ///< first group with a body of a later block
-    [[nodiscard]] bool touching(std::size_t p) const {
-      return groups[p / lanes_of_pairs].since[p % lanes_of_pairs] > PairGroup::apart;
+  struct List : GroupList<PartGroup> {
+    bool of_walls = false;
+
+    [[nodiscard]] std::size_t wall(std::size_t p) const { return static_cast<std::size_t>(second(p)); }
+    [[nodiscard]] double& number(std::size_t p, PartGroup::Column column) {
+      return group(p).numbers[column][p % lanes_of_pairs];
     }
+    [[nodiscard]] double number(std::size_t p, PartGroup::Column column) const {
+      return group(p).numbers[column][p % lanes_of_pairs];
+    }
+    List emptied();
+    void add_group();
+    void copy(const List& other, std::size_t from, std::size_t to);
+    /// End a contact; what its tangential spring held is counted nowhere.
+    void end(std::size_t p);
+    /// Give the state of a contact to another one.
+    void move_state(std::size_t from, std::size_t to);
   };
   using Loop = void (*)(GrainSystem& system, List& list, std::size_t block);
 
@@ -112,17 +120,36 @@ struct NearParts {
   [[nodiscard]] std::size_t bytes() const;
 };
 
+/// Contacts of bodies with walls under a force law, in the lists of the blocks of bodies.
+struct NearWalls {
+  bool active = false;  ///< the scene has walls
+  NearParts::Loop loop = nullptr;
+  std::vector<NearParts::List> blocks;
+
+  [[nodiscard]] std::size_t bytes() const;
+};
+
 /// Call work(list) for the lists of round parts of all blocks, then for those of ellipses.
-template <class Work>
-void each_list_of_parts(const NearParts& near, const Work& work) {
+template <class Lists, class Work>
+void each_list_of_parts(Lists& near, const Work& work) {
   for (std::size_t l = 0; l < near.loops.size(); ++l) {
-    for (const NearParts::Block& block : near.blocks) work(block.lists[l]);
+    for (auto& block : near.blocks) work(block.lists[l]);
   }
 }
+/// Then for those of walls.
+template <class Contacts, class Work>
+void each_list(Contacts& contacts, const Work& work) {
+  each_list_of_parts(contacts.near_parts, work);
+  for (auto& list : contacts.near_walls.blocks) work(list);
+}
 
-/// Determine whether contacts of parts use the loops over near parts: a force law, the exact contact, no contact that
-/// always slides.
+/// Prepare the lists of parts where the scene has ellipses or clumps under a force law.
 void prepare_near_parts(GrainSystem& system);
+/// Prepare the lists of walls under a force law.
+void prepare_near_walls(GrainSystem& system);
+
+/// Find the contacts with walls again that come nearer than the margin of the neighbour list.
+void find_near_walls(GrainSystem& system);
 
 /// Find the close parts and the pairs again in the list of the neighbour finder, for bodies that move by about `reach`
 /// in a step.
@@ -134,38 +161,45 @@ void refresh_near_parts(GrainSystem& system, double reach);
 /// Load the data of the loops from the motions and the impulses of the last step.
 void load_part_bodies(GrainSystem& system);
 
-/// Mark the parts that overlap as touching.
+/// Mark the parts that overlap, and those that overlap walls, as touching.
 void touch_near_parts(GrainSystem& system);
 
-/// A pair with the state of its contact; j may be an image.
-std::pair<Candidate, PartPair> candidate_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
+/// Two bodies and their parts, or a body and a wall.
+struct Partners {
+  std::int32_t i = 0, j = 0;            ///< j may be an image, or a wall ~j
+  std::int32_t part_i = 0, part_j = 0;  ///< 0 in scenes of discs
+};
+Partners partners_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
+
+/// The state of a contact.
+ContactState state_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
+/// In the state of a contact with an image: set the body, the part and the periods in its place.
+void resolve_image(const GrainSystem& system, ContactState& state);
+
+/// Energy of the normal spring of a contact at the present positions, and of its tangential spring, J.
+std::pair<double, double> elastic_of(const GrainSystem& system, const NearParts::List& list, std::size_t p);
 
 /// Whether both bodies of a pair, or of which they are images, are whole discs, so that it is not a pair of parts.
 bool are_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// Replace the pairs by these contacts; j may be an image.
 void take_near_parts(GrainSystem& system, std::vector<ContactState> contacts);
+/// Replace the contacts with walls by those of these contacts.
+void take_near_walls(GrainSystem& system, const std::vector<ContactState>& contacts);
 
-/// The loop compiled for round parts or for ellipses; it computes the impulses of this step by the
-/// pairs of a block.
-NearParts::Loop near_part_loop(const GrainSystem& system, bool round);
+/// The loops compiled for round parts, for ellipses by GrainOptions::EllipseLaw, and for walls; they compute the
+/// impulses of this step by the contacts of a block.
+NearParts::Loop loop_of_round_parts(const GrainSystem& system);
+NearParts::Loop loop_of_ellipses(const GrainSystem& system);
+NearParts::Loop loop_of_walls(const GrainSystem& system);
 
 /// Set the parts of all bodies and their axes if the scene has ellipses or clumps.
 void place_parts(GrainSystem& system);
-
-/// The parts of two whole discs in a scene with shapes; {} in other scenes. \param j may be an image
-PartPair parts_of_discs(const GrainSystem& system, std::int32_t i, std::int32_t j);
 
 /// Update the axes to the present angles of the bodies.
 void turn_axes(GrainSystem& system);
 
 /// Upper bound of the displacement of a point of a body by its rotation in the step, m; discs excluded.
 double longest_turn(const GrainSystem& system);
-
-/// Pairs of parts that come nearer than the margin, in their order.
-std::vector<PartPair> near_parts(const GrainSystem& system, std::size_t i, std::size_t j);
-/// Pairs of the parts of a body with a wall that come nearer than the margin; ellipses at a segment by their
-/// bounding circle.
-std::vector<PartPair> near_parts_of_wall(const GrainSystem& system, std::size_t i, std::size_t wall);
 
 }  // namespace equidem

@@ -74,7 +74,7 @@ struct PairProperties {
   double stiffness = 0;
   /// a = k dt²/m, constant for all steps and masses (as in the paper); hertz_dashpot: k d_c^(1/2) dt²/m.
   double dimensionless = 0;
-  double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: force_step.hpp
+  double restitution = 1;                      ///< of central impacts; eccentric ones of shapes: part_loop.cpp
   ContactEnd end = ContactEnd::at_zero_force;  ///< linear_dashpot, hertz_dashpot, exact_flow
   double friction = 0;                         ///< mu
   /// kT/kN >= 0; hertz_dashpot: kT/(k d_c^(1/2)). Laws that give a force need more than 0 with

@@ -64,15 +64,6 @@ inline Vec2 offset_of(const GrainPart& part, Vec2 axis) {
   return part.offset.x * axis + part.offset.y * perpendicular(axis);
 }
 
-/// Data of a contact of parts in addition to its Candidate; one for each candidate, none in scenes with discs only.
-struct PartPair {
-  std::int32_t i = 0, j = 0;      ///< indices in Shapes::parts; j = 0 for a wall
-  double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): the dashpot over the root of the tangential mass
-  Vec2 apart;  ///< direction along which ellipses were last apart; {}: unknown. Start of the iteration, without effect
-               ///< on results
-  Vec2 arm_i, arm_j;  ///< of the last step: from the centres of the bodies to the contact point, m
-};
-
 /// Sets the shapes of bodies and stores each distinct clump once (GrainScene::clumps).
 class GrainShapes {
  public:

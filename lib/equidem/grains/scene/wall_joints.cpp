@@ -208,28 +208,53 @@ std::vector<std::string> gaps_of_walls(std::span<const Wall> given, double small
   return sentences;
 }
 
+namespace {
+
+/// Those of a map or a simultaneous law: contacts with walls stand behind the pairs of a body.
+void cover_single_contacts(GrainSystem& system) {
+  std::vector<Candidate>& candidates = system.contacts.candidates;
+  for (Candidate& candidate : candidates) {
+    if (candidate.j >= 0) continue;
+    const std::int32_t cover = cover_of(system, candidate.i, 0, ~candidate.j);
+    candidate.covered = cover >= 0;
+    if (!candidate.covered || !candidate.touching) continue;
+    const Candidate left = candidate;
+    candidate.stretch = 0;  // not lost
+    forget_contact(candidate, system.lost);
+    const auto is_cover = [&](const Candidate& other) { return other.i == left.i && other.j == ~cover; };
+    const auto other = std::ranges::find_if(candidates, is_cover);
+    if (other == candidates.end() || other->touching) continue;
+    const Candidate place = *other;
+    *other = left;
+    static_cast<ContactConstants&>(*other) = place;
+    other->j = place.j;
+    other->covered = place.covered;
+  }
+}
+
+/// The contact of the part of another one with a wall; list.count: there is none.
+std::size_t place_of_wall(const NearParts::List& list, std::size_t p, std::int32_t wall) {
+  const std::int32_t own = list.first(p);
+  while (p > 0 && list.first(p - 1) == own) --p;
+  while (p < list.count && list.first(p) == own && list.wall(p) != static_cast<std::size_t>(wall)) ++p;
+  return p < list.count && list.first(p) == own ? p : list.count;
+}
+
+}  // namespace
+
 void cover_joints(GrainSystem& system) {
   if (system.walls.joints.empty()) return;
-  for (auto candidate = system.contacts.candidates.begin(); candidate != system.contacts.candidates.end();
-       ++candidate) {
-    if (candidate->j >= 0) continue;
-    const auto part_of = [&](const Candidate& other) {
-      if (system.contacts.part_pairs.empty()) return 0;
-      return system.contacts.part_pairs[&other - system.contacts.candidates.data()].i;
-    };
-    const std::int32_t cover = cover_of(system, candidate->i, part_of(*candidate), ~candidate->j);
-    candidate->covered = cover >= 0;
-    if (!candidate->covered || !candidate->touching) continue;
-    const ContactState left = state_of(system, *candidate, {});
-    candidate->stretch = 0;  // not lost
-    forget_contact(*candidate, system.lost);
-    const auto same_body = [&](const Candidate& other) { return other.i == candidate->i; };
-    auto other = candidate;  // candidates of a body stand together
-    while (other != system.contacts.candidates.begin() && same_body(*std::prev(other))) --other;
-    const auto is_cover = [&] { return other->j == ~cover && part_of(*other) == part_of(*candidate); };
-    while (other != system.contacts.candidates.end() && same_body(*other) && !is_cover()) ++other;
-    if (other == system.contacts.candidates.end() || !same_body(*other) || other->touching) continue;
-    take(left, *other);
+  cover_single_contacts(system);
+  for (NearParts::List& list : system.contacts.near_walls.blocks) {
+    for (std::size_t p = 0; p < list.count; ++p) {
+      const Partners of = partners_of(system, list, p);
+      const std::int32_t cover = cover_of(system, of.i, of.part_i, ~of.j);
+      list.number(p, PartGroup::covered) = cover >= 0 ? 1 : 0;
+      if (cover < 0 || !list.touching(p)) continue;
+      const std::size_t other = place_of_wall(list, p, cover);
+      if (other < list.count && !list.touching(other)) list.move_state(p, other);
+      list.end(p);
+    }
   }
 }
 

@@ -70,10 +70,7 @@ bool is_tied(const GrainSystem& system, std::int32_t i, std::int32_t j) {
 
 /// Whether a contact has friction. \param i, j as in Candidate
 bool has_friction(const GrainSystem& system, std::int32_t i, std::int32_t j) {
-  Candidate candidate;
-  candidate.i = i;
-  candidate.j = j;
-  return system.properties(candidate).friction > 0;
+  return system.properties(i, j).friction > 0;
 }
 
 /// The image of j that i has in a fresh state, whose bodies are inside the cell, where bodies of both simulations stay
