@@ -13,7 +13,7 @@ namespace {
 
 /// \param discs of which the data are, the first ones \param numbers of discs; empty: not written
 void write_state_discs(const TextSink& to, const AssemblyState& state, std::size_t discs,
-                 std::span<const std::int64_t> numbers) {
+                       std::span<const std::int64_t> numbers) {
   const Assembly& assembly = state.assembly;
   PolyData data(discs, discs, 0);
   if (!numbers.empty()) {
