@@ -296,7 +296,7 @@ def run_box(arguments):
         ("roughness{}_m", "roughness"), ("centre_height{}_m", "centre_height"))
                for when, moment_ in (("_before", filled), ("", after))}
     grains = len(bodies.mass) / (2 if fill.shape == "bonded_pairs" else 1)
-    overlap = contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0]
+    overlap = (-contacts["normal_forces"][~bonded]).max(initial=0.0) / fill.springs()[0]
     numbers.update(
         largest_slope=shaking.slope, swing_m=swing_of(shaking.rows, frequency, cycles), thrown=shaking.thrown.sum(),
         coordination=(1 + (j >= 0))[~bonded].sum() / grains, **shaking.moved(), bond_creep=math.nan,

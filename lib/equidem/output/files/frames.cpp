@@ -86,7 +86,7 @@ std::string frame_discs_text(const Assembly& assembly, const FrameOptions& optio
 /// The contacts of the bodies, which are the discs where none has parts.
 std::string frame_contacts_text(const Assembly& assembly, const FrameOptions& options, double time,
                                 std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
-  const ContactLoads loads{.forces = true, .moments = options.moments};
+  const ContactLoads loads{.forces = true, .moments = options.moments, .on_j = options.travelling};
   if (!options.travelling)
     return contacts_text({.places = assembly.centres, .motions = motions}, contacts, loads, &time);
   std::vector<Vec2> places;

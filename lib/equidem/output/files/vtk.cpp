@@ -96,16 +96,17 @@ std::string contacts_text(const BodyPlaces& bodies, std::span<const BodyContact>
     data.declare<double>("CellData", name, m, 3,
                          [=](std::size_t c, int component) { return component_of(vector(contacts[c]), component); });
   };
-  const auto numbers = [&](const char* name, double BodyContact::*member) {
-    data.declare<double>("CellData", name, m, 1, [=](std::size_t c, int) { return contacts[c].*member; });
+  const auto numbers = [&](const char* name, double BodyContact::*member, double sign = 1) {
+    data.declare<double>("CellData", name, m, 1, [=](std::size_t c, int) { return sign * contacts[c].*member; });
   };
   data.declare<std::int32_t>("CellData", "i", m, 1, [=](std::size_t c, int) { return contacts[c].i; });
   data.declare<std::int32_t>("CellData", "j", m, 1, [=](std::size_t c, int) { return contacts[c].j; });
   vectors("contact_point", [&](const BodyContact& c) { return bodies.places[place_of(c.i)] + c.arm; });
   if (loads.forces) {
     vectors("force", [](const BodyContact& c) { return c.force; });
-    numbers("normal_force", &BodyContact::normal_force);
-    numbers("tangential_force", &BodyContact::tangential_force);
+    const double sign = loads.on_j ? -1 : 1;
+    numbers("normal_force", &BodyContact::normal_force, sign);
+    numbers("tangential_force", &BodyContact::tangential_force, sign);
   }
   if (loads.moments) numbers("bending_moment", &BodyContact::bending_moment);
   data.places([&](std::size_t point) {
