@@ -78,7 +78,7 @@ class SlowGrains {
       grains_ = run.grains();
       contacts_ = run.contacts();
       forces_.clear();
-      for (const BodyContact& c : run.body_contacts()) forces_[{c.i, c.j}] = {-c.normal_force, -c.tangential_force};
+      for (const BodyContact& c : run.body_contacts()) forces_[{c.i, c.j}] = {c.normal_force, c.tangential_force};
     };
     for (std::int64_t part = 1; part <= parts_; ++part) {
       const double share = static_cast<double>(part) / static_cast<double>(parts_);

@@ -95,6 +95,43 @@ TEST_CASE("an_exception_of_a_task_travels_to_the_caller") {
   CHECK(runs == 100);  // the pool still works
 }
 
+TEST_CASE("members_of_a_team_do_their_rounds_together") {
+  const int threads = GENERATE(1, 2, 5);
+  const WithThreads with(threads);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<int> done(static_cast<std::size_t>(threads), 0);
+    int behind = 0;
+    std::atomic<bool> together{true};
+    run_together(100, [&](int member, Team& team) {
+      for (int k = 1; k <= 50; ++k) {
+        done[static_cast<std::size_t>(member)] = k;
+        if (!team.wait()) together = false;
+        if (member == 0) behind += static_cast<int>(std::ranges::count_if(done, [&](int other) { return other < k; }));
+        if (!team.wait()) together = false;
+      }
+    });
+    CHECK(together);
+    CHECK(behind == 0);
+    CHECK(std::ranges::count(done, 50) == threads);
+  }
+}
+
+TEST_CASE("an_exception_of_a_member_ends_the_work_of_its_team_and_travels_to_the_caller") {
+  const int threads = GENERATE(1, 2, 5);
+  const WithThreads with(threads);
+  const int thrower = GENERATE(0, 1, 4);
+  if (thrower >= threads) return;
+  for (int round = 0; round < 20; ++round) {
+    const auto work = [&](int member, Team& team) {
+      for (int k = 0; k < 1000; ++k) {
+        if (member == thrower && k == 17 * (round % 3)) throw std::runtime_error("member");
+        if (!team.wait()) return;
+      }
+    };
+    CHECK_THROWS_WITH(run_together(threads, work), "member");
+  }
+}
+
 TEST_CASE("a_loop_inside_a_task_runs_serially_and_completely") {
   const WithThreads with(GENERATE(1, 2, 3));
   std::vector<int> sums(20);

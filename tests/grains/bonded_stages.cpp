@@ -205,6 +205,35 @@ TEST_CASE("bonds_too_soft_for_the_force_of_their_contact_and_those_of_other_shap
       "strengths");
 }
 
+TEST_CASE("a_saved_stage_with_bonds_or_bodies_that_the_run_lacks_is_refused") {
+  GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 10};
+  GrainStage bond = press;
+  bond.name = "bond";
+  bond.bonds = stiff_bonds();
+  StagedSimulation staged({press, bond}, options_of(NormalLaw::linear_dashpot, 2e-4));
+  run_to(staged, 15);
+  const SavedState state = staged.save();
+  const Bits then = bits_of(staged.present());
+  REQUIRE(!state["stage_bonds"].empty());
+  const double beyond = static_cast<double>(press.scene.grains.size());
+  // numbers of bodies and stages, in columns of arrays
+  for (const auto& [array, column] :
+       {std::pair{"stage_bonds", 0}, {"stage_bonds", 1}, {"stage_bonds", 2}, {"stage_bodies", 0}, {"stage_order", 0}}) {
+    for (const double number : {-1e9, beyond, 0.5, 1e300, std::nan("")}) {
+      SavedState damaged = state;
+      damaged[array][static_cast<std::size_t>(column)] = number;
+      CAPTURE(array, column, number);
+      CHECK_THROWS_AS(staged.restore(damaged), Error);
+      CHECK(bits_of(staged.present()) == then);
+    }
+  }
+  SavedState twice = state;
+  twice["stage_order"][0] = twice["stage_order"][1];
+  CHECK_THROWS_AS(staged.restore(twice), Error);
+  CHECK_NOTHROW(staged.restore(state));
+  CHECK(bits_of(staged.present()) == then);
+}
+
 TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
   const GrainOptions options = options_of(NormalLaw::linear_dashpot, 2e-3);
   GrainStage press{.name = "press", .scene = pressed_columns(NormalLaw::linear_dashpot), .steps = 10};

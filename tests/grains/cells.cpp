@@ -594,9 +594,9 @@ TEST_CASE("the_stress_of_a_cell_is_that_which_its_servo_keeps") {
           simulation.energy().kinetic, simulation.energy().error(), simulation.energy().work_of_cell);
   REQUIRE(cell.servos.size() == 2);
   for (const CellServoReport& servo : cell.servos) {
-    CAPTURE(servo.component, servo.reached, servo.wanted, servo.stress, servo.overshoot, servo.mean_error);
+    CAPTURE(servo.component, servo.reached, servo.wanted, servo.present, servo.overshoot, servo.mean_error);
     CHECK(servo.reached);
-    CHECK(servo.stress == Approx(servo.wanted).epsilon(0.02));
+    CHECK(servo.present == Approx(servo.wanted).epsilon(0.02));
   }
   CHECK(cell.stress.xx == Approx(-pressure).epsilon(0.02));
   CHECK(cell.stress.yy == Approx(-2 * pressure).epsilon(0.02));

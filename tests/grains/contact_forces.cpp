@@ -76,6 +76,25 @@ TEST_CASE("contact_forces_of_a_step_add_up_to_what_it_changed") {
   CHECK(worst_moment <= (law == NormalLaw::exact_flow ? 2e-3 : 1e-9) * largest);
 }
 
+// As of bonded discs (tests/dynamics/bonded_contacts.cpp), of which the same struct tells.
+TEST_CASE("normal_force_is_positive_in_tension_and_tangential_force_acts_on_the_first_body") {
+  GrainSimulation simulation(busy_box(NormalLaw::linear_dashpot, 4, 3, 3), options_of(NormalLaw::linear_dashpot, 1e-3));
+  std::size_t pressed = 0;
+  for (int sample = 0; sample < 20; ++sample) {
+    simulation.advance(40);
+    const std::vector<Grain> grains = simulation.grains();
+    for (const BodyContact& c : simulation.body_contacts()) {
+      if (grains[static_cast<std::size_t>(c.i)].shape() != GrainShape::disc) continue;
+      const Vec2 normal = c.arm / norm(c.arm);
+      CHECK(std::abs(dot(normal, c.force) - c.normal_force) <= 1e-9 * norm(c.force));
+      CHECK(std::abs(cross(normal, c.force) - c.tangential_force) <= 1e-9 * norm(c.force));
+      pressed += c.normal_force < 0 ? 1 : 0;
+      CHECK(c.normal_force <= 0);
+    }
+  }
+  CHECK(pressed > 20);
+}
+
 TEST_CASE("forces_of_bonds_are_contacts_and_add_up_to_what_a_step_changed") {
   const double dt = 1e-4;
   GrainBond like = all_of_a_bond;
@@ -93,7 +112,7 @@ TEST_CASE("forces_of_bonds_are_contacts_and_add_up_to_what_a_step_changed") {
     const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);
     bonds += j == i + 1 ? 1 : 0;
     const Vec2 normal = (after[j].position - after[i].position) / norm(after[j].position - after[i].position);
-    CHECK(norm(c.normal_force * normal + c.tangential_force * perpendicular(normal) + c.force) < 1e-12 * norm(c.force));
+    CHECK(norm(c.normal_force * normal + c.tangential_force * perpendicular(normal) - c.force) < 1e-12 * norm(c.force));
     sums[i] += c.force;
     sums[j] -= c.force;
     moments[i] += cross(c.arm, c.force);

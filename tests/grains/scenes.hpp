@@ -166,7 +166,7 @@ inline Bits bits_and_loads_of(const GrainSimulation& simulation) {
     add({w.place.x, w.place.y, w.velocity.x, w.velocity.y, w.force.x, w.force.y, w.moment, w.impulse.x, w.impulse.y,
          w.work});
   for (const ServoReport& s : simulation.servos())
-    add({s.wanted, s.force, s.max_speed, s.overshoot, s.peak, s.mean_error});
+    add({s.wanted, s.present, s.max_speed, s.overshoot, s.peak, s.mean_error});
   if (const auto c = simulation.cell())
     add({c->width, c->height, c->shift, c->strain.xx, c->strain.yy, c->strain.xy, c->stress.xx, c->stress.xy,
          c->stress.yx, c->stress.yy, c->coordination_number});

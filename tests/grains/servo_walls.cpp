@@ -42,7 +42,7 @@ TEST_CASE("a_servo_wall_holds_its_force_and_the_floor_bears_it") {
   simulation.advance(200000);
   const auto walls = simulation.walls();
   const ServoReport report = simulation.servos().front();
-  CAPTURE(report.force, report.overshoot, report.mean_error, walls[0].force.y);
+  CAPTURE(report.present, report.overshoot, report.mean_error, walls[0].force.y);
   CHECK(report.wall == "lid");
   CHECK(report.reached);
   CHECK(report.wanted == 20);
@@ -90,9 +90,9 @@ TEST_CASE("a_force_that_grows_by_a_schedule_is_followed") {
   GrainSimulation simulation(scene, options_of(NormalLaw::exact_flow, 1e-3));
   simulation.advance(20000);
   const ServoReport half_way = simulation.servos().front();
-  CHECK(std::abs(half_way.force - 17.5) < 0.05);
+  CHECK(std::abs(half_way.present - 17.5) < 0.05);
   simulation.advance(20000);
-  CHECK(std::abs(simulation.servos().front().force - 30) < 1e-4 * 30);
+  CHECK(std::abs(simulation.servos().front().present - 30) < 1e-4 * 30);
 }
 
 TEST_CASE("a_servo_wall_keeps_below_its_speed") {
@@ -125,9 +125,9 @@ TEST_CASE("a_servo_wall_runs_past_its_force_by_less_than_the_push_of_a_disc_at_i
   GrainSimulation simulation(scene, options_of(servo_steppings[1], 1.5e-3));
   simulation.advance(100000);
   const ServoReport report = simulation.servos().front();
-  CAPTURE(relaxation, discs, report.overshoot, report.peak, push / force, report.mean_error, report.force);
+  CAPTURE(relaxation, discs, report.overshoot, report.peak, push / force, report.mean_error, report.present);
   CHECK(report.reached);
-  CHECK(std::abs(report.force - force) < 1e-3 * force);
+  CHECK(std::abs(report.present - force) < 1e-3 * force);
   CHECK(report.peak < push / force);
   CHECK(report.overshoot <= report.peak);
 }
@@ -169,8 +169,8 @@ TEST_CASE("a_servo_wall_follows_bodies_that_give_way_without_a_lasting_error") {
   simulation.advance(100000);
   // by the force alone a wall would lag behind by k dt v/relaxation
   const double lag = scene.pairs[0].stiffness * step * away / relaxation;
-  CAPTURE(relaxation, lag, simulation.servos().front().force);
-  CHECK(std::abs(simulation.servos().front().force - force) < 0.01 * lag);
+  CAPTURE(relaxation, lag, simulation.servos().front().present);
+  CHECK(std::abs(simulation.servos().front().present - force) < 0.01 * lag);
 }
 
 TEST_CASE("a_servo_wall_that_meets_no_body_is_an_error_and_no_endless_way") {
@@ -240,10 +240,10 @@ TEST_CASE("the_error_of_a_servo_wall_counts_from_where_the_force_of_its_stage_is
   for (std::size_t k = 0; k < 3; ++k) {
     REQUIRE(staged.reports()[k].servos.size() == 1);
     const ServoReport report = staged.reports()[k].servos[0];
-    CAPTURE(k, report.wanted, report.force, report.overshoot, report.mean_error);
+    CAPTURE(k, report.wanted, report.present, report.overshoot, report.mean_error);
     CHECK(report.reached);
     CHECK(report.wanted == wanted[k]);
-    CHECK(std::abs(report.force - wanted[k]) < 1e-3 * wanted[k]);
+    CHECK(std::abs(report.present - wanted[k]) < 1e-3 * wanted[k]);
     CHECK(report.mean_error < 0.01);
     if (k > 0) CHECK(report.overshoot < 0.3);  // the way from the force before would be 3 where it falls
     REQUIRE(resumed.reports()[k].servos.size() == 1);

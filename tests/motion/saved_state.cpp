@@ -34,6 +34,10 @@ TEST_CASE("saved_rows_become_the_structs_they_were") {
     state["rows"][0] = body;
     CHECK_THROWS_AS(rows_in<Row>(state, "rows", numbers), Error);
   }
+  state["rows"] = {1, 0, 2, 3, 0, 4};
+  state.arrays[0].columns = 2;  // as many numbers, but other rows
+  CHECK_THROWS_WITH(rows_in<Row>(state, "rows", numbers), Catch::Contains("in rows of 2"));
+  state.arrays[0].columns = 3;
   state["rows"] = {1, 0};
   CHECK_THROWS_AS(rows_in<Row>(state, "rows", numbers), Error);
 }

@@ -121,8 +121,8 @@ TEST_CASE("contacts_that_come_and_go_are_lines_from_centre_to_centre_or_wall") {
   const TemporaryFolder folder;
   const std::vector<DiscMotion> places{{{0, 0.9}}, {{1.9, 1}}, {{5, 1}}}, still(3);
   const std::vector<BodyContact> contacts{
-      {.i = 0, .j = 1, .arm = {0.95, 0.05}, .force = {-10, 2}, .normal_force = 10, .tangential_force = 1},
-      {.i = 0, .j = ~2, .arm = {0, -0.9}, .force = {0, 7}, .normal_force = 7}};
+      {.i = 0, .j = 1, .arm = {0.95, 0.05}, .force = {-10, 2}, .normal_force = -10, .tangential_force = -1},
+      {.i = 0, .j = ~2, .arm = {0, -0.9}, .force = {0, 7}, .normal_force = -7}};
   FrameWriter writer(folder.path(), "frames", start, {.travelling = true});
   writer.append(0, 0, places, still, {});
   writer.append(7, 0.5, places, still, contacts);

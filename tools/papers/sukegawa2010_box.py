@@ -281,7 +281,7 @@ def run_box(fill, gal, frequency, cycles):
     contacts, energy, bonds = run.contacts, run.energy, fill.shape == "bonded_pairs"
     i, j = contacts["bodies"].T
     bonded = bonds & (i // 2 == j // 2) & (j >= 0)
-    overlap = contacts["normal_forces"][~bonded].max(initial=0.0) / fill.springs()[0]
+    overlap = (-contacts["normal_forces"][~bonded]).max(initial=0.0) / fill.springs()[0]
     numbers = {}
     for when, at in (("_before", filled), ("", after)):
         numbers.update({f"void_ratio{when}": at.inner, f"whole_void_ratio{when}": at.whole,

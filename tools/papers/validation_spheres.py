@@ -57,7 +57,7 @@ class Scene:
             before, gap = min(gap, 0.0), self.gap(run.positions)
             if deep:
                 overlaps.append(-gap)
-                forces += list(run.contacts["normal_forces"])
+                forces += list(-run.contacts["normal_forces"])
         duration = run.time - step * gap / (gap - before)
         run.advance(1)  # a step that ends apart may have begun in contact
         return Row(velocities=run.velocities, spins=run.spins, overlap=peak(overlaps), force=peak(forces),

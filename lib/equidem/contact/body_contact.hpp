@@ -19,8 +19,8 @@ struct BodyContact {
   Vec2 arm;                     ///< from the centre of i to the contact point, m
   Vec2 shift = {};              ///< i touches the image of j at the place of j + shift, m; {}: no period between them
   Vec2 force = {};              ///< on i; its negative acts on j
-  double normal_force = 0;      ///< bonded discs: tension positive; colliding bodies: compression positive
-  double tangential_force = 0;  ///< along s = (-n_y, n_x), n the normal from i; bonded: on i, colliding: on j
+  double normal_force = 0;      ///< on i along the normal n from i: tension positive
+  double tangential_force = 0;  ///< on i along s = (-n_y, n_x)
   double bending_moment = 0;    ///< N, of bonds with bending springs, on i; its negative acts on j
 };
 

@@ -209,4 +209,37 @@ void run_aside(std::function<void()> work) {
   done.get();
 }
 
+bool Team::wait() {
+  if (size_ == 1) return true;
+  const int round = round_.load(std::memory_order_acquire);
+  if (failed_.load(std::memory_order_acquire)) return false;
+  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == size_) {
+    arrived_.store(0, std::memory_order_relaxed);
+    round_.fetch_add(1, std::memory_order_release);
+    round_.notify_all();
+  } else {
+    wait_while_equal(round_, round);
+  }
+  return !failed_.load(std::memory_order_acquire);
+}
+
+void Team::fail() {
+  failed_.store(true, std::memory_order_release);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+}
+
+void run_together(int most, const std::function<void(int, Team&)>& body) {
+  Team team(inside_task ? 1 : std::clamp(most, 1, thread_count()));
+  // a thread that waits for the others of the team takes no second task: each member has a thread
+  parallel_shares(static_cast<std::size_t>(team.size()), [&](std::size_t member, int) {
+    try {
+      body(static_cast<int>(member), team);
+    } catch (...) {
+      team.fail();
+      throw;
+    }
+  });
+}
+
 }  // namespace equidem

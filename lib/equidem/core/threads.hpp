@@ -49,4 +49,28 @@ inline void wait_while_equal(const std::atomic<int>& value, int old) {
   value.wait(old, std::memory_order_acquire);
 }
 
+/// Threads that do the rounds of a job together.
+class Team {
+ public:
+  explicit Team(int size) : size_(size) {}
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  [[nodiscard]] int size() const { return size_; }
+  /// Wait until all members have called it as often. \return false if one of them has thrown: the others return, too
+  [[nodiscard]] bool wait();
+  /// A member has thrown: nobody waits for it.
+  void fail();
+
+ private:
+  const int size_;
+  std::atomic<bool> failed_{false};
+  alignas(64) std::atomic<int> arrived_{0};
+  alignas(64) std::atomic<int> round_{0};
+};
+
+/// Call body(member, team) for every member of a team, all at the same time; there are at most `most` and
+/// thread_count(), inside a running task one. An exception of a member is thrown again here.
+void run_together(int most, const std::function<void(int member, Team& team)>& body);
+
 }  // namespace equidem

@@ -3,10 +3,8 @@
 #include "equidem/dynamics/simulation.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
-#include <thread>
 
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/contact/linear_spring.hpp"
@@ -26,89 +24,50 @@ using StripWork = std::function<void(std::int32_t strip, std::int64_t stage)>;
 
 namespace {
 
-/// Threads wait for one another between waves of a few microseconds.
-class SpinBarrier {
- public:
-  explicit SpinBarrier(int threads) : threads_(threads) {}
-
-  void wait() {
-    const int round = round_.load(std::memory_order_acquire);
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
-      arrived_.store(0, std::memory_order_relaxed);
-      round_.fetch_add(1, std::memory_order_release);
-      round_.notify_all();
-      return;
-    }
-    wait_while_equal(round_, round);
-  }
-
- private:
-  const int threads_;
-  alignas(64) std::atomic<int> arrived_{0};
-  alignas(64) std::atomic<int> round_{0};
-};
-
-/// Run body(thread) on `threads` threads at the same time.
-void run_together(int threads, const std::function<void(int)>& body) {
-  std::vector<std::thread> others;
-  for (int k = 1; k < threads; ++k) others.emplace_back([&body, k] { body(k); });
-  body(0);
-  for (std::thread& other : others) other.join();
-}
-
-/// Order of strips in time stepping: several steps at once while data are in the cache, on all threads.
-///
-/// Perform stages 0 .. stages - 1 on all strips. A stage of a strip starts after this strip and both neighbours have
-/// completed the previous stage.
+/// Perform stages 0 .. stages - 1 on all strips, several at once while data are in the cache, on all threads. A stage
+/// of a strip starts after this strip and both neighbours have completed the previous stage.
 ///
 /// Stage s begins two waves after stage s - 1 and follows it from strip to strip: `depth` stages (as many per thread)
 /// are in progress at a time, on data in the cache and on strips that are not adjacent, so that threads share them.
-/// With fewer stages than threads the strips of one stage are divided among threads.
-/// \param threads largest number of threads, limited to that of parallel loops: with few discs per strip,
-///        synchronization costs more than it gains The work and data of every strip do not depend on threads or depth;
-///        results are bit-identical.
-void step_strips(std::int32_t strips, std::int64_t stages, int depth, int threads, const StripWork& work) {
+/// With fewer stages than threads the strips of one stage are divided among threads. The work and data of every strip
+/// do not depend on threads or depth: results are bit-identical.
+/// \param most largest number of threads: with few discs per strip, synchronization costs more than it gains
+void step_strips(std::int32_t strips, std::int64_t stages, int depth, int most, const StripWork& work) {
   if (strips == 0 || stages == 0) return;
-  threads = std::clamp(threads, 1, thread_count());
-  SpinBarrier barrier(threads);
-  if (stages < threads) {
-    run_together(threads, [&](int thread) {
+  run_together(most, [&](int thread, Team& team) {
+    const int threads = team.size();
+    if (stages < threads) {
       const auto begin = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * thread / threads);
       const auto end = static_cast<std::int32_t>(static_cast<std::int64_t>(strips) * (thread + 1) / threads);
       for (std::int64_t stage = 0; stage < stages; ++stage) {
         for (std::int32_t strip = begin; strip < end; ++strip) work(strip, stage);
-        if (threads > 1) barrier.wait();
+        if (!team.wait()) return;
       }
-    });
-    return;
-  }
-  // Stage s visits strip l in wave start(s) + l; a new block of `depth` stages follows when the first stage of the last
-  // one is through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one
-  // another: strips pass through its own cache before the next thread has them.
-  depth = (std::max(depth, 1) + threads - 1) / threads * threads;
-  const std::int64_t block = std::max<std::int64_t>(strips, 2L * depth);
-  const auto start = [&](std::int64_t stage) { return stage / depth * block + 2 * (stage % depth); };
-  const std::int64_t waves = start(stages - 1) + strips;
-  std::vector<int> thread_of(static_cast<std::size_t>(depth));
-  for (int k = 0; k < depth; ++k) thread_of[k] = static_cast<int>(static_cast<std::int64_t>(k) * threads / depth);
-  struct UnderWay {
-    std::int64_t stage, start;
-    int of_block;
-  };
-  const auto follow = [&](UnderWay& one) {
-    ++one.stage;
-    one.start += ++one.of_block < depth ? 2 : block - 2 * (depth - 1);
-    if (one.of_block == depth) one.of_block = 0;
-  };
-  run_together(threads, [&](int thread) {
-    UnderWay first{0, 0, 0};
+      return;
+    }
+    // Stage s visits strip l in wave start + l; a new block of stages follows when the first stage of the last one is
+    // through, so that no thread runs dry between blocks. Each thread has stages of a block that follow one another:
+    // strips pass through its own cache before the next thread has them.
+    const int in_block = (std::max(depth, 1) + threads - 1) / threads * threads;
+    const std::int64_t block = std::max<std::int64_t>(strips, 2L * in_block);
+    const std::int64_t waves = (stages - 1) / in_block * block + 2 * ((stages - 1) % in_block) + strips;
+    struct UnderWay {
+      std::int64_t stage = 0, start = 0;
+      int of_block = 0;
+    } first;
+    const auto follow = [&](UnderWay& one) {
+      ++one.stage;
+      one.start += ++one.of_block < in_block ? 2 : block - 2 * (in_block - 1);
+      if (one.of_block == in_block) one.of_block = 0;
+    };
     for (std::int64_t wave = 0; wave < waves; ++wave) {
       while (first.stage < stages && wave - first.start >= strips) follow(first);
       for (UnderWay one = first; one.stage < stages && one.start <= wave; follow(one)) {
         const std::int64_t strip = wave - one.start;
-        if (strip < strips && thread_of[one.of_block] == thread) work(static_cast<std::int32_t>(strip), one.stage);
+        const bool own = static_cast<std::int64_t>(one.of_block) * threads / in_block == thread;
+        if (strip < strips && own) work(static_cast<std::int32_t>(strip), one.stage);
       }
-      if (threads > 1) barrier.wait();
+      if (!team.wait()) return;
     }
   });
 }
@@ -593,27 +552,37 @@ std::int64_t Simulation::first_runaway() const {
   return -1;
 }
 
+namespace {
+
+constexpr auto dissipation_numbers = [](auto& d, const auto& visit) {
+  visit(d.mass), visit(d.contact), visit(d.local);
+};
+constexpr auto work_numbers = [](auto& w, const auto& visit) { visit(w.loads), visit(w.supports), visit(w.walls); };
+
+}  // namespace
+
 SavedState Simulation::save() const {
   const Implementation& s = *implementation_;
-  std::vector<double> sums;
-  for (const EnergyTerm& term : energy_terms(BodyFamily::bonded)) sums.push_back(s.at_start.*term.value);
-  for (const Dissipation& d : s.dissipation) sums.insert(sums.end(), {d.mass, d.contact, d.local});
-  for (const DrivingWork& w : s.driven.sums()) sums.insert(sums.end(), {w.loads, w.supports, w.walls});
   return {.step = s.steps,
-          .arrays = {{"motions", 3, numbers_of(s.bodies.discs_of(s.bodies.motion[s.parity]))},
-                     {"previous", 3, numbers_of(s.bodies.discs_of(s.bodies.motion[1 - s.parity]))},
-                     {"velocities", 3, numbers_of(s.bodies.disc_velocities(s.bodies.velocity))},
-                     {"sums", 1, std::move(sums)}}};
+          .arrays = {saved_rows("motions", s.bodies.discs_of(s.bodies.motion[s.parity]), motion_numbers),
+                     saved_rows("previous", s.bodies.discs_of(s.bodies.motion[1 - s.parity]), motion_numbers),
+                     saved_rows("velocities", s.bodies.disc_velocities(s.bodies.velocity), motion_numbers),
+                     saved_rows("start", std::vector{s.at_start}, ledger_numbers(family())),
+                     saved_rows("dissipation", s.dissipation, dissipation_numbers),
+                     saved_rows("works", s.driven.sums(), work_numbers)}};
 }
 
 void Simulation::restore(const SavedState& state) {
   Implementation& s = *implementation_;
   const std::size_t discs = s.scene.assembly.size(), strips = s.dissipation.size();
-  const std::vector<DiscMotion> motions = motions_of(state["motions"]), previous = motions_of(state["previous"]),
-                                velocities = motions_of(state["velocities"]);
-  const std::vector<double>& sums = state["sums"];
-  if (motions.size() != discs || previous.size() != discs || velocities.size() != discs ||
-      sums.size() != energy_terms(BodyFamily::bonded).size() + 6 * strips) {
+  const auto motions = rows_in<DiscMotion>(state, "motions", motion_numbers),
+             previous = rows_in<DiscMotion>(state, "previous", motion_numbers),
+             velocities = rows_in<DiscMotion>(state, "velocities", motion_numbers);
+  const auto at_start = rows_in<EnergyLedger>(state, "start", ledger_numbers(family()));
+  auto dissipation = rows_in<Dissipation>(state, "dissipation", dissipation_numbers);
+  auto works = rows_in<DrivingWork>(state, "works", work_numbers);
+  if (motions.size() != discs || previous.size() != discs || velocities.size() != discs || at_start.size() != 1 ||
+      dissipation.size() != strips || works.size() != strips) {
     bad_input(fmt::format("the saved state has {}", counted(static_cast<std::int64_t>(motions.size()), "disc")),
               fmt::format("this assembly has {}", discs), "Go on with the case that the state was saved from");
   }
@@ -622,12 +591,9 @@ void Simulation::restore(const SavedState& state) {
   s.bodies.put(motions, s.bodies.motion[0]);
   s.bodies.put(previous, s.bodies.motion[1]);
   s.bodies.put_velocities(velocities);
-  const double* sum = sums.data();
-  for (const EnergyTerm& term : energy_terms(BodyFamily::bonded)) s.at_start.*term.value = *sum++;
-  for (Dissipation& d : s.dissipation) d = {sum[0], sum[1], sum[2]}, sum += 3;
-  std::vector<DrivingWork> work(strips);
-  for (DrivingWork& w : work) w = {sum[0], sum[1], sum[2]}, sum += 3;
-  s.driven.set_sums(std::move(work));
+  s.at_start = at_start[0];
+  s.dissipation = std::move(dissipation);
+  s.driven.set_sums(std::move(works));
 }
 
 }  // namespace equidem

@@ -34,10 +34,12 @@ constexpr std::int64_t steps_between_kept_states = 1024;
 
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
                                  const std::vector<std::size_t>& order)
-    : AnySimulation(BodyFamily::colliding, options.time_step), implementation_(hidden<Implementation>()) {
-  check(scene, options);
-  Implementation& self = *implementation_;
-  GrainSystem& system = self.system;
+    : AnySimulation(BodyFamily::colliding, options.time_step),
+      implementation_((check(scene, options), hidden<Implementation>(scene, options, order))) {}
+
+GrainSimulation::Implementation::Implementation(const GrainScene& scene, const GrainOptions& options,
+                                                const std::vector<std::size_t>& order)
+    : effects(effects_of(scene, options)) {
   system.options = options;
   system.bodies.blocks = BodyBlocks(scene.grains.size(), options.bodies_per_block);
   system.bodies.sums.resize(system.bodies.blocks.count());
@@ -61,15 +63,15 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
   const double smallest_size =
       parts.empty() ? system.smallest_radius : std::ranges::min(parts, {}, &GrainPart::size).size;
   system.bodies.next = system.bodies.motions;
-  self.collide = candidate_loop(options.law, system.friction);
-  self.flow = flow_function(options.law);
+  collide = candidate_loop(options.law, system.friction);
+  flow = flow_function(options.law);
   if (!gives_force(options.law)) system.bodies.moments.resize(system.bodies.impulses.size());
   find_dissipations(system);
   find_servos(system);
   place_walls(system);
   prepare_near_pairs(system);
   prepare_near_walls(system);
-  if (self.collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
+  if (collide && system.friction) system.bodies.impulses_before.resize(system.bodies.impulses.size());
   pack_bonds(system);
   prepare_near_parts(system);
   const bool listed_twice =
@@ -87,8 +89,8 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
     if (candidate.touching) ++system.counters.contacts;
   }
   system.contacts.near.record = true;
-  if (self.verlet()) {
-    find_impulses(system, self.collide, nullptr);
+  if (verlet()) {
+    find_impulses(system, collide, nullptr);
     system.lost = {};  // there was no drift before the start
     // The force that servo walls find in the first step: walls got half of it, as from a step with no force before.
     for (WallLoad& load : system.walls.loads)
@@ -97,11 +99,9 @@ GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& op
               .step_angular = 2 * load.step_angular};
     if (system.cell.deforms) begin_cell_stress(system, contacts());
   }
-  self.effects = effects_of(scene, options);
-  const auto [potential, kinetic] = self.potential_and_kinetic();
-  self.potential_at_start = potential;
-  const auto [normal, tangential] = self.elastic();
-  self.energy_at_start = kinetic + normal + tangential + elastic_of_bonds(system);
+  const auto [potential, kinetic] = potential_and_kinetic();
+  const auto [normal, tangential] = elastic();
+  at_start = {potential, kinetic + normal + tangential + elastic_of_bonds(system)};
 }
 
 void GrainSimulation::advance(std::int64_t steps) {
@@ -231,7 +231,10 @@ const Effects& GrainSimulation::effects() const {
 }
 
 std::vector<GrainContact> GrainSimulation::contacts() const {
-  const GrainSystem& system = implementation_->system;
+  return implementation_->contacts();
+}
+
+std::vector<GrainContact> GrainSimulation::Implementation::contacts() const {
   std::vector<GrainContact> contacts;
   for (const ContactState& state : contact_states(system)) {
     if (state.steps == 0) continue;
@@ -275,8 +278,8 @@ std::vector<BodyContact> GrainSimulation::body_contacts() const {
                       .arm = c.arm_i,
                       .shift = shift_of(c),
                       .force = -on_j,
-                      .normal_force = c.normal_force,
-                      .tangential_force = c.tangential_force});
+                      .normal_force = -c.normal_force,
+                      .tangential_force = -c.tangential_force});
   }
   const std::vector<BodyContact> bonds = contacts_of_bonds(system);
   result.insert(result.end(), bonds.begin(), bonds.end());
@@ -328,8 +331,8 @@ EnergyLedger GrainSimulation::Implementation::energy() const {
   std::tie(potential, ledger.kinetic) = potential_and_kinetic();
   std::tie(ledger.elastic_normal, ledger.elastic_tangential) = elastic();
   ledger.elastic_bond = elastic_of_bonds(system);
-  ledger.potential = potential - potential_at_start;
-  ledger.initial = energy_at_start;
+  ledger.potential = potential - at_start.potential;
+  ledger.initial = at_start.energy;
   return ledger;
 }
 

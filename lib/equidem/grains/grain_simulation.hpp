@@ -17,13 +17,14 @@ namespace equidem {
 
 /// State of a contact in the last step. In Verlet schemes overlap and forces are those at its end.
 struct GrainContact {
-  std::int32_t i = 0;                             ///< grain; two clumps may have several contacts
-  std::int32_t j = 0;                             ///< grain; negative: wall ~j
-  double overlap = 0;                             ///< overlap at the start of the last step, m
-  double closing = 0;                             ///< closing speed at the start of the last step, m/s
-  Vec2 normal = {};                               ///< unit, from i to j
-  Vec2 arm_i = {}, arm_j = {};                    ///< from the centres of mass to the contact point, m; {} for a wall
-  double normal_force = 0, tangential_force = 0;  ///< mean over the step, N
+  std::int32_t i = 0;           ///< grain; two clumps may have several contacts
+  std::int32_t j = 0;           ///< grain; negative: wall ~j
+  double overlap = 0;           ///< overlap at the start of the last step, m
+  double closing = 0;           ///< closing speed at the start of the last step, m/s
+  Vec2 normal = {};             ///< unit, from i to j
+  Vec2 arm_i = {}, arm_j = {};  ///< from the centres of mass to the contact point, m; {} for a wall
+  /// Force on j along n and s, mean over the step, N: a contact pushes, so that compression is positive here.
+  double normal_force = 0, tangential_force = 0;
   int mode = 0;            ///< case of the map that was used (ContactStep::mode); 0 for other laws
   std::int64_t steps = 0;  ///< number of steps since the contact began
   bool operator==(const GrainContact&) const = default;
@@ -40,7 +41,7 @@ struct GrainCounters {
   std::int64_t doubtful = 0;
 };
 
-/// The numbers of bodies, bonds and walls of a scene in another one; -1: they are new.
+/// The numbers of bodies, bonds and walls of a scene in the one before; -1: they are new.
 struct SceneOrigins {
   std::vector<std::int32_t> bodies, bonds, walls;
 };
@@ -55,12 +56,13 @@ class GrainSimulation final : public AnySimulation {
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order = {});
 
-  /// Go on from the step of `before` with its contacts, bonds, losses and counters. Contacts with bodies and walls that
-  /// are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin as at the start
-  /// of a simulation; the control of servo walls that both have goes on, and their errors are counted anew.
-  /// \param origins of the bodies, bonds and walls of this scene in that of `before`; order() keeps the order of bodies
-  ///        that both have, and new ones follow
-  void take_over(const GrainSimulation& before, const SceneOrigins& origins);
+  /// Go on in a changed scene, from the present step with contacts, bonds, losses and counters. Contacts with bodies
+  /// and walls that are gone end, and those of discs that are bonded now; those of bodies and walls that are new begin
+  /// as at the start of a simulation; the control of servo walls that stay goes on, and their errors are counted anew.
+  /// \param scene the bodies, walls and cell at their present places; schedules are those of the time since the start
+  /// \param origins of its bodies, bonds and walls in the present one; bodies that stay keep order(), new ones follow
+  /// \throws Error as the constructor; then nothing has changed
+  void change(const GrainScene& scene, const SceneOrigins& origins);
 
   [[nodiscard]] const Effects& effects() const override;
   /// \throws Error (computation_failed) if a body would pass through a wall or another body undetected, or centres

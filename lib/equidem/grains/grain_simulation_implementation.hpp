@@ -14,6 +14,11 @@
 
 namespace equidem {
 
+/// Potential energy of gravity, and kinetic energy with that of the springs, J.
+struct EnergyAtStart {
+  double potential = 0, energy = 0;
+};
+
 /// Bodies, bonds, walls and parts in the order of the loops.
 struct GrainState {
   std::int64_t step = 0;
@@ -26,7 +31,7 @@ struct GrainState {
   GrainCounters counters = {};
   std::vector<WallLoad> walls = {};
   std::vector<ServoMotion> servos = {};
-  double potential = 0, energy = 0;  ///< at the start, J
+  EnergyAtStart start = {};
   CellMotion cell = {};
   std::vector<PeriodicImage> crossed = {};  ///< as MovingCell::crossed
 };
@@ -36,8 +41,14 @@ struct GrainSimulation::Implementation {
   Effects effects;
   CandidateLoop collide = nullptr;  ///< maps
   FlowFunction flow = nullptr;      ///< simultaneous laws
-  double potential_at_start = 0, energy_at_start = 0;
+  EnergyAtStart at_start;
   std::optional<GrainState> kept;  ///< a recent state, restored when a step fails
+
+  /// \param scene checked
+  Implementation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order);
+
+  /// Go on from another simulation, as GrainSimulation::change.
+  void take_over(const Implementation& before, const SceneOrigins& origins);
 
   [[nodiscard]] GrainState state() const;
   void go_back_to(const GrainState& state);
@@ -57,6 +68,7 @@ struct GrainSimulation::Implementation {
   /// Energies of the normal and the tangential springs at the present positions, J.
   [[nodiscard]] std::pair<double, double> elastic() const;
   [[nodiscard]] EnergyLedger energy() const;
+  [[nodiscard]] std::vector<GrainContact> contacts() const;
 };
 
 /// Compute the impulses of contacts and bonds from the present positions and velocities.

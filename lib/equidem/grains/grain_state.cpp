@@ -19,7 +19,7 @@ constexpr const char* go_on_with = "Resume with the scene that the state was sav
 
 // The numbers of rows of a saved state.
 
-constexpr auto motion_numbers = [](auto& m, const auto& visit) {
+constexpr auto grain_numbers = [](auto& m, const auto& visit) {
   visit(m.position.x), visit(m.position.y), visit(m.velocity.x), visit(m.velocity.y), visit(m.spin), visit(m.angle);
 };
 
@@ -39,10 +39,6 @@ constexpr auto impulse_numbers = [](auto& push, const auto& visit) {
   visit(push.impulse.x), visit(push.impulse.y), visit(push.torque);
 };
 
-constexpr auto loss_numbers = [](auto& ledger, const auto& visit) {
-  for (const EnergyTerm& term : energy_terms(BodyFamily::colliding)) visit(ledger.*term.value);
-};
-
 static_assert(sizeof(GrainCounters) == 5 * sizeof(std::int64_t), "a counter is not saved");
 constexpr auto counter_numbers = [](auto& c, const auto& visit) {
   visit(c.evaluations), visit(c.contacts), visit(c.rebuilds), visit(c.sweeps), visit(c.doubtful);
@@ -54,10 +50,8 @@ constexpr auto load_numbers = [](auto& load, const auto& visit) {
 };
 
 constexpr auto servo_numbers = [](auto& s, const auto& visit) {
-  visit(s.way), visit(s.speed), visit(s.passed_speed), visit(s.pace), visit(s.free_way), visit(s.wanted),
-      visit(s.force);
-  visit(s.largest_wanted), visit(s.excess), visit(s.overshoot), visit(s.peak), visit(s.errors), visit(s.steps);
-  visit(s.touched), visit(s.reached), visit(s.arrived), visit(s.side);
+  control_numbers(s, visit);
+  visit(s.way), visit(s.passed_speed), visit(s.free_way), visit(s.touched);
 };
 
 constexpr auto cell_numbers = [](auto& cell, const auto& visit) {
@@ -66,11 +60,11 @@ constexpr auto cell_numbers = [](auto& cell, const auto& visit) {
   for (auto* tensor : {&cell.gradient, &cell.moment, &cell.stress})
     visit(tensor->xx), visit(tensor->xy), visit(tensor->yx), visit(tensor->yy);
   visit(cell.strain.xx), visit(cell.strain.yy), visit(cell.strain.xy);
-  for (auto& c : cell.controls) {
-    visit(c.wanted), visit(c.stress), visit(c.rate), visit(c.stiffness), visit(c.viscosity), visit(c.largest_wanted);
-    visit(c.overshoot), visit(c.errors), visit(c.steps), visit(c.reached), visit(c.side);
-  }
+  for (auto& control : cell.controls)
+    control_numbers(control, visit), visit(control.stiffness), visit(control.viscosity);
 };
+
+constexpr auto start_numbers = [](auto& start, const auto& visit) { visit(start.potential), visit(start.energy); };
 
 constexpr auto image_numbers = [](auto& image, const auto& visit) { visit(image.a), visit(image.b); };
 
@@ -152,8 +146,7 @@ GrainState GrainSimulation::Implementation::state() const {
                    .counters = system.counters,
                    .walls = system.walls.loads,
                    .servos = {system.walls.servos.begin(), system.walls.servos.end()},
-                   .potential = potential_at_start,
-                   .energy = energy_at_start,
+                   .start = at_start,
                    .cell = system.cell,
                    .crossed = system.cell.crossed};
   if (keeps_impulses()) state.impulses = system.bodies.impulses;  // the others find all of a step in that step
@@ -166,16 +159,16 @@ SavedState GrainSimulation::save() const {
   const GrainSystem& system = implementation_->system;
   GrainState state = implementation_->state();
   SavedState saved{.step = state.step,
-                   .arrays = {saved_rows("motions", std::move(state.motions), motion_numbers),
+                   .arrays = {saved_rows("motions", std::move(state.motions), grain_numbers),
                               saved_rows("contacts", std::move(state.contacts), numbers_of_contact(system)),
                               saved_rows("impulses", std::move(state.impulses), impulse_numbers),
                               saved_rows("bonds", std::move(state.bonds), bond_numbers_of_state),
                               saved_rows("breaks", std::move(state.breaks), break_numbers),
-                              saved_rows("losses", std::vector{state.lost}, loss_numbers),
+                              saved_rows("losses", std::vector{state.lost}, ledger_numbers(family())),
                               saved_rows("counters", std::vector{state.counters}, counter_numbers),
                               saved_rows("walls", std::move(state.walls), load_numbers),
                               saved_rows("servos", std::move(state.servos), servo_numbers),
-                              saved_rows("start", std::vector{state.potential, state.energy}, one_number)}};
+                              saved_rows("start", std::vector{state.start}, start_numbers)}};
   if (!system.cell.active) return saved;
   saved.arrays.push_back(saved_rows("cell", std::vector{state.cell}, cell_numbers));
   saved.arrays.push_back(saved_rows("crossed", std::move(state.crossed), image_numbers));
@@ -184,11 +177,11 @@ SavedState GrainSimulation::save() const {
 
 void GrainSimulation::restore(const SavedState& saved) {
   const GrainSystem& system = implementation_->system;
-  const auto losses = rows_in<EnergyLedger>(saved, "losses", loss_numbers);
+  const auto losses = rows_in<EnergyLedger>(saved, "losses", ledger_numbers(family()));
   const auto counters = rows_in<GrainCounters>(saved, "counters", counter_numbers);
-  const auto start = rows_in<double>(saved, "start", one_number);
+  const auto start = rows_in<EnergyAtStart>(saved, "start", start_numbers);
   GrainState state{.step = saved.step,
-                   .motions = rows_in<GrainMotion>(saved, "motions", motion_numbers),
+                   .motions = rows_in<GrainMotion>(saved, "motions", grain_numbers),
                    .contacts = rows_in<ContactState>(saved, "contacts", numbers_of_contact(system)),
                    .impulses = rows_in<BodyImpulse>(saved, "impulses", impulse_numbers),
                    .bonds = rows_in<BondState>(saved, "bonds", bond_numbers_of_state),
@@ -201,14 +194,13 @@ void GrainSimulation::restore(const SavedState& saved) {
       state.impulses.size() != (implementation_->keeps_impulses() ? bodies : 0) ||
       state.bonds.size() != system.bonds.tied.size() || losses.size() != 1 || counters.size() != 1 ||
       state.walls.size() != system.walls.loads.size() || state.servos.size() != system.walls.servos.size() ||
-      start.size() != 2) {
+      start.size() != 1) {
     bad_input(fmt::format("the state is of {}", counted(std::ssize(state.motions), "grain")),
               fmt::format("the scene has {}", bodies), go_on_with);
   }
   state.lost = losses[0];
   state.counters = counters[0];
-  state.potential = start[0];
-  state.energy = start[1];
+  state.start = start[0];
   if (system.cell.active) {
     const auto cells = rows_in<CellMotion>(saved, "cell", cell_numbers);
     state.crossed = rows_in<PeriodicImage>(saved, "crossed", image_numbers);
@@ -234,8 +226,7 @@ void GrainSimulation::stop_all() {
 
 void GrainSimulation::Implementation::go_back_to(const GrainState& state) {
   system.step = state.step;
-  potential_at_start = state.potential;
-  energy_at_start = state.energy;
+  at_start = state.start;
   if (system.cell.active) {
     static_cast<CellMotion&>(system.cell) = state.cell;
     system.cell.next = system.cell.now;

@@ -21,6 +21,7 @@
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
+#include "equidem/motion/servo.hpp"
 
 namespace equidem {
 
@@ -123,22 +124,12 @@ struct BlockSums {
   [[nodiscard]] ContactSums sums() { return {lost, &on_walls}; }
 };
 
-/// What the control of a servo wall goes on from at the start of a step.
-struct ServoMotion {
-  double way = 0;                      ///< m
-  double speed = 0, passed_speed = 0;  ///< in the present step and in the one before, m/s
-  double pace = 0;                     ///< mean speed of the last steps, m/s
-  double free_way = 0;                 ///< m, since the wall last touched a body
-  double wanted = 0, force = 0;        ///< of the last step, N
-  double largest_wanted = 0;           ///< N
-  double excess = 0;                   ///< mean F - W over the time 1/sqrt(k/m) or so, over largest_wanted
-  double overshoot = 0, peak = 0;      ///< largest excess, largest F - W of a step over largest_wanted
-  double errors = 0, steps = 0;        ///< sum of |F - W| over largest_wanted, number of its steps
-  double touched = 0, reached = 0;     ///< 0 or 1
-  double arrived = 0;                  ///< 1: W was reached in this stage or before
-  double side = 0;                     ///< 1, -1: the force began above or below the wanted one; 0: not known yet
-
-  void count_anew() { excess = overshoot = peak = errors = steps = largest_wanted = reached = side = 0; }
+/// What a servo wall goes on from at the start of a step.
+struct ServoMotion : ControlState {
+  double way = 0;           ///< m
+  double passed_speed = 0;  ///< in the step before, m/s
+  double free_way = 0;      ///< m, since the wall last touched a body
+  bool touched = false;     ///< it has touched one
 };
 
 struct ServoState : ServoMotion {

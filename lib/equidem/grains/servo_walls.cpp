@@ -66,25 +66,20 @@ double wanted_force(const GrainSystem& system, const ServoState& state) {
 }
 
 /// Resistance of the contacts on a wall against a motion along a direction.
-struct Resistance {
+struct WallResistance {
   double spring = 0;     ///< sum of k dt, N s/m
   double dashpot = 0;    ///< sum of c, N s/m
   double impedance = 0;  ///< sum of sqrt(k m), N s/m
-
-  [[nodiscard]] double sum() const { return spring + dashpot; }
 };
 
-Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direction) {
-  const LawDescription& law = system.law();
-  Resistance resistance;
-  const auto add = [&](Vec2 normal, double overlap, const ContactConstants& of) {
-    const double along = dot(normal, direction), across = cross(normal, direction), c = of.dashpot();
-    overlap = std::max(overlap, 0.0);
-    const double k = law.spring_power * of.stiffness * std::pow(overlap, law.spring_power - 1);
-    resistance.spring += system.dt() * (k * along * along + of.sliding.stiffness * across * across);
-    resistance.impedance += std::sqrt(k * of.reduced_mass) * along * along;
-    resistance.dashpot +=
-        (law.dashpot != nullptr ? law.dashpot(c, overlap) : c) * along * along + of.sliding.dashpot * across * across;
+WallResistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direction) {
+  WallResistance sum;
+  const auto add = [&](Vec2 normal, double overlap, const ContactConstants& constants) {
+    const double along = dot(normal, direction), across = cross(normal, direction);
+    const ContactResistance of = resistance_of(system, constants, overlap);
+    sum.spring += system.dt() * (of.k_n * along * along + of.k_t * across * across);
+    sum.impedance += std::sqrt(of.k_n * constants.reduced_mass) * along * along;
+    sum.dashpot += of.c_n * along * along + of.c_t * across * across;
   };
   const std::int32_t j = ~static_cast<std::int32_t>(wall);
   for (const NearParts::List& list : system.contacts.near_walls.blocks) {
@@ -97,7 +92,7 @@ Resistance resistance_of(const GrainSystem& system, std::size_t wall, Vec2 direc
   for (const Candidate& candidate : system.contacts.candidates)
     if (candidate.j == j && candidate.touching && candidate.steps > 0)
       add(candidate.normal, candidate.overlap, candidate);
-  return resistance;
+  return sum;
 }
 
 /// A spring k d^p stores F^((p + 1)/p) k^(-1/p)/(p + 1) at the force F. A body of mass m that comes at the speed
@@ -123,59 +118,42 @@ double speed_of_push(const GrainSystem& system, std::size_t wall) {
 double limit_of(const GrainSystem& system, const ServoState& state) {
   const Servo& servo = servo_of(system, state);
   if (servo.max_speed) return *servo.max_speed;
-  const double push = largest_push * std::max(state.wanted, state.force);
+  const double push = largest_push * std::max(state.wanted, state.present);
   return state.speed_of_push * std::pow(push, exponent_of_push(system));
-}
-
-/// \param share that a step adds to the mean of the force over 1/sqrt(k/m)
-void count_error(ServoState& state, double share) {
-  state.largest_wanted = std::max(state.largest_wanted, state.wanted);
-  if (state.touched != 0 && state.reached == 0) {
-    const double missing = state.wanted - state.force;
-    if (state.side == 0) state.side = missing > 0 ? -1 : 1;
-    if (std::abs(missing) <= 0.01 * state.wanted || missing * state.side > 0) state.reached = state.arrived = 1;
-  }
-  if (state.reached == 0 || state.largest_wanted == 0) return;
-  const double error = (state.force - state.wanted) / state.largest_wanted;
-  state.excess += (state.steps > 0 ? share : 1) * (error - state.excess);
-  state.overshoot = std::max(state.overshoot, state.excess);
-  state.peak = std::max(state.peak, error);
-  state.errors += std::abs(error);
-  state.steps += 1;
 }
 
 void steer(GrainSystem& system, ServoState& state) {
   const Servo& servo = servo_of(system, state);
   const double per_step = 1 / system.dt();
-  state.way += system.dt() * state.speed;
-  state.free_way += std::abs(system.dt() * state.speed);
-  state.passed_speed = state.speed;
-  Resistance resistance = resistance_of(system, state.wall, servo.direction);
-  state.force = -per_step * dot(system.walls.loads[state.wall].step_impulse, servo.direction);
+  state.way += system.dt() * state.rate;
+  state.free_way += std::abs(system.dt() * state.rate);
+  state.passed_speed = state.rate;
+  WallResistance resistance = resistance_of(system, state.wall, servo.direction);
+  state.present = -per_step * dot(system.walls.loads[state.wall].step_impulse, servo.direction);
   if (state.mirror != state.wall) {
-    const Resistance other = resistance_of(system, state.mirror, servo.direction);
+    const WallResistance other = resistance_of(system, state.mirror, servo.direction);
     resistance = {0.5 * (resistance.spring + other.spring), 0.5 * (resistance.dashpot + other.dashpot),
                   0.5 * (resistance.impedance + other.impedance)};
-    state.force = 0.5 * (state.force + per_step * dot(system.walls.loads[state.mirror].step_impulse, servo.direction));
+    state.present =
+        0.5 * (state.present + per_step * dot(system.walls.loads[state.mirror].step_impulse, servo.direction));
   }
   state.wanted = wanted_force(system, state);
   const double most = limit_of(system, state), impedance = resistance.impedance;
-  if (resistance.sum() > 0) {
-    state.touched = 1;
+  if (resistance.spring + resistance.dashpot > 0) {
+    state.touched = true;
     state.free_way = 0;
-    const double missing = state.wanted - state.force;
-    const double going_on = resistance.spring * state.pace + resistance.dashpot * state.speed;
-    const double asked = (servo.relaxation * missing + going_on) / resistance.sum();
-    const double by_waves = state.arrived == 0 && missing > 0 ? 0.5 * missing / impedance : INFINITY;
-    state.speed = std::clamp(asked, -most, std::min(most, by_waves));
+    const double missing = state.wanted - state.present;
+    const double asked = state.asked_rate(servo.relaxation, resistance.spring, resistance.dashpot);
+    const double by_waves = !state.arrived && missing > 0 ? 0.5 * missing / impedance : INFINITY;
+    state.rate = std::clamp(asked, -most, std::min(most, by_waves));
     const double near = near_share * state.wanted, approach = std::abs(missing) <= near ? 1 : near / missing;
-    if (state.speed == asked)
-      state.pace += share_of_pace * servo.relaxation * approach * approach * (state.speed - state.pace);
+    if (state.rate == asked)
+      state.mean_rate += share_of_pace * servo.relaxation * approach * approach * (state.rate - state.mean_rate);
   } else {
-    state.speed = state.wanted > 0 ? most : 0;
-    state.pace = 0;
+    state.rate = state.wanted > 0 ? most : 0;
+    state.mean_rate = 0;
   }
-  count_error(state, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
+  state.count(state.touched, impedance > 0 ? std::min(1.0, resistance.spring / impedance) : 1);
   if (state.free_way <= system.walls.longest_free_way) return;
   throw Error(
       ErrorKind::computation_failed,
@@ -270,6 +248,19 @@ void check_servos(const GrainScene& scene, NormalLaw law) {
   }
 }
 
+ContactResistance resistance_along(const LawDescription& law, double stiffness, double dashpot, double overlap) {
+  return {.k_n = law.spring_power * stiffness * std::pow(overlap, law.spring_power - 1),
+          .c_n = law.dashpot != nullptr ? law.dashpot(dashpot, overlap) : dashpot};
+}
+
+ContactResistance resistance_of(const GrainSystem& system, const ContactConstants& constants, double overlap) {
+  ContactResistance of =
+      resistance_along(system.law(), constants.stiffness, constants.dashpot(), std::max(overlap, 0.0));
+  of.k_t = constants.sliding.stiffness;
+  of.c_t = constants.sliding.dashpot;
+  return of;
+}
+
 void find_servos(GrainSystem& system) {
   for (std::size_t w = 0; w < system.scene.walls.size(); ++w) {
     const Wall& wall = system.scene.walls[w];
@@ -310,10 +301,10 @@ void place_servo_walls(GrainSystem& system) {
   const auto add = [&](const ServoState& state, std::size_t wall, Vec2 direction) {
     WallPlace& place = system.walls.places[wall];
     if (!system.scene.walls[wall].moves()) place = {};
-    const double acting = verlet && system.step > 0 ? 0.5 * (state.speed + state.passed_speed) : state.speed;
-    const double passed = verlet && system.step > 0 ? state.passed_speed : state.speed;
+    const double acting = verlet && system.step > 0 ? 0.5 * (state.rate + state.passed_speed) : state.rate;
+    const double passed = verlet && system.step > 0 ? state.passed_speed : state.rate;
     place.displacement += state.way * direction;
-    place.velocity += state.speed * direction;
+    place.velocity += state.rate * direction;
     place.acting_velocity += acting * direction;
     place.passed_velocity += passed * direction;
   };
@@ -325,23 +316,13 @@ void place_servo_walls(GrainSystem& system) {
 }
 
 std::vector<ServoReport> reports_of(const GrainSystem& system) {
-  std::vector<std::pair<std::size_t, ServoReport>> found;
-  for (const ServoState& state : system.walls.servos) {
-    found.emplace_back(system.walls.wall_of[state.wall],
-                       ServoReport{.wall = system.scene.walls[state.wall].name,
-                                   .mirror = servo_of(system, state).mirror,
-                                   .touched = state.touched != 0,
-                                   .reached = state.reached != 0,
-                                   .wanted = state.wanted,
-                                   .force = state.force,
-                                   .max_speed = limit_of(system, state),
-                                   .overshoot = state.largest_wanted > 0 ? state.overshoot : NAN,
-                                   .peak = state.largest_wanted > 0 ? state.peak : NAN,
-                                   .mean_error = state.steps > 0 ? state.errors / state.steps : NAN});
-  }
-  std::ranges::sort(found, {}, [](const auto& entry) { return entry.first; });
+  std::vector<const ServoState*> states;
+  for (const ServoState& state : system.walls.servos) states.push_back(&state);
+  std::ranges::sort(states, {}, [&](const ServoState* state) { return system.walls.wall_of[state->wall]; });
   std::vector<ServoReport> reports;
-  for (auto& entry : found) reports.push_back(std::move(entry.second));
+  for (const ServoState* state : states)
+    reports.push_back({state->report(), system.scene.walls[state->wall].name, servo_of(system, *state).mirror,
+                       state->touched, limit_of(system, *state)});
   return reports;
 }
 

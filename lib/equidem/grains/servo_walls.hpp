@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Servo control of walls (motion/wall.hpp) between the steps of colliding bodies.
+/// Servo control of walls (motion/servo.hpp) between the steps of colliding bodies.
 #pragma once
 
 #include <vector>
@@ -8,6 +8,15 @@
 #include "equidem/grains/grain_system.hpp"
 
 namespace equidem {
+
+/// Springs and dashpots of a contact or a bond along and across its normal, N/m and N s/m.
+struct ContactResistance {
+  double k_n = 0, k_t = 0, c_n = 0, c_t = 0;
+};
+/// That along the normal. \param dashpot as dashpot_of
+ContactResistance resistance_along(const LawDescription& law, double stiffness, double dashpot, double overlap);
+/// That of a contact with the overlap of the last step.
+ContactResistance resistance_of(const GrainSystem& system, const ContactConstants& constants, double overlap);
 
 /// Set system.walls.servos for the servo walls of the scene, at rest.
 void find_servos(GrainSystem& system);

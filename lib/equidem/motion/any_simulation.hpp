@@ -33,16 +33,6 @@ struct AnyScene {
   [[nodiscard]] bool weighs() const { return gravity != Vec2{}; }
 };
 
-/// How well a periodic cell has kept a stress.
-struct CellServoReport {
-  std::string component;  ///< "xx" or "yy"
-  bool reached = false;   ///< the stress has come within 1 % of the wanted one; before, the last two mean nothing
-  double wanted = 0;      ///< Pa, in the last step
-  double stress = 0;      ///< likewise
-  double overshoot = 0;   ///< largest excess of the stress since then, over the largest wanted so far; NaN: it was 0
-  double mean_error = 0;  ///< mean of the absolute difference since then, over the same
-};
-
 struct CellState {
   double width = 0, height = 0;  ///< m
   double shift = 0;              ///< of the images above against the cell along x, m; within half a width either way

@@ -65,6 +65,12 @@ struct EnergyTerm {
 
 /// The terms of one family, or all terms, in the order of the files.
 std::span<const EnergyTerm> energy_terms(BodyFamily family);
+/// Them as the row of a saved state.
+inline auto ledger_numbers(BodyFamily family) {
+  return [family](auto& ledger, const auto& visit) {
+    for (const EnergyTerm& term : energy_terms(family)) visit(ledger.*term.value);
+  };
+}
 std::span<const EnergyTerm> energy_terms();
 
 /// Energies at one time.

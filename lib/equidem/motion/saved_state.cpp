@@ -6,9 +6,9 @@
 
 namespace equidem {
 
-const std::vector<double>& SavedState::operator[](std::string_view name) const {
+const SavedArray& SavedState::array(std::string_view name) const {
   const auto found = std::ranges::find(arrays, name, &SavedArray::name);
-  if (found != arrays.end()) return found->values;
+  if (found != arrays.end()) return *found;
   bad_input(fmt::format("the saved state has no array '{}'", name), "this simulation saves one",
             "Continue with the case that the state was saved from");
 }
@@ -20,6 +20,13 @@ std::vector<double>& SavedState::operator[](std::string_view name) {
 void refuse_saved_number(std::string_view array, double number) {
   bad_input(fmt::format("the array '{}' of the saved state has {} where no such number can be", array, number),
             "it is of another case, or damaged", "Continue with the case that the state was saved from");
+}
+
+void check_rows(const SavedArray& array, std::size_t columns) {
+  if (array.columns == columns && array.values.size() % columns == 0) return;
+  bad_input(fmt::format("the array '{}' of the saved state has {} numbers in rows of {}", array.name,
+                        array.values.size(), array.columns),
+            fmt::format("{} belong into a row", columns), "Continue with the case that the state was saved from");
 }
 
 std::vector<double> numbers_of(std::span<const DiscMotion> motions) {
@@ -61,24 +68,6 @@ std::optional<double> Oscillation::spread() const {
   if (passages_ < 2) return std::nullopt;
   const double mean = *period() / 2;
   return std::max(longest_ - mean, mean - shortest_) / mean;
-}
-
-std::array<double, Oscillation::saved> Oscillation::save() const {
-  return {
-      static_cast<double>(samples_), static_cast<double>(passages_), time_, value_, first_, last_, shortest_, longest_};
-}
-
-Oscillation Oscillation::restored(std::span<const double, saved> state) {
-  Oscillation result;
-  result.samples_ = static_cast<std::int64_t>(state[0]);
-  result.passages_ = static_cast<std::int64_t>(state[1]);
-  result.time_ = state[2];
-  result.value_ = state[3];
-  result.first_ = state[4];
-  result.last_ = state[5];
-  result.shortest_ = state[6];
-  result.longest_ = state[7];
-  return result;
 }
 
 }  // namespace equidem

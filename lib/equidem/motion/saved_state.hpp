@@ -36,7 +36,8 @@ struct SavedState {
   std::vector<SavedArray> arrays;
 
   /// \throws Error (bad_input) if there is no such array
-  [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const;
+  [[nodiscard]] const SavedArray& array(std::string_view name) const;
+  [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const { return array(name).values; }
   [[nodiscard]] std::vector<double>& operator[](std::string_view name);
   bool operator==(const SavedState&) const = default;
 };
@@ -58,6 +59,9 @@ Number value_of_saved(double saved, std::string_view array) {
   return static_cast<Number>(saved);
 }
 
+/// \throws Error (bad_input): an array has not whole rows of so many numbers
+void check_rows(const SavedArray& array, std::size_t columns);
+
 /// Rows of numbers from structs, and back.
 /// \param numbers function of a row and a visitor that calls the visitor with the numbers of the row, always the same
 template <class Row, class Numbers>
@@ -72,21 +76,24 @@ SavedArray saved_rows(std::string name, std::vector<Row> rows, const Numbers& nu
 /// \throws Error (bad_input) if there is no such array, or its numbers are no such rows
 template <class Row, class Numbers>
 std::vector<Row> rows_in(const SavedState& state, std::string_view name, const Numbers& numbers) {
-  const std::vector<double>& values = state[name];
-  std::vector<Row> rows;
-  for (auto from = values.begin(); from != values.end();) {
-    numbers(rows.emplace_back(), [&](auto& number) {
-      if (from == values.end()) refuse_saved_number(name, std::numeric_limits<double>::quiet_NaN());
-      number = value_of_saved<std::remove_cvref_t<decltype(number)>>(*from++, name);
-    });
-  }
+  const SavedArray& array = state.array(name);
+  std::size_t columns = 0;
+  Row any{};
+  numbers(any, [&](const auto&) { ++columns; });
+  check_rows(array, columns);
+  std::vector<Row> rows(array.values.size() / columns);
+  const double* from = array.values.data();
+  for (Row& row : rows)
+    numbers(row, [&](auto& number) { number = value_of_saved<std::remove_cvref_t<decltype(number)>>(*from++, name); });
   return rows;
 }
 
-/// Rows of one number.
+// The numbers of rows that several states have.
 inline constexpr auto one_number = [](auto& number, const auto& visit) { visit(number); };
+inline constexpr auto vector_numbers = [](auto& v, const auto& visit) { visit(v.x), visit(v.y); };
+inline constexpr auto motion_numbers = [](auto& m, const auto& visit) { visit(m.u.x), visit(m.u.y), visit(m.theta); };
 
-/// Rows of x, y and rotation.
+/// As rows of motion_numbers.
 std::vector<double> numbers_of(std::span<const DiscMotion> motions);
 std::vector<DiscMotion> motions_of(std::span<const double> numbers);
 
@@ -140,9 +147,10 @@ class Oscillation {
   /// Largest difference of a time between two passages from their mean, over the mean; none before the second passage
   [[nodiscard]] std::optional<double> spread() const;
 
-  static constexpr std::size_t saved = 8;  ///< numbers of a saved state
-  [[nodiscard]] std::array<double, saved> save() const;
-  static Oscillation restored(std::span<const double, saved> state);
+  static constexpr auto numbers = [](auto& o, const auto& visit) {
+    visit(o.samples_), visit(o.passages_), visit(o.time_), visit(o.value_), visit(o.first_), visit(o.last_);
+    visit(o.shortest_), visit(o.longest_);
+  };
 
  private:
   std::int64_t samples_ = 0, passages_ = 0;

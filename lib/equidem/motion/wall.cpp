@@ -11,46 +11,6 @@
 namespace equidem {
 namespace {
 
-double lowest_value(const Schedule& schedule) {
-  switch (schedule.kind) {
-    case Schedule::Kind::constant:
-    case Schedule::Kind::ramp:
-      return schedule.value;
-    case Schedule::Kind::sine:
-      return -std::abs(schedule.value);
-    case Schedule::Kind::cycles:
-      return std::min(0.0, schedule.value);
-    case Schedule::Kind::table:
-      break;
-  }
-  return *std::min_element(schedule.values.begin(), schedule.values.end());
-}
-
-[[noreturn]] void refuse_servo(const std::string& wall, const std::string& what, const std::string& why,
-                               const std::string& remedy) {
-  bad_input(fmt::format("the servo of wall '{}' {}", wall, what), why, remedy);
-}
-
-}  // namespace
-
-void check(const Servo& servo, const std::string& name) {
-  check(servo.wanted);
-  if (const double lowest = lowest_value(servo.wanted); !(lowest >= 0)) {
-    refuse_servo(name, fmt::format("wants {:.6g}", lowest), "a wall pushes bodies and does not pull them",
-                 "Give a force or stress of 0 or more at all times");
-  }
-  if (!(std::abs(norm(servo.direction) - 1) <= 1e-12)) {
-    refuse_servo(name, fmt::format("pushes along ({}, {})", servo.direction.x, servo.direction.y),
-                 "that is no unit vector", "Divide it by its length");
-  }
-  const std::string owner = fmt::format(" of the servo of wall '{}'", name);
-  if (servo.max_speed) check_positive(*servo.max_speed, "max_speed" + owner, "m/s");
-  check_range(Range::above_zero_to(1), servo.relaxation, "relaxation" + owner);
-  if (servo.is_stress) check_range(Range::not_negative(), servo.length, "length" + owner, "m");
-}
-
-namespace {
-
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;
 

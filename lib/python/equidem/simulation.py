@@ -112,8 +112,9 @@ class Simulation:
     @property
     def contacts(self) -> Mapping[str, Floats]:
         """Arrays of the contacts: bodies (m, 2), where j < 0 is wall -1 - j, arms (m, 2) in m from the centre of i,
-        forces (m, 2) on i, normal_forces and tangential_forces (m,) in N/m (spheres: N). Normal forces of bonded discs
-        are positive in tension, of bodies that collide in compression."""
+        forces (m, 2) on i, normal_forces and tangential_forces (m,) in N/m (spheres: N). These are the components of
+        forces along the normal n from i, tension positive, and along (-n_y, n_x), for bonded discs and for bodies that
+        collide. Frames and contacts.csv of bodies that collide have the opposite sign: the force on j."""
         return self._steps.contacts()
 
     @property

@@ -347,14 +347,14 @@ Results servo_results(const GrainCase& resolved, const std::vector<StageReport>&
   const char* force = resolved.body == Body::disc ? "N/m" : "N";
   std::vector<std::string> missed, alone;
   const auto add = [&](Results& row, const std::string& stage, const ServoReport& servo) {
-    if (!servo.reached && (servo.wanted > 0 || servo.force > 0))
+    if (!servo.reached && (servo.wanted > 0 || servo.present > 0))
       (servo.touched ? missed : alone).push_back(in_stage(resolved, fmt::format("'{}'", servo.wall), stage));
     row.add("wall", "servo", servo.mirror.empty() ? servo.wall : fmt::format("{} and {}", servo.wall, servo.mirror))
         .set("wanted", servo.wanted, force, "force that a servo wall was to have in the last step")
-        .set("force", servo.force, force, "force with which a servo wall pushed in the last step")
+        .set("force", servo.present, force, "force with which a servo wall pushed in the last step")
         .set("touched", servo.touched)
         .set("reached", servo.reached);
-    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.force);
+    row.add("", fmt::format("wanted, {}", force), servo.wanted).add("", "force", servo.present);
     row.add("max_speed", "limit, m/s", servo.max_speed, "", {.digits = 3})
         .add("overshoot", "overshoot", since_reached(servo, servo.overshoot), "", {.digits = 3})
         .set("peak", since_reached(servo, servo.peak), "",
@@ -394,7 +394,7 @@ Results cell_servo_results(const GrainCase& resolved, const std::vector<StageRep
     row.add("component", "stress", servo.component)
         .set("reached", servo.reached)
         .add("wanted", "wanted, Pa", servo.wanted)
-        .add("stress", "in the last step", servo.stress)
+        .add("stress", "in the last step", servo.present)
         .add("overshoot", "overshoot", since_reached(servo, servo.overshoot), "", {.digits = 3})
         .add("mean_error", "mean error", since_reached(servo, servo.mean_error), "", {.digits = 3});
   };

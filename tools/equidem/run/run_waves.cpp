@@ -2,14 +2,12 @@
 #include "run/run_waves.hpp"
 
 #include <cmath>
-#include <span>
+#include <utility>
 
 #include "equidem/core/text.hpp"
 
 namespace equidem {
 namespace {
-
-constexpr std::size_t columns = 2 + Oscillation::saved;  // step, component, oscillation
 
 Vec2 mean_velocity(const std::vector<DiscMotion>& velocities, const std::vector<std::int32_t>& bodies) {
   Vec2 sum;
@@ -44,12 +42,12 @@ StandingWaves::StandingWaves(const AnySimulation& simulation, const std::vector<
 
 void StandingWaves::open(const std::filesystem::path& /*folder*/, bool /*overwrite*/, const Checkpoint* from) {
   if (from == nullptr) return;
-  const std::vector<double>& rows = from->record.recorded.front().values;
-  for (std::size_t k = 0; k < waves_.size(); ++k) {
-    const std::span<const double> row = std::span(rows).subspan(k * columns, columns);
-    last_step_ = static_cast<std::int64_t>(row[0]);
-    waves_[k].component = static_cast<Component>(static_cast<int>(row[1]));
-    waves_[k].oscillation = Oscillation::restored(row.last<Oscillation::saved>());
+  const SavedState saved{.step = 0, .arrays = {from->record.recorded.front()}};
+  const auto rows = rows_in<SavedWave>(saved, saved.arrays.front().name, SavedWave::numbers);
+  for (std::size_t k = 0; k < waves_.size() && k < rows.size(); ++k) {
+    last_step_ = rows[k].last_step;
+    waves_[k].component = rows[k].component;
+    waves_[k].oscillation = rows[k].oscillation;
   }
 }
 
@@ -66,14 +64,9 @@ void StandingWaves::record(std::int64_t step, double time, bool regular) {
 }
 
 void StandingWaves::save(Checkpoint& checkpoint) {
-  SavedArray saved{.name = "waves", .columns = columns, .values = {}};
-  for (const Wave& wave : waves_) {
-    saved.values.push_back(static_cast<double>(last_step_));
-    saved.values.push_back(static_cast<double>(static_cast<int>(wave.component)));
-    const auto state = wave.oscillation.save();
-    saved.values.insert(saved.values.end(), state.begin(), state.end());
-  }
-  checkpoint.record.recorded.push_back(std::move(saved));
+  std::vector<SavedWave> rows;
+  for (const Wave& wave : waves_) rows.push_back({last_step_, wave.component, wave.oscillation});
+  checkpoint.record.recorded.push_back(saved_rows("waves", std::move(rows), SavedWave::numbers));
 }
 
 Results StandingWaves::results(const std::optional<WaveStiffness>& stiffness) const {

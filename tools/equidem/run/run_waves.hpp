@@ -45,6 +45,17 @@ class StandingWaves final : public RunRecorder {
     Oscillation oscillation = {};
   };
 
+  struct SavedWave {
+    std::int64_t last_step = -1;
+    Component component = Component::none;
+    Oscillation oscillation = {};
+
+    static constexpr auto numbers = [](auto& wave, const auto& visit) {
+      visit(wave.last_step), visit(wave.component);
+      Oscillation::numbers(wave.oscillation, visit);
+    };
+  };
+
   const AnySimulation& simulation_;
   std::vector<Wave> waves_;
   std::int64_t last_step_ = -1;

@@ -12,6 +12,7 @@
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/neighbours/near_parts.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
+#include "equidem/grains/servo_walls.hpp"
 
 namespace equidem {
 
@@ -24,13 +25,9 @@ double contraction(const Tensor2& a, const Tensor2& b) {
   return a.xx * b.xx + a.xy * b.xy + a.yx * b.yx + a.yy * b.yy;
 }
 
-/// Springs and dashpots of a contact or a bond, along and across its branch: N/m and N s/m.
-struct Resistances {
-  double k_n = 0, k_t = 0, c_n = 0, c_t = 0;
-};
-
-/// Adds their part in the resistance of the cell: stretched along x, the ends of a branch part by l_x along x.
-void add_resistance(Vec2 branch, Vec2 normal, const Resistances& of, Vec2& stiffness, Vec2& viscosity) {
+/// Add the part of a contact or a bond in the resistance of the cell: stretched along x, the ends of a branch part by
+/// l_x along x.
+void add_resistance(Vec2 branch, Vec2 normal, const ContactResistance& of, Vec2& stiffness, Vec2& viscosity) {
   const double xx = normal.x * normal.x, yy = normal.y * normal.y;
   stiffness += Vec2{squared(branch.x) * (of.k_n * xx + of.k_t * yy), squared(branch.y) * (of.k_n * yy + of.k_t * xx)};
   viscosity += Vec2{squared(branch.x) * (of.c_n * xx + of.c_t * yy), squared(branch.y) * (of.c_n * yy + of.c_t * xx)};
@@ -40,29 +37,16 @@ Periods deformed(const Periods& periods, const Tensor2& gradient, double dt) {
   return {periods.a + dt * (gradient * periods.a), periods.b + dt * (gradient * periods.b)};
 }
 
-void count_cell_error(CellControl& control) {
-  control.largest_wanted = std::max(control.largest_wanted, std::abs(control.wanted));
-  const double error = control.wanted < 0 ? control.wanted - control.stress : control.stress - control.wanted;
-  if (control.stress != 0 && control.reached == 0) {
-    if (control.side == 0) control.side = error < 0 ? -1 : 1;
-    if (std::abs(error) <= 0.01 * std::abs(control.wanted) || error * control.side < 0) control.reached = 1;
-  }
-  if (control.reached == 0 || control.largest_wanted == 0) return;
-  control.overshoot = std::max(control.overshoot, error / control.largest_wanted);
-  control.errors += std::abs(error) / control.largest_wanted;
-  control.steps += 1;
-}
-
 /// The rate at which the cell is stretched along one axis.
 double controlled_rate(const CellServo& servo, const Schedule& stress, double time, double dt, double present,
                        CellControl& control) {
   control.wanted = stress.at(time);
-  control.stress = present;
-  count_cell_error(control);
-  const double resistance = control.stiffness * dt + control.viscosity;
-  if (resistance > 0) {
-    const double missing = servo.relaxation * (control.wanted - present) + control.viscosity * control.rate;
-    control.rate = std::clamp(missing / resistance, -servo.max_rate, servo.max_rate);
+  control.present = present;
+  control.count(present != 0, 1);
+  const double spring = control.stiffness * dt;
+  if (spring + control.viscosity > 0) {
+    const double asked = control.asked_rate(servo.relaxation, spring, control.viscosity);
+    control.rate = std::clamp(asked, -servo.max_rate, servo.max_rate);
   } else {
     control.rate = control.wanted < 0 ? -servo.max_rate : 0;
   }
@@ -157,12 +141,7 @@ void set_cell(GrainSystem& system) {
 
 void measure_resistance(GrainSystem& system) {
   const NearPairs& near = system.contacts.near;
-  const LawDescription& law = system.law();
   Vec2 stiffness, viscosity;
-  const auto along = [&](double spring, double dashpot, double overlap) {
-    return Resistances{.k_n = law.spring_power * spring * std::pow(overlap, law.spring_power - 1),
-                       .c_n = law.dashpot != nullptr ? law.dashpot(dashpot, overlap) : dashpot};
-  };
   for (const PairBlock& block : near.blocks) {
     for (std::size_t p = 0; p < block.count; ++p) {
       if (!block.touching(p)) continue;
@@ -171,7 +150,8 @@ void measure_resistance(GrainSystem& system) {
       const double distance = norm(branch), overlap = std::max(block.groups[g].reach[k] - distance, 0.0);
       if (!(distance > 0)) continue;
       const double stiffness_of_pair = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      Resistances of = along(stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
+      ContactResistance of =
+          resistance_along(system.law(), stiffness_of_pair, block.groups[g].dashpot[k] / system.dt(), overlap);
       if (system.friction) {
         of.k_t = near.equal ? near.law.tangential_stiffness : block.laws[g].tangential_stiffness[k];
         of.c_t = block.slips[g].dashpot[k] / system.dt();
@@ -182,13 +162,10 @@ void measure_resistance(GrainSystem& system) {
   each_list_of_parts(system.contacts.near_parts, [&](const NearParts::List& list) {
     for (std::size_t p = 0; p < list.count; ++p) {
       if (!list.touching(p)) continue;
-      const Partners pair = partners_of(system, list, p);
-      const ContactConstants constants = constants_of(system, pair.i, pair.j);
       const ContactState contact = state_of(system, list, p);
-      Resistances of = along(constants.stiffness, constants.dashpot(), std::max(contact.overlap, 0.0));
-      of.k_t = constants.sliding.stiffness;
-      of.c_t = constants.sliding.dashpot;
-      add_resistance(system.position_of(pair.j) - system.position_of(pair.i), contact.normal, of, stiffness, viscosity);
+      const ContactConstants constants = constants_of(system, contact.i, contact.j);
+      add_resistance(system.position_of(contact.j) - system.position_of(contact.i), contact.normal,
+                     resistance_of(system, constants, contact.overlap), stiffness, viscosity);
     }
   });
   for (const TiedPair& bond : system.bonds.holding()) {
@@ -323,12 +300,8 @@ CellState state_of_cell(const GrainSystem& system, std::span<const GrainContact>
   const auto add = [&](const char* component, const std::optional<Schedule>& stress, double present,
                        const CellControl& control) {
     if (!stress) return;
-    state.servos.push_back({.component = component,
-                            .reached = control.reached != 0,
-                            .wanted = control.wanted,
-                            .stress = present,
-                            .overshoot = control.largest_wanted > 0 ? control.overshoot : NAN,
-                            .mean_error = control.steps > 0 ? control.errors / control.steps : NAN});
+    CellServoReport& report = state.servos.emplace_back(CellServoReport{control.report(), component});
+    report.present = present;
   };
   add("xx", servo.stress_xx, state.stress.xx, cell.controls[0]);
   add("yy", servo.stress_yy, state.stress.yy, cell.controls[1]);

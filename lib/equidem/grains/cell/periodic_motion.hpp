@@ -17,6 +17,7 @@
 #include "equidem/core/vector.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/motion/any_simulation.hpp"
+#include "equidem/motion/servo.hpp"
 
 namespace equidem {
 
@@ -50,15 +51,9 @@ struct GrainContact;
 struct GrainSystem;
 
 /// The control of one component of the stress.
-struct CellControl {
-  double wanted = 0, stress = 0;                                       ///< of the last step, Pa
-  double rate = 0;                                                     ///< 1/s
-  double stiffness = 0;                                                ///< Pa, if all discs followed the stretch
-  double viscosity = 0;                                                ///< Pa s, likewise
-  double largest_wanted = 0;                                           ///< Pa
-  double overshoot = 0, errors = 0, steps = 0, reached = 0, side = 0;  ///< as in ServoState
-
-  void count_anew() { overshoot = errors = steps = largest_wanted = reached = side = 0; }
+struct CellControl : ControlState {
+  double stiffness = 0;  ///< Pa, if all discs followed the stretch
+  double viscosity = 0;  ///< Pa s, likewise
 };
 
 /// Sums over the bodies of a block and the images that they meet.

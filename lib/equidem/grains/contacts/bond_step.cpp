@@ -257,8 +257,8 @@ std::vector<BodyContact> contacts_of_bonds(const GrainSystem& system) {
                       .arm = same ? frame.lever_i * frame.normal : -frame.lever_j * frame.normal,
                       .shift = same ? shift : -shift,
                       .force = same ? on_i : -on_i,
-                      .normal_force = -dot(on_i, frame.normal),
-                      .tangential_force = -dot(on_i, frame.tangent()),
+                      .normal_force = dot(on_i, frame.normal),
+                      .tangential_force = dot(on_i, frame.tangent()),
                       .bending_moment = same ? bending : -bending});
   }
   std::ranges::sort(result, {}, [](const BodyContact& c) { return std::pair(c.i, c.j); });

@@ -2,98 +2,33 @@
 #include "equidem/grains/stages/staged_simulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/grains/contacts/bond_breaking.hpp"
 #include "equidem/grains/contacts/bond_step.hpp"
-#include "equidem/grains/grain_simulation_implementation.hpp"
 
 namespace equidem {
 namespace {
 
-std::vector<std::size_t> idle(const std::vector<char>& held) {
-  std::vector<std::size_t> numbers;
-  for (std::size_t k = 0; k < held.size(); ++k)
-    if (held[k] == 0) numbers.push_back(k);
-  return numbers;
-}
+constexpr double energy_rounding = 1e-13;  // of sums over all bodies and contacts
 
-}  // namespace
-
-bool BodyChoice::holds(const Grain& grain) const {
-  if (!kinds.empty() && std::ranges::find(kinds, grain.kind) == kinds.end()) return false;
-  if (!box) return true;
-  const Vec2 at = grain.position;
-  return box->low.x <= at.x && at.x <= box->high.x && box->low.y <= at.y && at.y <= box->high.y;
-}
-
-ChangedBodies change_bodies(const PresentBodies& before, const StageBodies& how, std::size_t first_added) {
-  ChangedBodies changed;
-  const auto put = [&](std::size_t number, const Grain& grain, std::int32_t origin) {
-    changed.now.numbers.push_back(number);
-    changed.now.grains.push_back(grain);
-    changed.origins.push_back(origin);
-  };
-  std::vector<char> removes(how.removed.size(), 0), renames(how.renamed.size(), 0);
-  for (std::size_t k = 0; k < before.grains.size(); ++k) {
-    const Grain& grain = before.grains[k];
-    bool goes = false;
-    for (std::size_t c = 0; c < how.removed.size(); ++c)
-      if (how.removed[c].holds(grain)) {
-        goes = true;
-        removes[c] = 1;
-      }
-    if (goes) {
-      ++changed.removed;
-      continue;
-    }
-    put(before.numbers[k], grain, static_cast<std::int32_t>(k));
-    Grain& kept = changed.now.grains.back();
-    for (std::size_t c = 0; c < how.renamed.size(); ++c)
-      if (how.renamed[c].which.holds(kept)) kept.kind = how.renamed[c].kinds[before.numbers[k]], renames[c] = 1;
-    if (kept.kind != grain.kind) ++changed.renamed;
-  }
-  changed.idle_removals = idle(removes);
-  changed.idle_renamings = idle(renames);
-  for (std::size_t k = 0; k < how.added.size(); ++k) put(first_added + k, how.added[k], -1);
-  if (changed.now.grains.empty())
-    bad_input("all bodies are removed", "there is nothing left to move", "Remove fewer, or add some");
-  return changed;
-}
-
-namespace {
-
-/// Steps between two looks at what ends a stage: at rest takes all contacts, walls are few.
+/// Steps after which the end of a stage is tested: rest needs all contacts, walls are few.
 constexpr std::int64_t steps_between_rests = 256, steps_between_places = 16;
+
+std::int64_t steps_between_tests(const StageEnd& end) {
+  if (!end.given()) return std::numeric_limits<std::int64_t>::max();
+  return end.at_rest() ? steps_between_rests : steps_between_places;
+}
 
 std::size_t index_of(const std::vector<WallState>& walls, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(walls, name, &WallState::name) - walls.begin());
-}
-
-void check_walls_of(const GrainStage& stage) {
-  const std::vector<std::string> names = names_of(stage.scene.walls);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) ==
-        names.begin() + static_cast<std::ptrdiff_t>(k))
-      continue;
-    bad_input(fmt::format("stage '{}' has two walls '{}'", stage.name, names[k]), "a wall goes on by its name",
-              "Give each its own name");
-  }
-  const auto need = [&](const std::string& name) {
-    if (std::ranges::find(names, name) != names.end()) return;
-    bad_input(fmt::format("stage '{}' ends by the wall '{}'", stage.name, name), "it has no such wall",
-              "Name a wall that stands in this stage");
-  };
-  if (stage.end.displacement > 0) need(stage.end.wall);
-  if (stage.end.of_cell && !(stage.scene.cell && stage.scene.cell->along == PeriodicCell::Along::xy))
-    bad_input(fmt::format("stage '{}' ends by the strain of a periodic cell", stage.name),
-              "there is no cell that repeats along x and y", "Name two walls between which the strain is");
-  if (stage.end.strain > 0 && !stage.end.of_cell)
-    for (const std::string& name : stage.end.walls) need(name);
 }
 
 double component_of(const Voigt& strain, StageEnd::CellStrain which) {
@@ -108,87 +43,52 @@ double component_of(const Voigt& strain, StageEnd::CellStrain which) {
   return strain.xy;
 }
 
+/// Places among the bonds of a scene of those of another one; both lists are numbers in the run, ascending.
+std::vector<std::int32_t> bond_origins(const std::vector<std::size_t>& before, const std::vector<std::size_t>& now) {
+  std::vector<std::int32_t> origins;
+  for (const std::size_t bond : now) {
+    const auto at = std::ranges::lower_bound(before, bond);
+    origins.push_back(at != before.end() && *at == bond ? static_cast<std::int32_t>(at - before.begin()) : -1);
+  }
+  return origins;
+}
+
+/// d_c is that of the first scene in all stages.
+GrainOptions with_length(GrainOptions options, const GrainScene& scene) {
+  options.reference_length = reference_length(scene, options);
+  return options;
+}
+
+std::vector<GrainStage> checked(std::vector<GrainStage> stages, const GrainOptions& options) {
+  check(stages, options);
+  return stages;
+}
+
 }  // namespace
 
-Effects effects_of(const std::vector<GrainStage>& stages, const GrainOptions& options) {
-  GrainScene all = stages.front().scene;
-  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-  for (const GrainStage& stage : stages) {
-    if (&stage != &stages.front()) {
-      append(all.pairs, stage.scene.pairs);
-      append(all.walls, stage.scene.walls);
-      append(all.grains, stage.bodies.added);
-      if (!all.weighs()) all.gravity = stage.scene.gravity;
-      if (stage.scene.cell && stage.scene.cell->deforms()) all.cell = stage.scene.cell;
-    }
-    if (!stage.bonds) continue;
-    all.bonds.push_back(stage.bonds->like);
-    if (stage.bonds->strengths) all.strengths.emplace();
-  }
-  return effects_of(all, options);
-}
-
-std::vector<std::string> active_effects(const Effects& effects) {
-  std::vector<std::string> names;
-  for (const Effects::Entry& entry : effects.entries)
-    if (entry.active) names.push_back(entry.name);
-  return names;
-}
-
-void check_start(const Wall& wall) {
-  const Vec2 jump = wall.displacement(0);
-  if (jump == Vec2{}) return;
-  bad_input(
-      fmt::format("wall '{}' would jump by ({:.6g}, {:.6g}) m where its motion begins", wall.name, jump.x, jump.y),
-      "a wall that stands moves on from its place", "Let its schedule begin with 0");
-}
-
 StagedSimulation::StagedSimulation(std::vector<GrainStage> stages, const GrainOptions& options)
-    : AnySimulation(BodyFamily::colliding, options.time_step), stages_(std::move(stages)), options_(options) {
-  const GrainStage& first = stages_.front();
-  options_.reference_length = reference_length(first.scene, options);
-  if (first.bodies.change())
-    bad_input(fmt::format("stage '{}' changes the bodies", first.name), "it is the first, and begins with the scene",
-              "Give the scene those bodies");
-  for (std::size_t k = 0; k < stages_.size(); ++k) {
-    if (stages_[k].scene.cell.has_value() != first.scene.cell.has_value())
-      bad_input(fmt::format("of the stages '{}' and '{}' one has a periodic cell", first.name, stages_[k].name),
-                "a cell neither comes nor goes", "Give all stages the cell, or none");
-    check_walls_of(stages_[k]);
-    const bool breaks = first.scene.strengths.has_value();
-    if (const auto& made = stages_[k].bonds;
-        made && made->strengths.has_value() != breaks && !first.scene.bonds.empty())
-      bad_input(
-          fmt::format("of the bonds of stage '{}' and those before it some alone have strengths", stages_[k].name),
-          "those without would never break, and none says so", "Give strengths to all bonds, or to none");
-    if (const auto& made = stages_[k].bonds) check(*made, first.scene.grains, options_);
-    if (k == 0) continue;
-    const std::vector<std::int32_t> origins = wall_origins(k);
-    for (std::size_t w = 0; w < origins.size(); ++w)
-      if (origins[w] >= 0) check_start(stages_[k].scene.walls[w]);
-  }
-  start_ = start_of_first();
-  bonds_ = bonds_at_start();
-  present_ = std::make_unique<GrainSimulation>(scene_of(std::array{std::int64_t{0}}, start_, bonds_), options_);
-  effects_ = effects_of(stages_, options_);
-  initial_ = present_->energy().initial;
-  reports_.push_back(
-      {.name = first.name, .effects = active_effects(present_->effects()), .bonds_made = bonds_.stages.size()});
-  for (const WallState& wall : present_->walls()) start_.walls.push_back(wall.place);
+    : AnySimulation(BodyFamily::colliding, options.time_step),
+      stages_(checked(std::move(stages), options)),
+      options_(with_length(options, stages_.front().scene)),
+      effects_(effects_of(stages_, options_)),
+      start_(start_of_first()),
+      bonds_(bonds_at_start()),
+      present_(scene_of(std::array{StageReport{}}, start_, bonds_), options_) {
+  energies_.initial = present_.energy().initial;
+  reports_.push_back({.name = stages_.front().name,
+                      .effects = active_effects(present_.effects()),
+                      .bonds_made = bonds_.stages.size()});
+  for (const WallState& wall : present_.walls()) start_.walls.push_back(wall.place);
 }
 
 void StagedSimulation::advance(std::int64_t steps) {
   if (reports_.back().over && !over()) begin_stage();
   const GrainStage& stage = stages_[number()];
-  const std::int64_t first = reports_.back().first, end = first + stage.steps;
+  const std::int64_t first = reports_.back().first, end = first + stage.steps, stride = steps_between_tests(stage.end);
   if (step() == end && !reports_.back().over) refuse_endless();
   while (steps > 0 && !reports_.back().over) {
-    std::int64_t chunk = std::min(steps, end - step());
-    if (stage.end.given()) {
-      const std::int64_t stride = stage.end.at_rest() ? steps_between_rests : steps_between_places;
-      chunk = std::min(chunk, stride - (step() - first) % stride);
-    }
-    present_->advance(chunk);
+    const std::int64_t chunk = std::min({steps, end - step(), stride - (step() - first) % stride});
+    present_.advance(chunk);
     steps -= chunk;
     look_for_end();
     if (step() == end && !reports_.back().over) refuse_endless();
@@ -200,21 +100,17 @@ void StagedSimulation::look_for_end() {
   StageReport& report = reports_.back();
   report.last = step();
   const std::int64_t done = step() - report.first;
-  if (stage.end.given()) {
-    const std::int64_t stride = stage.end.at_rest() ? steps_between_rests : steps_between_places;
-    if (done % stride != 0 && done != stage.steps) return;
-    report.over = report.ended = holds(stage.end);
-  } else {
-    report.over = done == stage.steps;
-  }
+  if (done % steps_between_tests(stage.end) != 0 && done != stage.steps) return;
+  report.ended = stage.end.given() && holds(stage.end);
+  report.over = report.ended || (!stage.end.given() && done == stage.steps);
   if (!report.over) return;
-  report.servos = present_->servos();
-  if (const auto cell = present_->cell()) report.cell_servos = cell->servos;
+  report.servos = present_.servos();
+  if (const auto cell = present_.cell()) report.cell_servos = cell->servos;
 }
 
 bool StagedSimulation::holds(const StageEnd& end) {
   StageReport& report = reports_.back();
-  const std::vector<WallState> walls = present_->walls();
+  const std::vector<WallState> walls = present_.walls();
   bool all = true;
   if (end.displacement > 0) {
     const std::size_t w = index_of(walls, end.wall);
@@ -223,20 +119,20 @@ bool StagedSimulation::holds(const StageEnd& end) {
   }
   if (end.strain > 0 && end.of_cell) {
     report.strain =
-        std::abs(component_of(present_->cell()->strain, *end.of_cell) - component_of(start_.strain, *end.of_cell));
+        std::abs(component_of(present_.cell()->strain, *end.of_cell) - component_of(start_.strain, *end.of_cell));
     all = all && report.strain >= end.strain;
   } else if (end.strain > 0) {
     const std::size_t a = index_of(walls, end.walls[0]), b = index_of(walls, end.walls[1]);
-    const Vec2 across = present_->placed_walls()[a].normal;  // points on lines may lie anywhere along them
+    const Vec2 across = present_.placed_walls()[a].normal;  // points on lines may lie anywhere along them
     const double before = dot(start_.walls[b] - start_.walls[a], across),
                  now = dot(walls[b].place - walls[a].place, across);
     report.strain = std::abs(now / before - 1);
     all = all && report.strain >= end.strain;
   }
   if (!end.at_rest() || !all) return all;
-  const EnergyLedger energy = present_->energy();
+  const EnergyLedger energy = present_.energy();
   report.kinetic = energy.elastic() > 0 ? energy.kinetic / energy.elastic() : StageEnd::infinite;
-  report.unbalanced = unbalance_of(*present_, holding_bonds().bonds, stages_[number()].scene.gravity).mean;
+  report.unbalanced = unbalance_of(present_, holding_bonds().bonds, stages_[number()].scene.gravity).mean;
   return report.kinetic <= end.kinetic && report.unbalanced <= end.unbalanced;
 }
 
@@ -267,7 +163,7 @@ void StagedSimulation::refuse_endless() const {
 }
 
 std::vector<BondBreak> StagedSimulation::breaks() const {
-  std::vector<BondBreak> here = present_->breaks(), all;
+  std::vector<BondBreak> here = present_.breaks(), all;
   const std::vector<std::size_t> numbers_of_bonds = bonds_between(numbers(), bonds_).numbers;
   for (BondBreak& event : here) event.bond = numbers_of_bonds[event.bond];
   std::ranges::merge(past_breaks_, here, std::back_inserter(all), {}, &BondBreak::step, &BondBreak::step);
@@ -277,7 +173,7 @@ std::vector<BondBreak> StagedSimulation::breaks() const {
 StagedSimulation::HoldingBonds StagedSimulation::holding_bonds() const {
   const SceneBonds between = bonds_between(numbers(), bonds_);
   std::vector<char> broken(between.bonds.size(), 0);
-  for (const BondBreak& event : present_->breaks()) broken[event.bond] = 1;
+  for (const BondBreak& event : present_.breaks()) broken[event.bond] = 1;
   HoldingBonds holding;
   for (std::size_t b = 0; b < broken.size(); ++b) {
     if (broken[b] != 0) continue;
@@ -296,7 +192,7 @@ std::vector<DiscMotion> StagedSimulation::of_run(const std::vector<DiscMotion>& 
 }
 
 std::vector<BodyContact> StagedSimulation::body_contacts() const {
-  std::vector<BodyContact> contacts = present_->body_contacts();
+  std::vector<BodyContact> contacts = present_.body_contacts();
   const auto number = [&](std::int32_t place) { return static_cast<std::int32_t>(numbers()[place]); };
   for (BodyContact& contact : contacts) {
     contact.i = number(contact.i);
@@ -314,11 +210,464 @@ bool StagedSimulation::over() const {
 }
 
 EnergyLedger StagedSimulation::energy() const {
-  EnergyLedger ledger = present_->energy();
-  ledger.initial = initial_;
-  ledger.potential += potential_;
-  ledger.work_of_stages = changes_;
+  EnergyLedger ledger = present_.energy();
+  ledger.initial = energies_.initial;
+  ledger.potential += energies_.potential;
+  ledger.work_of_stages = energies_.changes;
   return ledger;
+}
+
+// How a stage begins.
+
+StagedSimulation::Start StagedSimulation::start_of_first() const {
+  const GrainScene& scene = stages_.front().scene;
+  Start start{.walls = {}, .bodies = {std::vector<std::size_t>(scene.grains.size()), scene.grains}, .cell = scene.cell};
+  std::iota(start.bodies.numbers.begin(), start.bodies.numbers.end(), std::size_t{0});
+  return start;
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_at_start() const {
+  const GrainScene& scene = stages_.front().scene;
+  Bonds bonds{scene.bonds, scene.strengths, {}};
+  for (GrainBond& bond : bonds.all)
+    if (!bond.rest) bond.rest = rest_of(scene, bond.i, bond.j);
+  return bonds_of(0, std::move(bonds), start_of_first(), {}, {});
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_of(std::size_t stage, Bonds bonds, const Start& start,
+                                                   std::span<const GrainContact> contacts,
+                                                   std::span<const std::int32_t> origins) const {
+  if (!stages_[stage].bonds) return bonds;
+  const PresentBodies& bodies = start.bodies;
+  const StageBonds& how = *stages_[stage].bonds;
+  GrainScene scene;
+  scene.grains = bodies.grains;
+  scene.cell = start.cell;
+  scene.bonds = make_bonds(scene, contacts, origins, bonds_between(bodies.numbers, bonds).bonds, how);
+  if (how.strengths) {
+    const ContactStrengths made = bond_strengths(scene, *how.strengths);
+    if (!bonds.strengths) bonds.strengths.emplace().friction = made.friction;
+    bonds.strengths->tension.insert(bonds.strengths->tension.end(), made.tension.begin(), made.tension.end());
+    bonds.strengths->shear.insert(bonds.strengths->shear.end(), made.shear.begin(), made.shear.end());
+  }
+  for (GrainBond& bond : scene.bonds) bond.i = bodies.numbers[bond.i], bond.j = bodies.numbers[bond.j];
+  bonds.all.insert(bonds.all.end(), scene.bonds.begin(), scene.bonds.end());
+  bonds.stages.insert(bonds.stages.end(), scene.bonds.size(), stage);
+  return bonds;
+}
+
+StagedSimulation::SceneBonds StagedSimulation::bonds_between(const std::vector<std::size_t>& bodies,
+                                                             const Bonds& bonds) {
+  SceneBonds found;
+  const auto place = [&](std::size_t number) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(bodies, number) - bodies.begin());
+  };
+  for (std::size_t b = 0; b < bonds.all.size(); ++b) {
+    GrainBond bond = bonds.all[b];
+    const std::size_t i = place(bond.i), j = place(bond.j);
+    if (i == bodies.size() || j == bodies.size() || bodies[i] != bond.i || bodies[j] != bond.j) continue;
+    bond.i = i, bond.j = j;
+    found.numbers.push_back(b);
+    found.bonds.push_back(bond);
+  }
+  return found;
+}
+
+std::size_t StagedSimulation::first_added(std::size_t stage) const {
+  std::size_t number = stages_.front().scene.grains.size();
+  for (std::size_t k = 0; k < stage; ++k) number += stages_[k].bodies.added.size();
+  return number;
+}
+
+const Grain& StagedSimulation::body_of_run(std::size_t number) const {
+  if (number < stages_.front().scene.grains.size()) return stages_.front().scene.grains[number];
+  std::size_t stage = 0;
+  while (number >= first_added(stage + 1)) ++stage;
+  return stages_[stage].bodies.added[number - first_added(stage)];
+}
+
+/// The stage that gave the servo of a wall its schedule.
+std::size_t StagedSimulation::stage_of_servo(std::size_t stage, std::size_t wall) const {
+  for (; stage > 0 && stages_[stage].scene.walls[wall].servo->goes_on; --stage) {
+    const std::int32_t before = wall_origins(stages_[stage], stages_[stage - 1])[wall];
+    if (before < 0) break;
+    wall = static_cast<std::size_t>(before);
+  }
+  return stage;
+}
+
+/// Likewise of a stress of the cell.
+std::size_t StagedSimulation::stage_of_stress(std::size_t stage, bool CellServo::*goes_on) const {
+  while (stage > 0 && (*stages_[stage].scene.cell->servo).*goes_on) --stage;
+  return stage;
+}
+
+/// The scene of a stage.
+/// \param reports of the stages up to this one, of which their first steps are read
+GrainScene StagedSimulation::scene_of(std::span<const StageReport> reports, const Start& start,
+                                      const Bonds& bonds) const {
+  const std::size_t stage = reports.size() - 1;
+  const auto time_of = [&](std::size_t k) { return static_cast<double>(reports[k].first) * options_.time_step; };
+  GrainScene scene = stages_[stage].scene;
+  scene.grains = start.bodies.grains;
+  const SceneBonds between = bonds_between(start.bodies.numbers, bonds);
+  scene.bonds = between.bonds;
+  scene.strengths.reset();
+  if (bonds.strengths) {
+    scene.strengths.emplace().friction = bonds.strengths->friction;
+    for (const std::size_t bond : between.numbers) {
+      scene.strengths->tension.push_back(bonds.strengths->tension[bond]);
+      scene.strengths->shear.push_back(bonds.strengths->shear[bond]);
+    }
+  }
+  const double time = time_of(stage);
+  for (std::size_t w = 0; stage > 0 && w < start.walls.size(); ++w) {
+    Wall& wall = scene.walls[w];
+    wall.end += start.walls[w] - wall.point;
+    wall.point = start.walls[w];
+    wall.move_x = delayed(wall.move_x, time);
+    wall.move_y = delayed(wall.move_y, time);
+    if (wall.servo) wall.servo->wanted = delayed(wall.servo->wanted, time_of(stage_of_servo(stage, w)));
+  }
+  if (!scene.cell) return scene;
+  PeriodicCell& cell = *scene.cell;
+  cell.corner = start.cell->corner;
+  cell.width = start.cell->width, cell.height = start.cell->height, cell.shift = start.cell->shift;
+  for (Schedule* rate : {&cell.rate_xx, &cell.rate_yy, &cell.rate_xy}) *rate = delayed(*rate, time);
+  if (cell.servo)
+    for (const auto& [stress, goes_on] : {std::pair{&cell.servo->stress_xx, &CellServo::goes_on_xx},
+                                          std::pair{&cell.servo->stress_yy, &CellServo::goes_on_yy}})
+      if (*stress) *stress = delayed(**stress, time_of(stage_of_stress(stage, goes_on)));
+  return scene;
+}
+
+/// Breaks of bonds that have gone before, or go where a stage begins.
+/// \param left places of the bonds of the next scene among those of the present one
+std::vector<BondBreak> StagedSimulation::breaks_of_others(const std::vector<std::int32_t>& left) const {
+  std::vector<BondBreak> all = past_breaks_;
+  const std::vector<std::size_t> numbers_of_bonds = bonds_between(numbers(), bonds_).numbers;
+  for (BondBreak event : present_.breaks()) {
+    if (std::ranges::find(left, static_cast<std::int32_t>(event.bond)) != left.end()) continue;
+    event.bond = numbers_of_bonds[event.bond];
+    all.push_back(event);
+  }
+  std::ranges::stable_sort(all, {}, &BondBreak::step);
+  return all;
+}
+
+void StagedSimulation::begin_stage() {
+  const EnergyLedger before = energy();
+  const std::size_t next = number() + 1;
+  const GrainStage& stage = stages_[next];
+  Start start{.walls = {}, .bodies = {}, .cell = present_.placed_cell()};
+  if (const auto cell = present_.cell()) start.strain = cell->strain;
+  SceneOrigins origins{.bodies = {}, .bonds = {}, .walls = wall_origins(stage, stages_[number()])};
+  const std::vector<WallState> standing = present_.walls();
+  for (std::size_t w = 0; w < origins.walls.size(); ++w)
+    start.walls.push_back(origins.walls[w] < 0 ? stage.scene.walls[w].point : standing[origins.walls[w]].place);
+  std::vector<StageReport> reports = reports_;
+  StageReport& report = reports.emplace_back();
+  report.name = stage.name;
+  report.first = report.last = step();
+  report.renamed_walls = stage.renamed_walls;
+  report.added = stage.bodies.added.size();
+  Bonds bonds;
+  try {
+    start.bodies =
+        change_bodies({numbers(), present_.grains()}, stage.bodies, first_added(next), origins.bodies, report);
+    bonds = bonds_of(next, bonds_, start, present_.contacts(), origins.bodies);
+    origins.bonds =
+        bond_origins(bonds_between(numbers(), bonds_).numbers, bonds_between(start.bodies.numbers, bonds).numbers);
+    std::vector<BondBreak> past = breaks_of_others(origins.bonds);
+    present_.change(scene_of(reports, start, bonds), origins);
+    past_breaks_ = std::move(past);
+  } catch (const Error& error) {
+    throw error.at(stage.where());
+  }
+  report.effects = active_effects(present_.effects());
+  report.bonds_made = bonds.all.size() - bonds_.all.size();
+  reports_ = std::move(reports);
+  start_ = std::move(start);
+  bonds_ = std::move(bonds);
+  const EnergyLedger after = present_.energy();
+  energies_.potential = before.potential;
+  const double stored = before.kinetic + before.elastic(), change = after.kinetic + after.elastic() - stored;
+  if (std::abs(change) > energy_rounding * stored) energies_.changes += change;
+}
+
+// Saved states.
+
+namespace {
+
+/// A stage that has begun, its effects as bits in the order of those of the simulation.
+struct SavedStage {
+  StageReport report;
+  double effects = 0;
+};
+
+constexpr auto stage_numbers = [](auto& s, const auto& visit) {
+  auto& r = s.report;
+  visit(r.first), visit(r.last), visit(r.over), visit(r.ended), visit(r.kinetic), visit(r.unbalanced), visit(r.strain);
+  visit(r.displacement), visit(r.removed), visit(r.renamed), visit(s.effects);
+};
+
+/// A servo in the report of a stage that is over; those of a stage are in the order of its walls, then of its cell.
+struct SavedServo {
+  std::size_t stage = 0;
+  bool of_cell = false, along_y = false;
+  ServoReport report = {};
+};
+constexpr auto servo_report_numbers = [](auto& s, const auto& visit) {
+  auto& r = s.report;
+  visit(s.stage), visit(s.of_cell), visit(s.along_y), visit(r.touched), visit(r.max_speed), visit(r.reached);
+  visit(r.wanted), visit(r.present), visit(r.overshoot), visit(r.peak), visit(r.mean_error);
+};
+
+/// A choice of bodies that held none.
+struct IdleChoice {
+  std::size_t stage = 0;
+  bool renames = false;
+  std::size_t choice = 0;
+};
+constexpr auto idle_numbers = [](auto& s, const auto& visit) { visit(s.stage), visit(s.renames), visit(s.choice); };
+
+/// A body where the present stage began.
+struct SavedBody {
+  std::size_t number = 0;
+  Grain grain = {};
+};
+constexpr auto body_numbers = [](auto& s, const auto& visit) {
+  auto& g = s.grain;
+  visit(s.number), visit(g.kind), visit(g.position.x), visit(g.position.y), visit(g.angle), visit(g.velocity.x);
+  visit(g.velocity.y), visit(g.spin);
+};
+
+/// The cell where the present stage began.
+struct SavedCell {
+  PeriodicCell cell = {};
+  Voigt strain = {};
+};
+constexpr auto stage_cell_numbers = [](auto& s, const auto& visit) {
+  visit(s.cell.width), visit(s.cell.height), visit(s.cell.shift), vector_numbers(s.cell.corner, visit);
+  visit(s.strain.xx), visit(s.strain.yy), visit(s.strain.xy);
+};
+
+constexpr auto energy_numbers = [](auto& e, const auto& visit) {
+  visit(e.initial), visit(e.potential), visit(e.changes);
+};
+
+struct MadeBond {
+  std::size_t stage = 0;
+  GrainBond bond = {};
+  double tension = 0, shear = 0;
+};
+constexpr auto bond_numbers = [](auto& s, const auto& visit) {
+  if (!s.bond.rest) s.bond.rest.emplace();
+  auto& rest = *s.bond.rest;
+  visit(s.stage), visit(s.bond.i), visit(s.bond.j), visit(rest.branch.x), visit(rest.branch.y), visit(rest.angle_i);
+  visit(rest.angle_j), visit(s.tension), visit(s.shear);
+};
+
+/// \param effects all that there are, in the order of their bits
+double bits_of(const std::vector<std::string>& names, const Effects& effects) {
+  double bits = 0;
+  for (std::size_t k = 0; k < effects.entries.size(); ++k)
+    if (std::ranges::find(names, effects.entries[k].name) != names.end()) bits += std::ldexp(1.0, static_cast<int>(k));
+  return bits;
+}
+
+std::vector<std::string> effects_of_bits(const Effects& effects, double bits) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < effects.entries.size(); ++k)
+    if (std::fmod(std::floor(std::ldexp(bits, -static_cast<int>(k))), 2) == 1) names.push_back(effects.entries[k].name);
+  return names;
+}
+
+[[noreturn]] void refuse_state(const std::string& what, const std::string& why) {
+  bad_input(what, why, "Go on with the case that the state was saved from");
+}
+
+/// The reports of the stage of a row.
+StageReport& report_at(std::vector<StageReport>& reports, std::size_t stage) {
+  if (stage < reports.size()) return reports[stage];
+  refuse_state(fmt::format("the saved state reports stage {}", stage + 1),
+               "it has begun fewer: its file may be damaged");
+}
+
+void take_idle(const SavedState& state, const std::vector<GrainStage>& stages, std::vector<StageReport>& reports) {
+  for (const auto& [stage, renames, choice] : rows_in<IdleChoice>(state, "stage_idle", idle_numbers)) {
+    StageReport& report = report_at(reports, stage);
+    const StageBodies& how = stages[stage].bodies;
+    if (choice >= (renames ? how.renamed.size() : how.removed.size()))
+      refuse_state(fmt::format("the saved state tells of choices of bodies that stage '{}' does not make", report.name),
+                   "its file may be damaged");
+    (renames ? report.idle_renamings : report.idle_removals).push_back(choice);
+  }
+}
+
+void take_servos(const SavedState& state, const std::vector<GrainStage>& stages, std::vector<StageReport>& reports) {
+  for (SavedServo& saved : rows_in<SavedServo>(state, "stage_servos", servo_report_numbers)) {
+    StageReport& report = report_at(reports, saved.stage);
+    if (saved.of_cell) {
+      report.cell_servos.push_back({saved.report, saved.along_y ? "yy" : "xx"});
+      continue;
+    }
+    std::size_t skip = report.servos.size();
+    for (const Wall& wall : stages[saved.stage].scene.walls) {
+      if (!wall.servo || skip-- > 0) continue;
+      saved.report.wall = wall.name;
+      saved.report.mirror = wall.servo->mirror;
+      report.servos.push_back(std::move(saved.report));
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+SavedState StagedSimulation::save() const {
+  SavedState state = present_.save();
+  std::vector<SavedStage> stages;
+  std::vector<SavedServo> servos;
+  std::vector<IdleChoice> idle;
+  for (std::size_t k = 0; k < reports_.size(); ++k) {
+    const StageReport& report = reports_[k];
+    stages.push_back({report, bits_of(report.effects, present_.effects())});
+    for (const ServoReport& servo : report.servos) servos.push_back({k, false, false, servo});
+    for (const CellServoReport& servo : report.cell_servos)
+      servos.push_back({k, true, servo.component == "yy", ServoReport{servo}});
+    for (const std::size_t choice : report.idle_removals) idle.push_back({k, false, choice});
+    for (const std::size_t choice : report.idle_renamings) idle.push_back({k, true, choice});
+  }
+  std::vector<SavedCell> cell;
+  if (start_.cell) cell.push_back({*start_.cell, start_.strain});
+  std::vector<SavedBody> bodies;
+  for (std::size_t k = 0; k < numbers().size(); ++k) bodies.push_back({numbers()[k], start_.bodies.grains[k]});
+  std::vector<MadeBond> made;
+  const std::size_t first = bonds_.all.size() - bonds_.stages.size();
+  for (std::size_t k = 0; k < bonds_.stages.size(); ++k) {
+    MadeBond& bond = made.emplace_back(MadeBond{bonds_.stages[k], bonds_.all[first + k]});
+    if (!bonds_.strengths) continue;
+    bond.tension = bonds_.strengths->tension[first + k];
+    bond.shear = bonds_.strengths->shear[first + k];
+  }
+  for (SavedArray& array : std::array{saved_rows("stages", std::move(stages), stage_numbers),
+                                      saved_rows("stage_walls", start_.walls, vector_numbers),
+                                      saved_rows("stage_cell", std::move(cell), stage_cell_numbers),
+                                      saved_rows("stage_bodies", std::move(bodies), body_numbers),
+                                      saved_rows("stage_order", present_.order(), one_number),
+                                      saved_rows("stage_bonds", std::move(made), bond_numbers),
+                                      saved_rows("stage_breaks", past_breaks_, break_numbers),
+                                      saved_rows("stage_servos", std::move(servos), servo_report_numbers),
+                                      saved_rows("stage_idle", std::move(idle), idle_numbers),
+                                      saved_rows("stage_energies", std::vector{energies_}, energy_numbers)})
+    state.arrays.push_back(std::move(array));
+  return state;
+}
+
+StagedSimulation::Bonds StagedSimulation::bonds_in(const SavedState& state, std::size_t begun) const {
+  Bonds bonds = bonds_at_start();
+  const std::size_t own = stages_.front().scene.bonds.size();
+  bonds.all.resize(own);
+  bonds.stages.clear();
+  if (bonds.strengths) bonds.strengths->tension.resize(own), bonds.strengths->shear.resize(own);
+  for (const MadeBond& saved : rows_in<MadeBond>(state, "stage_bonds", bond_numbers)) {
+    if (saved.stage >= begun || !stages_[saved.stage].bonds)
+      refuse_state(fmt::format("the saved state has bonds made in stage {}", saved.stage), "this run makes none there");
+    if (std::max(saved.bond.i, saved.bond.j) >= first_added(saved.stage + 1))
+      refuse_state(fmt::format("the saved state has a bond of the bodies {} and {} in stage '{}'", saved.bond.i,
+                               saved.bond.j, stages_[saved.stage].name),
+                   fmt::format("this run has {} until then", first_added(saved.stage + 1)));
+    const StageBonds& how = *stages_[saved.stage].bonds;
+    GrainBond& bond = bonds.all.emplace_back(how.like);
+    std::tie(bond.i, bond.j, bond.rest) = std::tie(saved.bond.i, saved.bond.j, saved.bond.rest);
+    bonds.stages.push_back(saved.stage);
+    if (!how.strengths) continue;
+    if (!bonds.strengths) bonds.strengths.emplace().friction = how.strengths->friction;
+    bonds.strengths->tension.push_back(saved.tension);
+    bonds.strengths->shear.push_back(saved.shear);
+  }
+  return bonds;
+}
+
+StagedSimulation::Start StagedSimulation::start_in(const SavedState& state, std::size_t begun) const {
+  const GrainStage& stage = stages_[begun - 1];
+  Start start{.walls = rows_in<Vec2>(state, "stage_walls", vector_numbers), .bodies = {}, .cell = stage.scene.cell};
+  PresentBodies& bodies = start.bodies;
+  for (const auto& [number, saved] : rows_in<SavedBody>(state, "stage_bodies", body_numbers)) {
+    const bool ascends = bodies.numbers.empty() || number > bodies.numbers.back();
+    if (!ascends || number >= first_added(begun) || saved.kind < 0 || saved.kind >= stage.scene.kinds)
+      refuse_state(fmt::format("the saved state has a body {} of kind {}", number, saved.kind),
+                   fmt::format("until the stage '{}' this run has {} of {}", stage.name, first_added(begun),
+                               counted(stage.scene.kinds, "kind")));
+    bodies.numbers.push_back(number);
+    Grain& grain = bodies.grains.emplace_back(body_of_run(number));
+    grain.kind = saved.kind;
+    grain.position = saved.position, grain.angle = saved.angle;
+    grain.velocity = saved.velocity, grain.spin = saved.spin;
+  }
+  const auto cell = rows_in<SavedCell>(state, "stage_cell", stage_cell_numbers);
+  if (cell.size() != (start.cell ? 1 : 0))
+    refuse_state("the saved state is of another periodic cell", "its parts do not belong together");
+  if (!start.cell) return start;
+  const PeriodicCell& then = cell[0].cell;
+  start.cell->width = then.width, start.cell->height = then.height, start.cell->shift = then.shift;
+  start.cell->corner = then.corner;
+  start.strain = cell[0].strain;
+  return start;
+}
+
+std::size_t StagedSimulation::stages_begun(const SavedState& state) {
+  const auto found = std::ranges::find(state.arrays, "stages", &SavedArray::name);
+  return found == state.arrays.end() ? 0 : rows_in<SavedStage>(state, "stages", stage_numbers).size();
+}
+
+void StagedSimulation::restore(const SavedState& state) {
+  std::vector<SavedStage> stages = rows_in<SavedStage>(state, "stages", stage_numbers);
+  const auto sums = rows_in<Energies>(state, "stage_energies", energy_numbers);
+  const std::size_t begun = stages.size();
+  if (begun < 1 || begun > stages_.size() || sums.size() != 1 ||
+      state["stage_walls"].size() != 2 * stages_[begun - 1].scene.walls.size())
+    refuse_state(fmt::format("the saved state has begun {}", counted(static_cast<std::int64_t>(begun), "stage")),
+                 fmt::format("this run has {} with other walls", stages_.size()));
+  const Bonds bonds = bonds_in(state, begun);
+  std::vector<BondBreak> past = rows_in<BondBreak>(state, "stage_breaks", break_numbers);
+  if (std::ranges::any_of(past, [&](const BondBreak& event) { return event.bond >= bonds.all.size(); }))
+    refuse_state("the saved state has breaks of bonds that are not there", "its file may be damaged");
+  Start start = start_in(state, begun);
+  const auto order = rows_in<std::size_t>(state, "stage_order", one_number);
+  std::vector<std::size_t> places = order;
+  std::ranges::sort(places);
+  for (std::size_t k = 0; k < std::max(places.size(), start.bodies.numbers.size()); ++k)
+    if (places.size() != start.bodies.numbers.size() || places[k] != k)
+      refuse_state("the saved state has bodies in no order", "its parts do not belong together");
+  std::vector<StageReport> reports;
+  for (SavedStage& stage : stages) reports.push_back(std::move(stage.report));
+  GrainSimulation simulation(scene_of(reports, start, bonds), options_, order);
+  simulation.restore(state);
+  for (std::size_t k = 0; k < begun; ++k) {
+    StageReport& report = reports[k];
+    report.name = stages_[k].name;
+    report.effects = effects_of_bits(simulation.effects(), stages[k].effects);
+    report.added = stages_[k].bodies.added.size();
+    report.bonds_made = static_cast<std::size_t>(std::ranges::count(bonds.stages, k));
+    report.renamed_walls = stages_[k].renamed_walls;
+  }
+  take_servos(state, stages_, reports);
+  take_idle(state, stages_, reports);
+  past_breaks_ = std::move(past);
+  present_ = std::move(simulation);
+  reports_ = std::move(reports);
+  start_ = std::move(start);
+  bonds_ = bonds;
+  energies_ = sums[0];
+  // a length or limit that was raised after the stage had reached it
+  StageReport& last = reports_.back();
+  if (last.over && !last.ended && last.last < last.first + stages_[begun - 1].steps) {
+    last.over = false;
+    last.servos.clear();
+    last.cell_servos.clear();
+  }
 }
 
 }  // namespace equidem

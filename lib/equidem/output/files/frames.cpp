@@ -77,7 +77,7 @@ void write_frame_discs(const TextSink& to, const Assembly& assembly, const Frame
 /// The contacts of the bodies, which are the discs where none has parts.
 void write_frame_contacts(const TextSink& to, const Assembly& assembly, const FrameOptions& options, double time,
                           std::span<const DiscMotion> motions, std::span<const BodyContact> contacts) {
-  const ContactLoads loads{.forces = true, .moments = options.moments};
+  const ContactLoads loads{.forces = true, .moments = options.moments, .on_j = options.travelling};
   const auto contact_of = [&](std::size_t c) { return contacts[c]; };
   if (!options.travelling)
     return write_contacts(to, {.places = assembly.centres, .motions = motions}, contacts.size(), contact_of, loads,

@@ -109,17 +109,18 @@ void write_contacts(const TextSink& to, const BodyPlaces& bodies, std::size_t co
       return component_of(vector(contact_of(c)), component);
     });
   };
-  const auto numbers = [&](const char* name, double BodyContact::*member) {
+  const auto numbers = [&](const char* name, double BodyContact::*member, double sign = 1) {
     data.declare<double>("CellData", name, m, 1,
-                         [member, &contact_of](std::size_t c, int) { return contact_of(c).*member; });
+                         [member, sign, &contact_of](std::size_t c, int) { return sign * contact_of(c).*member; });
   };
   data.declare<std::int32_t>("CellData", "i", m, 1, [&](std::size_t c, int) { return contact_of(c).i; });
   data.declare<std::int32_t>("CellData", "j", m, 1, [&](std::size_t c, int) { return contact_of(c).j; });
   vectors("contact_point", [&](const BodyContact& c) { return bodies.places[place_of(c.i)] + c.arm; });
   if (loads.forces) {
     vectors("force", [](const BodyContact& c) { return c.force; });
-    numbers("normal_force", &BodyContact::normal_force);
-    numbers("tangential_force", &BodyContact::tangential_force);
+    const double sign = loads.on_j ? -1 : 1;
+    numbers("normal_force", &BodyContact::normal_force, sign);
+    numbers("tangential_force", &BodyContact::tangential_force, sign);
   }
   if (loads.moments) numbers("bending_moment", &BodyContact::bending_moment);
   data.places([&](std::size_t point) {

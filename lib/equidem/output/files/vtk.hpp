@@ -31,6 +31,8 @@ struct BodyPlaces {
 /// Forces and moments of contacts, as far as they are known.
 struct ContactLoads {
   bool forces = false, moments = false;
+  /// normal_force and tangential_force are those on j, compression positive, as files of colliding bodies have them.
+  bool on_j = false;
 };
 
 /// The PolyData of contacts: a line each from the centre of i to that of j, also where that leads through the period,

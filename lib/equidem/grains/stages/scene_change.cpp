@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -185,14 +185,25 @@ bool begin_controls(const GrainSystem& old, GrainSystem& own) {
 
 }  // namespace
 
-void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigins& origins) {
-  const GrainSystem& old = before.implementation_->system;
-  GrainSystem& own = implementation_->system;
+void GrainSimulation::change(const GrainScene& scene, const SceneOrigins& origins) {
+  const GrainSystem& system = implementation_->system;
+  check(scene, system.options);
+  std::vector<std::size_t> order(origins.bodies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t body) {
+    return origins.bodies[body] < 0 ? INT32_MAX : system.bodies.place_of_grain[origins.bodies[body]];
+  });
+  auto next = hidden<Implementation>(scene, system.options, order);
+  next->take_over(*implementation_, origins);
+  implementation_ = std::move(next);
+}
+
+void GrainSimulation::Implementation::take_over(const Implementation& before, const SceneOrigins& origins) {
+  const GrainSystem& old = before.system;
+  GrainSystem& own = system;
   const Places places(old, own, origins);
-  assert(
-      std::ranges::is_sorted(places.bodies_then, {}, [](std::int32_t place) { return place < 0 ? INT32_MAX : place; }));
-  const GrainState fresh = implementation_->state();
-  GrainState state = before.implementation_->state();
+  const GrainState fresh = this->state();
+  GrainState state = before.state();
   state.motions = rows_now(state.motions, fresh.motions, places.bodies_then);
   state.crossed = rows_now(state.crossed, fresh.crossed, places.bodies_then);
   // impulses of bodies that are gone are still needed
@@ -201,8 +212,7 @@ void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigin
                        : rows_now(state.impulses, std::vector<BodyImpulse>(fresh.impulses.size()), places.bodies_then);
   take_over_bonds(old, own, places, origins, fresh, state);
   take_over_contacts(old, own, places, fresh, state);
-  state.potential = fresh.potential;
-  state.energy = fresh.energy;
+  state.start = fresh.start;
   // walls and servos that both have go on
   state.walls = rows_now(state.walls, fresh.walls, places.walls_then);
   std::vector<std::int32_t> servos_then;
@@ -215,10 +225,9 @@ void GrainSimulation::take_over(const GrainSimulation& before, const SceneOrigin
   }
   state.servos = rows_now(state.servos, fresh.servos, servos_then);
   for (ServoMotion& servo : state.servos) servo.way = 0;  // what servo walls have gone is in their places
-  implementation_->go_back_to(state);
-  implementation_->kept.reset();
+  go_back_to(state);
   // bodies that have left the cell are where they are, not at their images inside
-  implementation_->potential_at_start = implementation_->potential_and_kinetic().first;
+  at_start.potential = potential_and_kinetic().first;
   for (ServoState& servo : own.walls.servos) servo.count_anew();
   if (own.cell.active && begin_controls(old, own)) measure_resistance(own);
   if (own.cell.deforms && !old.cell.deforms) begin_cell_stress(own, contacts());
