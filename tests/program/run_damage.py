@@ -18,7 +18,7 @@ STUDY = CASES.parent / "studies" / "abe_lattice.toml"
 CELL, ENSEMBLE, PACK = CASES / "random_cell.toml", CASES / "ensemble.toml", CASES / "pack_graded.toml"
 NO_PICTURE = ("--set", "output.files=['csv', 'vtk']")
 MEASURED = ("--set", "shaking.start=0.02", "--set", "output.probe_interval=4e-3", "--set", "output.frame_interval=7e-3")
-VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "sweeps", "rebuilds")  # in result.json
+VARYING = ("report", "times", "particle_steps_per_second", "bytes_per_grain", "loop_bytes", "sweeps", "rebuilds")  # in result.json
 
 
 def contents(folder):

@@ -159,7 +159,7 @@ class Parts(ProgramTest):
         for limit, command, words in (
                 (3000, ("sweep", TENSION, "--key", "ratio", "--from", 0, "--to", 1, "--steps", 41), "nu theory"),
                 (3000, ("homogenize", ENSEMBLE, "--set", "ensemble.discs=[20, 40]", "--set", "ensemble.samples=20"), "discs"),
-                (30000, ("quasistatic", CASES / "rubbing_notch.toml", "--set", "quasistatic.max_events=20", "--set",
+                (30000, ("quasistatic", CASES / "frictional_notch.toml", "--set", "quasistatic.max_events=20", "--set",
                          "output.checkpoint_interval=1e-9"), "20 events")):
             done = run(*command, "--out", self.folder / command[0], stdout=subprocess.PIPE,
                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))

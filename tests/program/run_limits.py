@@ -65,7 +65,7 @@ class Memory(ProgramTest):
              ("homogenize", CELL, ("--set", "assembly.discs=20000", "--set", "homogenize.bounds=affine")),
              ("homogenize", CELL, ("--set", "assembly.discs=20000")),
              ("quasistatic", CASES / "notched_plate.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
-             ("quasistatic", CASES / "rubbing_notch.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
+             ("quasistatic", CASES / "frictional_notch.toml", (*BLOCK, "--set", "quasistatic.max_events=3")),
              ("homogenize", CASES / "viscoelastic_cell.toml",
               ("--set", "assembly.discs=3000", "--set", "viscoelastic.frequencies=[1.0]")),
              ("stability", TENSION, GRID),

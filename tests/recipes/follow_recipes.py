@@ -33,7 +33,7 @@ RECIPES = {
         "list": "lib/equidem/packing/methods.hpp",
         "lines": [(r"FillBox fill_by_rejection,", "FillBox fill_by_grid, fill_by_rejection,"),
                   (r"(enum class PackingMethod \{[^}]*falling)", r"\1, grid"),
-                  (r"(\.open_top = true\},\n)",
+                  (r"(\.bytes_of_body = 1200\},\n)",
                    r'\1      {PackingMethod::grid, "grid", "in square cells", "passes", fill_by_grid},\n')],
         "users": r"\bPackingMethod\b|entry_of\(options\.method\)",
     },
