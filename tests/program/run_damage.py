@@ -183,8 +183,9 @@ class InUse(RunTest):
             while not (out / "frames.pvd").exists() and time.monotonic() - began < 60:
                 time.sleep(0.01)
             for option in ("--resume", "--overwrite"):
+                goes_on = option == "--overwrite" or (out / "run.checkpoint.h5").exists()
                 done = equidem("run", CORNER, "--out", out, option)
-                if option == "--overwrite" or (out / "run.checkpoint.h5").exists():
+                if goes_on:
                     self.check_error(done, 2, str(out), "is in use", "Wait")
         finally:
             running.send_signal(signal.SIGKILL)

@@ -152,7 +152,7 @@ int run(const RunVerb& options) {
   check_outputs(options, *job);
   const auto lock = lock_out(options.common);
   if (options.common.dry_run) {
-    Results results = dry_run_results(*job);
+    Results results = dry_run_results(*job, options.common.out.has_value());
     if (options.accuracy) results.append(accuracy_plan(*options.accuracy, plan_of_steps));
     deliver(options.common, "dry_run", results, job->times());
   } else if (job->goes_to_rest()) {

@@ -105,10 +105,11 @@ Results step_results(RunJob& job, const RunPlan& plan) {
 
 }  // namespace
 
-Results dry_run_results(RunJob& job) {
+Results dry_run_results(RunJob& job, bool with_files) {
   const RunPlan plan = job.plan();
   Results out = job.scene();
-  static_cast<void>(job.simulation());  // the scene and its lists take their memory as in a run
+  // the scene, its lists and the contacts of its files take their memory as in a run
+  if (const AnySimulation& simulation = job.simulation(); with_files) static_cast<void>(simulation.body_contacts());
   out.line("process").add("peak_bytes", "", peak_resident_memory(), "of memory at the peak", {Shown::bytes});
   if (job.goes_to_rest()) return out.append(memory_results(job));
   out.append(step_results(job, plan));

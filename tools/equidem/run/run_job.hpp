@@ -65,8 +65,9 @@ class RunJob {
 std::unique_ptr<RunJob> make_run_job(const CommonOptions& options, bool resume,
                                      const std::optional<std::filesystem::path>& begin_from = {});
 
-/// Steps and their estimated wall-clock seconds, bytes per body; the time step. The first steps are performed.
-Results dry_run_results(RunJob& job);
+/// Steps and their estimated wall-clock seconds, memory, the time step. The first steps are performed.
+/// \param with_files whether the run writes files of its contacts
+Results dry_run_results(RunJob& job, bool with_files);
 
 /// time_step, ...; steps, time, energy {terms, elastic, dissipated, input, error, relative_error},
 /// particle_steps_per_second, bytes_per_disc or bytes_per_grain, and the results of the job.
