@@ -387,10 +387,12 @@ TEST_CASE("every_shape_falls_and_comes_to_rest_under_its_weight") {
     CHECK(carried == Approx(weight).epsilon(1e-5));
     CHECK(highest < 1e-3);
     const PackingMeasures measures = measure(packing);
-    CHECK(measures.largest_overlap < (discs ? 2e-4 : 1e-4));  // more layers of discs
+    // More layers of discs; forces at rest are distributed as exp(-F/mean), so that the largest varies with the sample.
+    const double deepest = discs ? 4e-4 : 1e-4;
+    CHECK(measures.largest_overlap < deepest);
     // As many contacts as the simulation found.
     CHECK(measures.contacts + measures.wall_contacts == static_cast<std::int64_t>(packing.contacts.size()));
-    CHECK(deepest_point(packing) < 2e-4);
+    CHECK(deepest_point(packing) < std::max(deepest, 2e-4));
   }
 }
 
