@@ -53,6 +53,7 @@ inline void wait_while_equal(const std::atomic<int>& value, int old) {
 class Team {
  public:
   explicit Team(int size) : size_(size) {}
+  ~Team() = default;
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
@@ -63,7 +64,7 @@ class Team {
   void fail();
 
  private:
-  const int size_;
+  int size_;
   std::atomic<bool> failed_{false};
   alignas(64) std::atomic<int> arrived_{0};
   alignas(64) std::atomic<int> round_{0};
