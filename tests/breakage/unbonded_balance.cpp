@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States of frictional contacts are in equilibrium, and the residual that is told of them is that of the forces told.
+// States of frictional contacts are in equilibrium, and their reported residual is that of their reported forces.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// Paths with frictional contacts are those of the same network turned, mirrored or in other units: round-off decides
-/// on no event. The last forces of a part that comes loose vanish exactly with that of the bond that held it, so that
+/// on no event. The last forces of a part that is detached vanish exactly with that of the bond that held it, so that
 /// round-off alone says which of them is gone first.
 #include <algorithm>
 #include <cmath>

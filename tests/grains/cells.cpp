@@ -555,32 +555,6 @@ TEST_CASE("a_bond_stretched_past_half_a_period_of_a_cell_pulls_as_without_the_ce
   CHECK(simulation.counters().contacts == 0);
 }
 
-TEST_CASE("the_shift_of_a_bond_across_a_side_is_that_of_its_second_disc_however_the_two_are_numbered") {
-  for (const bool swapped : {false, true}) {
-    GrainScene scene = scene_of({ball({0.2, 4}, 0.5, {0.1, 0}), ball({7.3, 4.3}, 0.4, {-0.1, 0.05})}, {},
-                                one_second(NormalLaw::linear_dashpot, 1, 0.5));
-    if (swapped) std::swap(scene.grains[0], scene.grains[1]);
-    GrainBond bond = sprung();
-    bond.i = 0, bond.j = 1;
-    scene.bonds = {bond};
-    scene.cell = PeriodicCell{.corner = {0, 0}, .width = 8, .height = 8};
-    GrainSimulation simulation(scene, verlet_options(0.001));
-    simulation.advance(50);
-    const std::vector<BodyContact> contacts = simulation.body_contacts();
-    REQUIRE(contacts.size() == 1);
-    const BodyContact& contact = contacts[0];
-    const std::vector<Grain> grains = simulation.grains();
-    const Vec2 branch = grains[contact.j].position + contact.shift - grains[contact.i].position;
-    const double radii = grains[0].radius + grains[1].radius;
-    CAPTURE(swapped, contact.i, contact.j, contact.shift.x, branch.x, branch.y, contact.normal_force);
-    CHECK(contact.i == 0);
-    CHECK(norm(contact.shift - Vec2{swapped ? 8.0 : -8.0, 0}) < 1e-12);
-    CHECK(norm(contact.arm - grains[contact.i].radius / radii * branch) < 1e-12);
-    CHECK(dot(contact.force, branch) > 1);  // they part, and the bond pulls them together
-    CHECK(dot(contact.force, branch) / norm(branch) == Approx(contact.normal_force).epsilon(1e-12));
-  }
-}
-
 TEST_CASE("the_stress_of_a_cell_is_that_which_its_servo_keeps") {
   GrainScene scene = busy_cell(NormalLaw::linear_dashpot, 8, 8, 26);
   for (PairProperties& pair : scene.pairs) pair.stiffness *= 20;

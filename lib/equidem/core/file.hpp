@@ -46,7 +46,7 @@ void write_file(const std::filesystem::path& path, std::string_view content, boo
 
 /// Takes a text part by part.
 using TextSink = std::function<void(std::string_view part)>;
-/// The same for a content that is made while it is written, so that it is never whole in memory.
+/// Write a content while it is made, as the other write_file does: it is never whole in memory.
 /// \param make passes the parts on in their order; what it throws leaves the file as it was
 void write_file(const std::filesystem::path& path, const std::function<void(const TextSink&)>& make, bool overwrite);
 /// Passes on and clears a text that has grown to a block.

@@ -48,7 +48,7 @@ std::atomic<bool> progress_shown{true};
 std::atomic<int> existing{0};
 volatile std::sig_atomic_t stop_asked = 0;
 
-/// Of what is safe in a signal handler.
+/// Calls what is safe in a signal handler alone.
 void ask_to_stop(int signal_number) {
   constexpr std::string_view answer = "stopping: what is done is written first; a second signal ends this at once\n";
   const int error = errno;

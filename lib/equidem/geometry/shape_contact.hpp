@@ -2,7 +2,7 @@
 /// \file
 /// Contacts of two shapes, or of a shape and a line or a segment: closest points and common normal.
 ///
-/// Of two ellipses, exactly:
+/// The contact of two ellipses is exact:
 ///
 /// gap = max over unit vectors n of f(n) = branch . n - h_i(n) - h_j(n), h the support functions; the normal is the n
 /// that attains it, the contact points are the points of the ellipses that reach farthest along n and -n. Apart, the
@@ -125,7 +125,7 @@ void for_touches(const Outline& i, const Outline& j, Vec2 branch, double gap, co
   }
 }
 
-/// What lies behind a line: `place` has the distance place . normal + offset from it.
+/// The half plane behind a line: `place` has the distance place . normal + offset from it.
 struct HalfPlane {
   Vec2 normal;  ///< unit, towards the bodies
   double offset = 0;

@@ -128,7 +128,7 @@ Moments sector(Vec2 from, Vec2 to, double radius) {
   return {0.5 * square * angle, 0.25 * square * square * angle, square * radius / 3 * Vec2{change.y, -change.x}};
 }
 
-/// Of what the disc around the origin shares with the triangle (0, a, b), negative if b lies clockwise of a.
+/// Moments of what the disc around the origin shares with the triangle (0, a, b), negative if b lies clockwise of a.
 Moments sector_or_triangle(Vec2 a, Vec2 b, double radius) {
   const double length = norm(b - a);
   if (!(length > 0)) return {};

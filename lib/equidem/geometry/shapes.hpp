@@ -106,7 +106,7 @@ struct Outline {
 
   [[nodiscard]] bool is_disc() const { return discs.empty() && a == b; }
   [[nodiscard]] std::size_t parts() const { return discs.empty() ? 1 : discs.size(); }
-  /// Of the centre of a part.
+  /// \return the centre of a part, m
   [[nodiscard]] Vec2 offset(std::size_t part) const {
     if (discs.empty()) return {};
     const Vec2 x = scale * discs[part].offset;
@@ -137,7 +137,7 @@ bool are_inside_one_another(const Outline& i, const Outline& j, Vec2 branch);
 double area_of(const Outline& outline);
 /// Area of the part of a body within a rectangle, m².
 double clipped_area(const Outline& outline, Vec2 centre, const Rectangle& region);
-/// Of a union of discs.
+/// Area of the part of a union of discs within a rectangle, m².
 double clipped_area(std::span<const Clump::Disc> discs, const Rectangle& region);
 
 }  // namespace equidem

@@ -40,7 +40,7 @@ struct TiedPair {
   [[nodiscard]] bool has_springs() const { return springs.springs.kN > 0 || springs.springs.kT > 0 || springs.kM > 0; }
 };
 
-/// What a run goes on from.
+/// The state of a bond from which a run continues.
 struct BondState {
   PeriodicImage image;  ///< as in TiedPair
   BondModes impulse;    ///< of the dashpots in the last step

@@ -206,18 +206,23 @@ struct HardLanes {
   }
 }
 
-/// Meet one by one where it is hard.
 template <class Lanes>
-EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lanes>& s, const Bits<Lanes>& hard,
-                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j) {
-  HardLanes lanes;
-  store(hard, lanes.hard);
+EQUIDEM_ALWAYS_INLINE void store_standing(const Standing<Lanes>& s, const Bits<Lanes>& chosen, HardLanes& lanes) {
+  store(chosen, lanes.hard);
   store(s.branch.x, lanes.branch_x);
   store(s.branch.y, lanes.branch_y);
   store(s.axis_i.x, lanes.axis_i_x);
   store(s.axis_i.y, lanes.axis_i_y);
   store(s.axis_j.x, lanes.axis_j_x);
   store(s.axis_j.y, lanes.axis_j_y);
+}
+
+/// Meet one by one where it is hard.
+template <class Lanes>
+EQUIDEM_ALWAYS_INLINE void meet_hard(const PartGroup& group, const Standing<Lanes>& s, const Bits<Lanes>& hard,
+                                     Lanes& gap, Vectors<Lanes>& normal, Vectors<Lanes>& to_i, Vectors<Lanes>& to_j) {
+  HardLanes lanes;
+  store_standing(s, hard, lanes);
   store(gap, lanes.gap);
   store(normal.x, lanes.normal_x);
   store(normal.y, lanes.normal_y);
@@ -304,13 +309,7 @@ EQUIDEM_ALWAYS_INLINE GeometryLanes<Lanes> geometry_of_enlarged_ellipses(const P
                                                                          const Standing<Lanes>& s,
                                                                          const Bits<Lanes>& used) {
   HardLanes lanes;
-  store(used, lanes.hard);
-  store(s.branch.x, lanes.branch_x);
-  store(s.branch.y, lanes.branch_y);
-  store(s.axis_i.x, lanes.axis_i_x);
-  store(s.axis_i.y, lanes.axis_i_y);
-  store(s.axis_j.x, lanes.axis_j_x);
-  store(s.axis_j.y, lanes.axis_j_y);
+  store_standing(s, used, lanes);
   meet_by_enlarged_ellipse(group, lanes);
   GeometryLanes<Lanes> result;
   result.overlap = -load<Lanes>(lanes.gap);
