@@ -49,7 +49,7 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
   state.contact_forces.resize(assembly.contacts.size());
   contact_forces_of(assembly, network.springs, unknowns, refined.motion, state.contact_forces);
   const std::vector<double> internal = network.internal(state.contact_forces);
-  double sums[6] = {0, 0, 0, 0, 0, 0};  // energy, moments, stress
+  double sums[7] = {};  // energy, moments, stress and its scale
   for (std::size_t d = 0; d < static_cast<std::size_t>(network.part.owned); ++d) {
     const auto held = [&](std::size_t k) { return unknowns.held[d * b + k] != 0; };
     const auto reaction = [&](std::size_t k) { return held(k) ? internal[d * b + k] - f[d * b + k] : 0.0; };
@@ -65,7 +65,7 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     sums[0] += linear_spring_energy_of(springs, force);
     if (network.effects.restrained) sums[1] -= moment_on_i(frame, force) + moment_on_j(frame, force);
     const Tensor2 work = force_by_branch(frame, force);
-    sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy;
+    sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy, sums[6] += norm(work);
     const Contact& contact = assembly.contacts[c];
     const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
     if (springs.kN != 0)
@@ -81,6 +81,7 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     sums[1] += times * load.moment;
   }
   result.moment_per_area = sums[1] / area;
+  result.stress_scale = sums[6] / area;
   result.stress = (1 / area) * Tensor2{sums[2], sums[3], sums[4], sums[5]};
 }
 

@@ -21,6 +21,7 @@ struct PartEquilibrium {
   Equilibrium state;
   Tensor2 stress;                  ///< Pa, mean; 0 where the area is not known
   double moment_per_area = 0;      ///< Pa
+  double stress_scale = 0;         ///< Pa
   double largest_deformation = 0;  ///< of a contact, over the sum of its radii
 };
 

@@ -351,6 +351,23 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
             .find("kT") != std::string::npos);
 }
 
+TEST_CASE("no_number_is_proposed_where_none_is_wanted_or_none_was_meant") {
+  using casefile::KeyType;
+  for (const casefile::KeySpec& key : casefile::case_file().spec().keys) {
+    const bool is_text = key.type == KeyType::text || key.type == KeyType::path || key.type == KeyType::choice;
+    for (const std::string value : {".", "-.", ".e5", ",", "3 discs", ".5", "1.", "1,5"}) {
+      if (!is_text && value.find_first_of("0123456789") != std::string::npos) continue;
+      const std::string sentence = error_of(tension_case, {key.path() + "=" + value});
+      CAPTURE(key.path(), value, sentence);
+      CHECK(sentence.find("Write 0") == std::string::npos);
+      if (is_text) CHECK(sentence.find("TOML") == std::string::npos);
+    }
+  }
+  CHECK(error_of(tension_case, {"springs.kT=."}).find("kT is a number in Pa") != std::string::npos);
+  CHECK(error_of(tension_case, {"springs.kT=3 GPa"}).find("Write 3") == std::string::npos);
+  CHECK(parsed(tension_case, {"title=3 discs, 1.5 mm: Stütze"}).title == "3 discs, 1.5 mm: Stütze");
+}
+
 TEST_CASE("deep_and_long_documents_are_refused") {
   const std::string head = "schema = \"equidem/1\"\n";
   for (const std::string& text : {head + "x = " + std::string(100000, '['), head + std::string(100000, 'a') + " = 1\n",

@@ -96,6 +96,8 @@ TEST_CASE("a_table_of_samples_reads_back_or_is_refused") {
   CHECK(read(good).text(1, 1) == "a, \"b\"\nc");
   CHECK(refusal_of([&] { read(good.substr(0, good.rfind(',') + 9)); }).says("line 4 was altered since it was written"));
   CHECK(refusal_of([&] { read("value,message\n0.1,\n"); }).says("its columns are those of another sweep"));
+  const auto of_version = refusal_of([&] { read("value,text,checksum\n0.1,,a\n"); });
+  CHECK(of_version.says("a version other than " + library_version() + ": column 2 is 'text' there and 'message' here"));
   for (std::size_t at = 0; at < good.size(); ++at) {
     for (const unsigned bit : {0U, 5U}) {
       std::string bad = good;

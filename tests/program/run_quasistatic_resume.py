@@ -139,6 +139,20 @@ class QuasistaticResume(ProgramTest):
                              ("quasistatic.legs=[2.0, 1.0]", "quasistatic.legs is given here alone")):
             self.check_error(equidem(*command, "--set", change, "--resume"), 2, "of another case", told)
 
+    def test_events_of_an_earlier_version_are_refused_by_their_words_and_columns(self):
+        out, case = self.folder / "out", CASES / "frictional_notch.toml"
+        command = ("quasistatic", case, *NO_PICTURE, "--out", out, "--set", "quasistatic.max_events=5")
+        self.check_done(equidem(*command))
+        version = parse_json((out / "result.json").read_text())["version"]
+        kept, events = (out / "case.toml").read_text(), (out / "events.csv").read_text()
+        (out / "case.toml").write_text(kept.replace('"frictional"', '"rubs"'))
+        refused = equidem(*command, "--resume")
+        self.check_error(refused, 2, f"before {version}", '"rubs" there', "Choose another --out")
+        self.assertNotIn("Take the value", refused.stderr)
+        (out / "case.toml").write_text(kept)
+        (out / "events.csv").write_text(events.replace("friction_N", "rubbing_N", 1))
+        self.check_error(equidem(*command, "--resume"), 2, f"other than {version}", "'rubbing_N' there and 'friction_N' here")
+
     BLOCK = ('schema = "equidem/1"\n[assembly]\nkind = "hexagonal"\ncolumns = 5\nrows = 4\nradius = 0.01\n[springs]\nkN = 1e9\n'
              'kT = 3e8\n[[support]]\ngroup = "bottom"\nux = true\nuy = true\n[[load]]\ngroup = "top"\nforce = [0.0, 1e3]\n')
 

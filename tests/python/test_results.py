@@ -245,7 +245,7 @@ def test_a_case_is_exported_as_the_program_does(tmp_path):
     result = case.export("yade", out=tmp_path / "yade")
     assert result.bonds > 40 and result.time_step > 0
     assert "CohFrictMat" in (tmp_path / "yade" / "run_equidem.py").read_text()
-    with pytest.raises(eq.BadInput, match="--overwrite"):
+    with pytest.raises(eq.BadInput, match="pass overwrite=True"):
         case.export("yade", out=tmp_path / "yade")
     with pytest.raises(eq.BadInput, match="does not carry .*negative kT"):
         case.set("springs.kT", -1e8).export("lammps", out=tmp_path / "lammps")

@@ -113,6 +113,7 @@ struct SolvedCase {
   Equilibrium equilibrium;
   LargestDeformation deformation = {};
   std::optional<Tensor2> stress = {};  ///< Pa, of the assembly, not made symmetric
+  double stress_scale = 0;             ///< Pa, of the terms that the stress is the sum of
   bool empty_cells = false;            ///< some disc has a cell without area, so that its stress is not known
   /// Pa: all moments that act on discs from outside (restrained rotation, supports, loads) over the area. It equals
   /// the asymmetry of the stress, xy - yx (Abe 1996, eq. 55).

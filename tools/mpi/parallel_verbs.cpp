@@ -52,6 +52,7 @@ SolvedCase evaluated(const petsc::Ranks& ranks, const PartProblem& p, const pets
   result.deformation = {solved.largest_deformation, p.whole.largest_radius};
   if (p.whole.area > 0) {
     result.stress = solved.stress;
+    result.stress_scale = solved.stress_scale;
     result.moment_per_area = solved.moment_per_area;
     result.empty_cells = ranks.any(!cells_are_known(p.part));
   }

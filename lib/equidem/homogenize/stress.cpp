@@ -71,6 +71,13 @@ Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForc
   return (1 / assembly.area()) * Tensor2{xx, xy, yx, yy};
 }
 
+double stress_scale(const Assembly& assembly, std::span<const ContactForce> forces) {
+  const auto [sum] = contact_sums<1>(forces.size(), [&](std::size_t c, auto& sums) {
+    sums[0] += norm(force_by_branch(frame_of(assembly, c), forces[c]));
+  });
+  return sum / assembly.area();
+}
+
 double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium) {
   const std::vector<double>& restraining = equilibrium.rotation_moments;
   double sum = std::accumulate(restraining.begin(), restraining.end(), 0.0);

@@ -16,6 +16,7 @@ class _Sentence(BaseException):
     """
 
     def __init__(self, problem: str, why: str = "", remedy: str = "", where: str = "") -> None:
+        problem, why, remedy = map(in_python, (problem, why, remedy))
         where = without_memory_names(where)
         self.problem, self.why, self.remedy, self.where = problem, why, remedy, where
         text = (f"{where}: " if where else "") + problem + (f" ({why})" if why else "") + "."
@@ -29,6 +30,24 @@ class _Sentence(BaseException):
 def without_memory_names(text: str) -> str:
     """Without the names of cases and assemblies in memory: "case#3:2: springs.kT" is "springs.kT"."""
     return text if "#" not in text else re.sub(r"(--set [\w.]+=\")?\b(case|assembly)#\d+(:\d+)*\"?(: |$)", "", text)
+
+
+_FLAGS = ("dry_run", "list", "overwrite", "quiet", "require_stable", "resume")
+_OPTION = re.compile(r"(?<![\w'\"-])--(?:set (?P<taken>[\w.]+)=none|accept (?P<accepted>(?!with)[a-z]\w*)|"
+                     r"(?P<name>[a-z]+(?:-[a-z]+)*)(?P<value> [A-Z]+\b)?)")
+
+
+def in_python(text: str) -> str:
+    """With arguments in place of options of the command line: "pass --overwrite" is "pass overwrite=True"."""
+    def argument(option: re.Match[str]) -> str:
+        if option["taken"]:
+            return f'set("{option["taken"]}", None)'
+        if option["accepted"]:
+            return f'accept="{option["accepted"]}"'
+        name = option["name"].replace("-", "_")
+        return name + (option["value"] or "=True" * (name in _FLAGS)).replace(" ", "=")
+
+    return _OPTION.sub(argument, text)
 
 
 class EquidemError(Exception):

@@ -35,8 +35,11 @@ void warn_of(const Results& results) {
   const Result* const found = find_result(results, "warnings");
   const auto* sentences = found != nullptr ? std::get_if<std::vector<std::string>>(&found->value.value) : nullptr;
   if (sentences == nullptr) return;
-  for (const std::string& sentence : *sentences)
-    if (PyErr_WarnEx(PyExc_RuntimeWarning, sentence.c_str(), 1) != 0) throw py::error_already_set();
+  const py::object in_python = py::module_::import("equidem.errors").attr("in_python");
+  for (const std::string& sentence : *sentences) {
+    const auto told = py::cast<std::string>(in_python(sentence));
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, told.c_str(), 1) != 0) throw py::error_already_set();
+  }
 }
 
 /// Carry out a verb. Returns (JSON of the numbers, arrays, assembly or None where it is the given one, wall clock of

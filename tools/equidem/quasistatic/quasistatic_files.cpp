@@ -138,10 +138,20 @@ StoredEvents read_events(const std::filesystem::path& path, const EventPath& run
 
 namespace {
 
-/// "strength.seed is 1 there and 2 here": the first entry in which two documents differ; none: they are the same.
-std::optional<std::string> difference(const std::string& key, const TomlValue* there, const TomlValue* here) {
+struct Difference {
+  std::string text;  ///< "strength.seed is 1 there and 2 here"
+  bool of_earlier_version = false;
+};
+
+/// The first entry in which two documents differ; none: they are the same.
+std::optional<Difference> difference(const std::string& key, const TomlValue* there, const TomlValue* here) {
+  const std::size_t dot = std::min(key.rfind('.'), key.size());
+  const auto is_removed = [&](std::string_view word) {
+    return dot < key.size() && casefile::removed_key(key.substr(0, dot), key.substr(dot + 1), word) != nullptr;
+  };
   if (there == nullptr || here == nullptr)
-    return fmt::format("{} is given {} alone", key, there == nullptr ? "here" : "there");
+    return Difference{fmt::format("{} is given {} alone", key, there == nullptr ? "here" : "there"),
+                      there != nullptr && is_removed("")};
   const auto below = [&](const std::string& name) {
     return difference(key.empty() ? name : key + "." + name, there->find(name), here->find(name));
   };
@@ -161,7 +171,8 @@ std::optional<std::string> difference(const std::string& key, const TomlValue* t
                                                     there->boolean == here->boolean && there->text == here->text
                                               : there->is_number() && here->is_number() && there->real == here->real;
   if (same) return {};
-  return fmt::format("{} is {} there and {} here", key, there->shown(), here->shown());
+  return Difference{fmt::format("{} is {} there and {} here", key, there->shown(), here->shown()),
+                    there->type == TomlValue::Type::text && is_removed(there->text)};
 }
 
 TomlValue deciding_keys(TomlValue document) {
@@ -185,8 +196,13 @@ FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& r
   const TomlValue new_keys =
       deciding_keys(casefile::parse_document(to_toml(resolved, there.parent_path()), "the case", {}));
   if (const auto found = difference("", &old_keys, &new_keys)) {
-    bad_input_at(there.string(), "the events there are of another case", *found,
-                 "Take the value there, or choose another --out, or leave out --resume and pass --overwrite");
+    bad_input_at(there.string(),
+                 found->of_earlier_version
+                     ? fmt::format("the events there are of a version before {}", library_version())
+                     : "the events there are of another case",
+                 found->text,
+                 fmt::format("{}hoose another --out, or leave out --resume and pass --overwrite",
+                             found->of_earlier_version ? "C" : "Take the value there, or c"));
   }
   const auto number = [&](const char* key) {
     const TomlValue& value = value_at(kept, key);

@@ -51,10 +51,12 @@ std::string like_example(const KeySpec& key) {
 
 [[noreturn]] void fail_type(const TomlValue& value, const KeySpec& key) {
   std::string remedy = like_example(key);
-  if (value.type == Type::text &&
-      (key.type == KeyType::number || key.type == KeyType::number_or_auto || key.type == KeyType::whole) &&
-      number_from<double>(value.text))
-    remedy = fmt::format("Leave out the quotes: {} = {}", key.name, value.text);
+  if (value.type == Type::text && (key.type == KeyType::number || key.type == KeyType::number_or_auto ||
+                                   key.type == KeyType::whole || key.type == KeyType::held)) {
+    if (const auto advice = number_advice(value.text))
+      fail_at(value, key.path(), fmt::format("{} is text", value.shown()), advice->why, advice->remedy);
+    if (number_from<double>(value.text)) remedy = fmt::format("Leave out the quotes: {} = {}", key.name, value.text);
+  }
   if (value.type == Type::real && key.type == KeyType::whole && value.real == std::floor(value.real) &&
       std::abs(value.real) < 1e15)
     remedy = fmt::format("Write {} = {:.0f}", key.name, value.real);

@@ -152,13 +152,10 @@ std::vector<std::string> segments_of(std::string_view path) {
   return segments;
 }
 
-bool is_bare_word(const std::string& text) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.' || c == '/' || c == ' ';
-  };
-  return !text.empty() && !(text[0] >= '0' && text[0] <= '9') && text[0] != '-' && text[0] != ' ' &&
-         std::all_of(text.begin(), text.end(), allowed);
+/// Whether a value is text without its quotes: it begins no text, list or table of TOML. Where a number is wanted the
+/// check of the key says what is wrong with it.
+bool is_bare(const std::string& text) {
+  return !text.empty() && !has_controls(text) && std::string_view("\"'[{").find(text[0]) == std::string_view::npos;
 }
 
 void put_source(TomlValue& value, const std::shared_ptr<const std::string>& source) {
@@ -173,16 +170,9 @@ TomlValue value_from(const std::string& text, const std::string& source) {
   try {
     parsed = parse_toml("value = " + text, source);
   } catch (const Error& error) {
-    if (const auto advice = number_advice(text))
-      bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), advice->why, advice->remedy);
-    if (is_bare_word(text)) {
-      TomlValue word;
-      word.type = TomlValue::Type::text;
-      word.text = text;
-      return word;
-    }
+    if (is_bare(text)) return *parse_toml("value = " + toml_text(text), source).find("value");
     bad_input_at(source, fmt::format("'{}' is not a valid TOML value", text), error.why(),
-                 "Write a number, true, false, [list] or text");
+                 "Write a number, true, false, [list] or \"text\"");
   }
   if (parsed.entries.size() != 1) {
     bad_input_at(source, "this is more than one value", "one key is set at a time", "Use one option for each key");

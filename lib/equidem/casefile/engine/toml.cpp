@@ -270,17 +270,20 @@ std::optional<NumberAdvice> number_advice(std::string_view text) {
   const std::string_view sign = text.substr(0, text.find_first_not_of("+-") == 1 ? 1 : 0);
   std::string number(text.substr(sign.size()));
   std::string why;
+  bool is_scaled = false;
   if (const std::size_t blank = number.find(' '); blank != std::string::npos) {
     const std::string unit(trimmed(std::string_view(number).substr(blank)));
     const bool has_digits = unit.find_first_of("0123456789") != std::string::npos && !unit_factor(unit);
     number.resize(blank);
     if (has_digits || !number_from<double>(number) || unit.find_first_of(".,=[]{}\"'") != std::string::npos) return {};
     why = fmt::format("a number stands without its unit, here {}", unit);
+    is_scaled = unit_factor(unit).value_or(1) != 1;
   } else if (const std::size_t comma = number.find(','); comma != std::string::npos) {
     number[comma] = '.';
     why = "numbers have a decimal point, not a comma";
   }
-  if (number.starts_with('.')) {
+  const auto digit_at = [&](std::size_t k) { return k < number.size() && number[k] >= '0' && number[k] <= '9'; };
+  if (number.starts_with('.') && digit_at(1)) {
     number.insert(0, 1, '0');
     if (why.empty()) why = "a digit stands before the point";
   }
@@ -290,8 +293,9 @@ std::optional<NumberAdvice> number_advice(std::string_view text) {
     number.insert(point + 1, 1, '0');
     if (why.empty()) why = "a digit stands behind the point";
   }
-  if (why.empty() || number.empty() || number[0] < '0' || number[0] > '9' || !number_from<double>(number)) return {};
-  return NumberAdvice{"TOML: " + why, fmt::format("Write {}{}", sign == "-" ? "-" : "", number)};
+  if (why.empty() || !digit_at(0) || !number_from<double>(number)) return {};
+  return NumberAdvice{"TOML: " + why, is_scaled ? "Write the number in the unit of the key"
+                                                : fmt::format("Write {}{}", sign == "-" ? "-" : "", number)};
 }
 
 std::string toml_parser() {

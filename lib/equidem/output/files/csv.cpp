@@ -16,6 +16,7 @@
 #include "equidem/core/names.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/output/results.hpp"
 
 namespace equidem {
 namespace {
@@ -163,9 +164,18 @@ StoredTable::StoredTable(std::filesystem::path path, const Table& like, const st
   cells_ = csv_cells(text);
   std::vector<std::string> columns = names_in(like.columns());
   columns.emplace_back("checksum");
-  if (cells_.empty() || (columns.size() == 1 ? cells_.front().back() != columns.back() : cells_.front() != columns))
-    refuse(fmt::format("its columns are those of another {}, or of another table", of));
-  columns = cells_.front();
+  const std::vector<std::string> found = cells_.empty() ? std::vector<std::string>{} : cells_.front();
+  const bool any = columns.size() == 1 && !found.empty();
+  if (any ? found.back() != columns.back() : found != columns) {
+    const auto differing = std::ranges::mismatch(found, columns);
+    const auto name = [](auto at, const auto& names) { return at == names.end() ? "none" : fmt::format("'{}'", *at); };
+    refuse(fmt::format(
+        "its columns are those of another {}, of another table or of a version other than {}: column {} is {} there "
+        "and {} here",
+        of, library_version(), differing.in1 - found.begin() + 1, name(differing.in1, found),
+        name(differing.in2, columns)));
+  }
+  columns = found;
   const auto whole = [&](const std::vector<std::string>& cells) {
     return cells.size() == columns.size() && cells.back() == checksum_of(columns, cells, columns.size() - 1);
   };
