@@ -58,9 +58,8 @@ def tension(block, ratio, **tables):
 
 def ratio_point(block, ratio):
     test = tension(block, ratio)
-    return Row(ratio=ratio, poisson_ratio=test.poisson_ratio, stiffness_ratio=test.stiffness_ratio,
-               negative_pivots=test.negative_pivots, unstable_modes=test.unstable_modes,
-               relative_residual=test.relative_residual, stable=test.unstable_modes == 0,
+    keys = "poisson_ratio", "stiffness_ratio", "negative_pivots", "unstable_modes", "relative_residual"
+    return Row(ratio=ratio, **{key: test[key] for key in keys}, stable=test.unstable_modes == 0,
                theory_poisson_ratio=theory_nu(ratio), theory_stiffness_ratio=theory_stiffness(ratio))
 
 
@@ -84,8 +83,8 @@ def uniform_state(block, ratio):
     forces = affine_forces(block, ratio, np.diag([e11, -in_plane_stress(theory_nu(ratio)) * e11]))
     missing, on_first = np.zeros((len(block), 3)), vectors_of(forces, block.normals)
     for side, sign in ((0, -1), (1, 1)):
-        np.add.at(missing[:, :2], block.contacts[:, side], sign * on_first)
-        np.add.at(missing[:, 2], block.contacts[:, side], -block.levers[:, side] * forces[:, 1])
+        loads = np.column_stack([sign * on_first, -block.levers[:, side] * forces[:, 1]])
+        np.add.at(missing, block.contacts[:, side], loads)
     test = tension(block, ratio)
     left = [int(disc) for disc in block.groups["left"]]  # held, without reactions: the loads are in balance
     supports = [{"group": left[:1], "ux": 0.0, "uy": 0.0}, {"group": left[-1:], "ux": 0.0}]
@@ -131,7 +130,7 @@ def check_stress(size):
                 worst[name] = max(worst[name], np.abs(stresses - expected).max() / np.abs(expected).max())
     ratio, spin = 0.5, 1e-3
     forces = KN * affine_forces(cell, ratio, [[0, 0], [spin, 0]])
-    stress = np.tensordot(cell.cell_areas, disc_stresses(cell, forces), 1) / cell.area
+    stress = scatter(disc_stresses(cell, forces), cell.cell_areas)[0]
     test = tension(block_of(size.columns, size.rows), ratio, effects={"rotation": "restrained"})
     return Row(free_rotation_deviation=worst["free"], restrained_rotation_deviation=worst["restrained"],
                ratio=ratio, spin=spin, asymmetry=stress[0, 1] - stress[1, 0],
@@ -158,9 +157,8 @@ def square_lattice(ratio):
     """Section 2.2, kN = 1 Pa."""
     cell = periodic(eq.square)
     found, waves = eq.homogenize(cell, (1.0, ratio)), wave_moduli(cell, (1.0, ratio))
-    turn = np.array([[0.5, 0.5, 1], [0.5, 0.5, -1], [-0.5, 0.5, 0]])  # C' = T C T^T at 45 degrees
-    along = np.array(found.stiffness)
-    at_45 = turn @ along @ turn.T
+    turn, along = np.array([[0.5, 0.5, 1], [0.5, 0.5, -1], [-0.5, 0.5, 0]]), np.array(found.stiffness)
+    at_45 = turn @ along @ turn.T  # C' = T C T^T
     return Row(ratio=ratio, along_rows=along, turned=at_45, anisotropy=found.anisotropy,
                poisson_ratio_rows=nu_along_x(along), poisson_ratio_diagonal=nu_along_x(at_45),
                waves_rows=waves[0], waves_diagonal=waves[3])
@@ -184,12 +182,11 @@ def restrained_waves(nu):
     bulk_wanted = 1 / (1 - 2 * nu)
     kT = max(0.0, (2 - bulk_wanted) / (2 * SQRT3))
     cell, springs, held = periodic(), (kT + 2 * bulk_wanted / SQRT3, kT), {"rotation": "restrained"}
-    pairs = [(transverse, longitudinal - transverse)
-             for longitudinal, transverse in wave_moduli(cell, springs, effects=held)]
-    shear, bulk = pairs[0]
-    return Row(wanted_poisson_ratio=nu, kN=springs[0], kT=kT, shear_modulus=shear,
-               poisson_ratio=(bulk - shear) / (2 * bulk),
-               deviation=max(max(abs(g - 1), abs(k / bulk_wanted - 1)) for g, k in pairs),
+    longitudinal, shears = np.array(wave_moduli(cell, springs, effects=held)).T
+    bulks = longitudinal - shears
+    return Row(wanted_poisson_ratio=nu, kN=springs[0], kT=kT, shear_modulus=shears[0],
+               poisson_ratio=(bulks[0] - shears[0]) / (2 * bulks[0]),
+               deviation=np.abs([shears - 1, bulks / bulk_wanted - 1]).max(),
                poisson_ratio_of_tension=nu_along_x(np.array(eq.homogenize(cell, springs, effects=held).stiffness)))
 
 
@@ -197,9 +194,8 @@ def restrained_waves(nu):
 
 def scatter(stresses, areas):
     """Mean and standard deviation of each component, weighted by area."""
-    shares = areas / areas.sum()
-    mean = np.tensordot(shares, stresses, 1)
-    return mean, np.sqrt(np.tensordot(shares, (stresses - mean) ** 2, 1))
+    mean = np.average(stresses, 0, areas)
+    return mean, np.sqrt(np.average((stresses - mean)**2, 0, areas))
 
 
 def unequal_sample(spread, seed):

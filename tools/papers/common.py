@@ -23,17 +23,13 @@ from shown import Page, Row, csv_lines
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATA = ROOT / "data" / "papers"
+sys.path += [str(ROOT / "build" / preset / "python") for preset in ("release", "dev", "test")]  # if not installed
 try:
     import equidem as eq
-except ImportError:  # not installed: the one that was built here
-    for preset in ("release", "dev", "test"):
-        sys.path.append(str(ROOT / "build" / preset / "python"))
-    try:
-        import equidem as eq
-    except ImportError as missing:
-        sys.exit(f"The Python module 'equidem' cannot be imported by {sys.executable} ({missing}). Run tools/prepare "
-                 "release \"build python\" equidem_python, and take the interpreter that it was built for, such as "
-                 "/usr/bin/python3")
+except ImportError as missing:
+    sys.exit(f"The Python module 'equidem' cannot be imported by {sys.executable} ({missing}). Run tools/prepare "
+             "release \"build python\" equidem_python, and take the interpreter that it was built for, such as "
+             "/usr/bin/python3")
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted."""
@@ -85,17 +81,10 @@ def main(reproduce, add_options=lambda parser: None):
         page = Page(name, {**globals(), **vars(script)}, vars(options))
         options.size = page.names["size"] = Row(page.told["size"]["quick" if options.quick else "full"])
         deliver(options, page, reproduce(options, page))
-    except (eq.BadInput, OSError) as error:
-        stop(error, 2)
-    except (eq.Interrupted, KeyboardInterrupt):
-        stop("stopped as asked", 130)
-    except eq.ComputationFailed as error:
-        stop(error, 1)
-
-
-def stop(message, code):
-    print(f"error: {message}", file=sys.stderr)
-    sys.exit(code)
+    except (OSError, eq.EquidemError, KeyboardInterrupt) as error:
+        stopped = isinstance(error, KeyboardInterrupt)
+        print("error:", "stopped as asked" if stopped else error, file=sys.stderr)
+        sys.exit(130 if stopped else 1 if isinstance(error, eq.ComputationFailed) else 2)
 
 
 def plain(value):
@@ -207,11 +196,9 @@ def seeds_of(task, function, count, *arguments):
 
 def mean_of(samples):
     """Mean, its standard error and the standard deviation; nan where the samples do not determine it."""
-    samples = [float(sample) for sample in samples]
-    mean = sum(samples) / len(samples)
-    scatter = sum((sample - mean) ** 2 for sample in samples)
-    deviation = math.sqrt(scatter / (len(samples) - 1)) if len(samples) > 1 else math.nan
-    return Row(mean=mean, standard_error=deviation / math.sqrt(len(samples)), standard_deviation=deviation)
+    samples = np.array([*samples], float)
+    deviation = samples.std(ddof=1) if len(samples) > 1 else math.nan
+    return Row(mean=samples.mean(), standard_error=deviation / math.sqrt(len(samples)), standard_deviation=deviation)
 
 
 def means_of(samples):
@@ -239,31 +226,33 @@ def fit_line(points):
     return Row(intercept=intercept, slope=slope, intercept_error=intercept_error, slope_error=slope_error)
 
 
-class Random:
-    """xoshiro256++ seeded through splitmix64: the numbers of equidem/core/random.hpp."""
-    def __init__(self, seed):
-        self.state = []
-        for _ in range(4):
-            seed = (seed + 0x9E3779B97F4A7C15) % 2**64
-            z = (seed ^ seed >> 30) * 0xBF58476D1CE4E5B9 % 2**64
-            z = (z ^ z >> 27) * 0x94D049BB133111EB % 2**64
-            self.state.append(z ^ z >> 31)
+def random_bits(seed):
+    """64 at a time, xoshiro256++ seeded through splitmix64: those of equidem/core/random.hpp."""
+    state = []
+    for k in range(1, 5):
+        z = (seed + k * 0x9E3779B97F4A7C15) % 2**64
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9 % 2**64
+        z = (z ^ z >> 27) * 0x94D049BB133111EB % 2**64
+        state.append(z ^ z >> 31)
+    a, b, c, d = state
+    while True:
+        total = (a + d) % 2**64
+        yield ((total << 23 | total >> 41) + a) % 2**64
+        c, d = c ^ a, d ^ b
+        a, b, c, d = a ^ d, b ^ c, c ^ (b << 17) % 2**64, (d << 45 | d >> 19) % 2**64
 
-    def bits(self):
-        a, b, c, d = self.state
-        c, d, total = c ^ a, d ^ b, (a + d) % 2**64
-        self.state = [a ^ d, b ^ c, c ^ (b << 17) % 2**64, (d << 45 | d >> 19) % 2**64]
-        return ((total << 23 | total >> 41) + a) % 2**64
 
-    def uniform(self):
-        return (self.bits() >> 11) * 2.0**-53
+def uniforms(bits, count):
+    """From 0 to below 1."""
+    return np.array([(next(bits) >> 11) * 2.0**-53 for _ in range(count)])
 
-    def shuffle(self, values):
-        """A list in random order, in place."""
-        for k in range(len(values), 1, -1):
-            other = self.bits() * k >> 64
-            values[k - 1], values[other] = values[other], values[k - 1]
-        return values
+
+def shuffle(values, bits):
+    """A list in random order, in place."""
+    for k in range(len(values), 1, -1):
+        other = next(bits) * k >> 64
+        values[k - 1], values[other] = values[other], values[k - 1]
+    return values
 
 
 # ---- contacts and moduli
@@ -271,19 +260,19 @@ class Random:
 UNIT_STRAINS = {"xx": [[1, 0], [0, 0]], "yy": [[0, 0], [0, 1]], "xy": [[0, 0.5], [0.5, 0]]}
 
 
-def turned(vectors):
-    """By 90 degrees counter-clockwise."""
-    return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
+def frames(normals):
+    """Normal and tangent, the normal turned by 90 degrees counter-clockwise, of each contact, (contacts, 2, 2)."""
+    return np.stack([normals, normals @ [[0, 1], [-1, 0]]], axis=1)
 
 
 def components(vectors, normals):
     """Along the normal and the tangent of each contact."""
-    return np.stack([(vectors * normals).sum(axis=1), (vectors * turned(normals)).sum(axis=1)], axis=1)
+    return np.einsum("cij,cj->ci", frames(normals), vectors)
 
 
 def vectors_of(forces, normals):
     """Normal (tension positive) and tangential forces (contacts, 2) as vectors, on the first disc of each contact."""
-    return forces[:, :1] * normals + forces[:, 1:] * turned(normals)
+    return np.einsum("cij,ci->cj", frames(normals), forces)
 
 
 def disc_stresses(assembly, forces):
@@ -305,14 +294,11 @@ def affine_motions(assembly, gradient):
 def unit_motions(cell, found):
     """The same under the unit strains xx, yy and xy of a homogenized cell, (3, contacts, 2): of the uniform strain, of
     what displacements and of what rotations of the discs add to it."""
-    (i, j), parts = cell.contacts.T, []
-    for name, strain in UNIT_STRAINS.items():
-        state = found.fluctuations[name]
-        rolled = -(cell.levers[:, 0] * state.rotations[i] + cell.levers[:, 1] * state.rotations[j])
-        parts.append((affine_motions(cell, strain),
-                      components(state.displacements[j] - state.displacements[i], cell.normals),
-                      np.stack([0 * rolled, rolled], axis=1)))
-    return [np.array(part) for part in zip(*parts)]
+    (i, j), states = cell.contacts.T, [found.fluctuations[name] for name in UNIT_STRAINS]
+    uniform = [affine_motions(cell, strain) for strain in UNIT_STRAINS.values()]
+    displaced = [components(one.displacements[j] - one.displacements[i], cell.normals) for one in states]
+    rolled = [(cell.levers * one.rotations[cell.contacts]).sum(axis=1)[:, None] * (0, -1) for one in states]
+    return np.array(uniform), np.array(displaced), np.array(rolled)
 
 
 def moduli_of(c):

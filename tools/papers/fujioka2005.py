@@ -8,6 +8,7 @@ Example:
   tools/papers/fujioka2005.py --out figures      minutes; with --quick seconds
 """
 import dataclasses
+import functools
 import math
 import time
 
@@ -53,9 +54,10 @@ class Variant:
     def alone(self):
         return eq._core.Law(self.law, self.a, E)
 
-    def spheres(self, centres, step, e=E, velocities=None, radius=D / 2, refuse_crossing=True):
-        """Spheres over a floor; contacts end at zero overlap as in the paper, those of X where the force is zero."""
-        velocities = np.zeros((len(centres), 2)) if velocities is None else np.array(velocities, dtype=float)
+    def spheres(self, centres, step, e=E, velocity=0.0, radius=D / 2, refuse_crossing=True):
+        """Spheres over a floor, moving along y; contacts end at zero overlap as in the paper, those of X where the
+        force is zero."""
+        velocities = np.zeros((len(centres), 2)) + (0, velocity)
         return eq._core.Spheres(np.array(centres, dtype=float), velocities, radius, self.law, self.a, e, self.of_paper,
                                 G, step, refuse_crossing)
 
@@ -125,25 +127,22 @@ def seconds_of(work, clock=time.perf_counter):
 def measure_table1(size):
     """Time of the processor, by turns, of equal runs the least of each slice: other load of the machine has little
     effect."""
-    slices, rows, laws, runs, samples = 50, [], [], [], []
+    slices, rows, works = 50, [], []
     for variant in variants(VERY_STIFF):
         step, law = STEP if variant.label == "X stiff" else size.table1_step, variant.alone()
         balls = [(1.5 * D * k, column(1)[0][1]) for k in range(BALLS)]
         rows.append(variant.row(time_step=step, run_seconds=0.0,
                                 law_alone_nanoseconds=math.inf if variant.of_paper else math.nan,
                                 evaluations_gravity_first=gravity_first(law, step) if variant.of_paper else 0))
-        laws.append(law)
-        runs.append([variant.spheres(balls, step) for _ in range(3)])
-        samples.append(samples_of_law(law) if variant.of_paper else None)
+        works.append(([variant.spheres(balls, step) for _ in range(3)], round(DURATION / step) // slices,
+                      variant.of_paper and functools.partial(law.sum, *samples_of_law(law), 20)))
     for part in tracked("Table 1:", range(slices)):
-        for row, law, own, states in zip(rows, laws, runs, samples):
-            steps = round(DURATION / row.time_step) // slices
-            row["run_seconds"] += min(seconds_of(lambda: run.advance(steps), time.process_time) for run in own)
-            if part % 5 == 0 and states is not None:
-                seconds = seconds_of(lambda: law.sum(*states, 20))
-                row["law_alone_nanoseconds"] = min(row.law_alone_nanoseconds, seconds * 1e9 / (20 * 4096))
-    for row, own in zip(rows, runs):
-        row["evaluations"] = own[0].counters.evaluations
+        for row, (runs, steps, alone) in zip(rows, works):
+            row["run_seconds"] += min(seconds_of(lambda: run.advance(steps), time.process_time) for run in runs)
+            if part % 5 == 0 and alone:
+                row["law_alone_nanoseconds"] = min(row.law_alone_nanoseconds, seconds_of(alone) * 1e9 / (20 * 4096))
+    for row, (runs, _, _) in zip(rows, works):
+        row["evaluations"] = runs[0].counters.evaluations
     return rows
 
 
@@ -167,34 +166,31 @@ def watch_impacts(variant, fast):
         return 0.5 * v * v + G * ((y - D / 2) - lag * v)
 
     def start():
-        return variant.spheres([(0, y)], STEP, velocities=[(0, v)], refuse_crossing=False)
-    ratios, flights, paths, deepest, ran_away, met = [], [], [], 0.0, False, False
+        return variant.spheres([(0, y)], STEP, velocity=v, refuse_crossing=False)
+    ratios, flights, paths, ran_away, met = [], [], [], False, False
     before, at_contact, run = energy(variant.lag), 0.0, start()
     for _ in range(100000 if fast else 8000):
         contacts = run.counters.contacts
         run.advance(1)
         if not met and run.counters.contacts > contacts:
             met, at_contact = True, energy()
+            paths.append([])
         depth = -(y - D / 2) / D
         if depth > 0:
-            if len(paths) == len(ratios):
-                paths.append([])
             paths[-1].append((depth, -v * STEP / D))
-            deepest = max(deepest, depth)
         y, v = run.sphere(0)[1::2]
         if not met or y - D / 2 <= 0:
             continue
         ratios.append(energy() / at_contact)
         flights.append(energy(variant.lag) / before)
-        paths += [[]] * (len(ratios) - len(paths))
         before, met, ran_away = energy(variant.lag), False, v * STEP > D / 2
         if ran_away or len(ratios) == 20:
             break
         if fast:
             y, v = leap(variant, y, v)
             run = start()
-    return variant.row(paths=paths, energy_ratios=ratios, energy_ratios_of_flights=flights, deepest=deepest,
-                       ran_away=ran_away)
+    return variant.row(paths=paths, energy_ratios=ratios, energy_ratios_of_flights=flights,
+                       deepest=max((depth for path in paths for depth, _ in path), default=0.0), ran_away=ran_away)
 
 
 def compare_printed():
@@ -246,22 +242,19 @@ def errors_of(step, speed, parting, seconds=0.0, sweeps=0.0):
 def slide_without_lag(step):
     """C by symmetry: the closing speed is the change of overlap since the step before, not the old velocity along the
     new normal."""
-    law, bx, by, vx, vy, c, vc = eq._core.Law("linear_dashpot", 0.10, E), R0, R0, 0.0, 0.0, (1 + math.sqrt(3)) * R0, 0.0
+    law, b, v, c, w = variants(STIFF)[0].alone(), R0 + 1j * R0, 0, 1j * (1 + math.sqrt(3)) * R0, 0  # x + i y of B and C
     pair_before = floor_before = parting = 0.0
     for n in range(1, math.ceil(1.3 * EXACT_PARTING / step) + 1):
-        distance = math.hypot(bx, by - c)
-        pair, floor, nx, ny = 2 * R0 - distance, R0 - by, bx / distance, (by - c) / distance
-        gx = gy = on_c = 0.0
+        pair, floor, normal = 2 * R0 - abs(b - c), R0 - b.imag, (b - c) / abs(b - c)
         if pair > 0:
             # change of the closing speed shared by two equal masses; A acts on C as the mirror image of B
             push = -0.5 * law.step(pair, pair - pair_before, True)[0] / step
-            gx, gy, on_c, parting = push * nx, push * ny, -2 * push * ny, n * step
+            v, w, parting = v + push * normal, w - 2j * push * normal.imag, n * step
         if floor > 0:
-            gy -= law.step(floor, floor - floor_before, True)[0] / step
-        pair_before, floor_before = pair, floor
-        vx, vy, vc = vx + gx, vy + gy - G * step, vc + on_c - G * step
-        bx, by, c = bx + step * vx, by + step * vy, c + step * vc
-    return errors_of(step, vx, parting)
+            v -= 1j * law.step(floor, floor - floor_before, True)[0] / step
+        pair_before, floor_before, v, w = pair, floor, v - 1j * G * step, w - 1j * G * step
+        b, c = b + step * v, c + step * w
+    return errors_of(step, v.real, parting)
 
 
 def slide_stacked(size):
@@ -282,11 +275,9 @@ def slide_stacked(size):
 # ---- a bouncing ball over 3 s, beside the rigid one
 
 def rigid_height(at):
+    """Of a ball that was thrown up from the floor so that it is highest at the time 0."""
     speed = math.sqrt(2 * G * DROP * D)
-    left = at - speed / G
-    if left < 0:
-        return DROP * D - 0.5 * G * at * at
-    speed *= E
+    left = at + speed / G
     while left > 2 * speed / G:
         left -= 2 * speed / G
         speed *= E

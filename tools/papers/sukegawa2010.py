@@ -38,20 +38,15 @@ class Run(Row):
     filling, falling, shaking, pictures = None, (), (), ()
 
     def __init__(self, row, numbers=(), **more):
-        text = ("run", "shape", "variant")
-        super().__init__({key: value if key in text else float(value)
+        super().__init__({key: value if key in ("run", "shape", "variant") else float(value)
                           for key, value in {**row, **dict(numbers)}.items()})
-        vars(self).update(more)
+        vars(self).update(more, title=f"{self.acceleration_gal:g} gal, {self.frequency_Hz:.3g} Hz")
 
     def number(self, key):
         """key: a name, that of a number of the filling, or two whose difference is wanted."""
         if isinstance(key, tuple):
             return self[key[0]] - self[key[1]]
         return self.filling[key.removeprefix("filling.")] if key.startswith("filling.") else self[key]
-
-    @property
-    def title(self):
-        return f"{self.acceleration_gal:g} gal, {self.frequency_Hz:.3g} Hz"
 
     @property
     def mapped(self):
@@ -94,10 +89,17 @@ def plan(options, told):
     return found
 
 
-def kept_run(arguments):
-    """A run, kept in a file where a path is given."""
+def run_of(arguments):
+    """A run; where a path is given it is kept in that file, and taken from there if it exists."""
     fill, *shaking, path = arguments
-    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
+    settings = dataclasses.asdict(fill)
+    if path and path.exists():
+        found = json.loads(path.read_text(encoding="utf-8"))
+        if found["fill"] != settings:
+            raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
+                              "Choose another --out, or remove it")
+        return found
+    found = {"fill": settings, **run_box(fill, *shaking)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")
@@ -106,23 +108,13 @@ def kept_run(arguments):
     return found
 
 
-def read_run(path, fill):
-    found = json.loads(path.read_text(encoding="utf-8"))
-    if found["fill"] != dataclasses.asdict(fill):
-        raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
-                          "Choose another --out, or remove it")
-    return found
-
-
 def compute(options, planned):
     """The runs of the plan, those that are in --out already taken from there."""
     kept = options.out and options.out / "runs"
-    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
-    runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
-    todo = [one for one in wanted if one[0].run not in runs]
-    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
-        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
-    return [Run(row, **runs[row.run]) for row, _, _ in wanted]
+    found = samples_of("reproducing Sukegawa 2010:", run_of, [
+        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, kept and kept / f"{row.run}.json")
+        for row, fill in planned], 1)
+    return [Run(row, **one) for (row, _), one in zip(planned, found)]
 
 
 # ---- words of tables
@@ -199,10 +191,9 @@ def around_resonance(runs, width):
     """The runs below, at and above the printed period, with their amplifications, where there are such."""
     found = runs.resonance()
     nearest = min(range(len(found)), key=lambda k: abs(1 / found[k].frequency_Hz - PERIOD), default=0)
-    if 0 < nearest < len(found) - 1 and abs(1 / found[nearest].frequency_Hz - PERIOD) < 0.01:
-        return [Row(period=1 / run.frequency_Hz, amplitude=amplification_of(run, width))
-                for run in found[nearest - 1:nearest + 2]]
-    return []
+    near = found[nearest - 1:nearest + 2] if nearest else []
+    there = len(near) == 3 and abs(1 / near[1].frequency_Hz - PERIOD) < 0.01
+    return [Row(period=1 / run.frequency_Hz, amplitude=amplification_of(run, width)) for run in near if there]
 
 
 # ---- verdicts
@@ -256,10 +247,10 @@ def best_shakings(runs):
         seeds = len(found[len(found) // 2]["values"]) if len(found) > 1 else math.inf
         found = sorted((one for one in found if len(one["values"]) >= seeds),
                        key=lambda one: mean_of(one["values"].values()).mean)
+        for one in found:
+            one["more"] = [value - found[0]["values"][seed] for seed, value in one["values"].items()
+                           if seed in found[0]["values"]]
         if found:
-            best = found[0]["values"]
-            for one in found:
-                one["more"] = [value - best[seed] for seed, value in one["values"].items() if seed in best]
             yield {"shape": shape, "best": found[0], "count": len(found), "seeds": seeds, "rivals": [
                 one for one in found[1:] if seeds > 1 and judge(one.more) != "holds"]}
 
@@ -336,16 +327,15 @@ def draw_sheet(pictures, title):
 def sheets(runs):
     found = {}
     for shape in SHAPES:
-        own = [run for run in runs if run.shape == shape and run.seed == 1 and not run.variant and run.cycles <= 10 and
-               run.acceleration_gal in (400, 800, 1200) and run.frequency_Hz in (10, 2, 1) and run.pictures]
-        own.sort(key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
-        for run in own:
-            if run.title == "400 gal, 10 Hz":
-                found[f"{shape}_pictures"] = draw_sheet(list(zip(PICTURES, run.pictures)),
-                                                        f"{words(shape)}, {run.title}")
+        own = sorted((run for run in runs if run.shape == shape and run.seed == 1 and not run.variant and
+                      run.cycles <= 10 and run.acceleration_gal in (400, 800, 1200) and
+                      run.frequency_Hz in (10, 2, 1) and run.pictures),
+                     key=lambda run: (-run.frequency_Hz, run.acceleration_gal))
         if own:
             found[f"{shape}_shakings"] = draw_sheet([(run.title, run.pictures[2]) for run in own],
                                                     f"Largest displacement of the centre of mass: {words(shape)}")
+        if own and own[0].title == "400 gal, 10 Hz":
+            found[f"{shape}_pictures"] = draw_sheet([*zip(PICTURES, own[0].pictures)], f"{words(shape)}, {own[0].title}")
     return found
 
 

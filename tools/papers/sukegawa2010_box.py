@@ -9,7 +9,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from common import Random, eq, published
+from common import eq, published, random_bits, shuffle, uniforms
 
 # The tables of sections 8.2 to 8.4.
 NUMBERS = {name: row.value for name, row in published("sukegawa2010/published").items()}
@@ -66,34 +66,34 @@ class Fill:
         return [n // 2 if self.shape == "rigid_pairs" else n for n in numbers], [f"No. {n + 1}" for n in numbers]
 
 
+def directions(angles):
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
 class Bodies:
     """The bodies of a filling: `radii` drawn, `half_axes` of ellipses, `mass` and `moment` of each grain."""
     def __init__(self, fill):
-        self.fill, random = fill, Random(fill.seed)
+        self.fill, bits = fill, random_bits(fill.seed)
         columns = fill.columns // 2 if fill.pairs else fill.columns
         n = columns * fill.rows
         least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
-        radii = random.shuffle([least + (most - least) * (k + random.uniform()) / n for k in range(n)])
-        turns = [0.0 if fill.shape == "discs" else random.uniform() for _ in range(n)]
+        self.radii = shuffle(least + (most - least) * (np.arange(n) + uniforms(bits, n)) / n, bits)
+        self.angles = 2 * math.pi * uniforms(bits, n) * (fill.shape != "discs")
         wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
         row, column = np.divmod(np.arange(n), columns)
-        places = np.stack([(column + 0.5) * wide + np.where(row % 2 == 1, CELL / 2, 0.0),
-                           (row + 0.5) * high * fill.row_share], axis=1)
-        self.radii, angles = np.array(radii), 2 * math.pi * np.array(turns)
-        self.offsets, self.layers = np.zeros((1, n, 2)), np.arange(n) * 5 // n
-        if fill.pairs:
-            self.offsets = np.stack([np.stack([sign * self.radii, np.zeros(n)], axis=1) for sign in (-1, 1)])
+        self.places = np.stack([(column + 0.5) * wide + row % 2 * (CELL / 2), (row + 0.5) * high * fill.row_share], 1)
+        self.layers = np.arange(n) * 5 // n
+        self.offsets = np.outer((-1, 1) if fill.shape == "rigid_pairs" else (0,), self.radii)  # of discs, along the axis
         if fill.shape == "bonded_pairs":
-            along = self.radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-            places = np.stack([places - along, places + along], axis=1).reshape(-1, 2)
-            self.radii, angles, self.layers = (np.repeat(one, 2) for one in (self.radii, angles, self.layers))
-            self.offsets = np.zeros((1, 2 * n, 2))
-        self.places, self.angles = places, angles
+            along = self.radii[:, None] * directions(self.angles)
+            self.places = np.stack([self.places - along, self.places + along], axis=1).reshape(-1, 2)
+            self.radii, self.angles, self.layers = (np.repeat(one, 2) for one in (self.radii, self.angles, self.layers))
+            self.offsets = np.zeros((1, 2 * n))
         aspect = math.sqrt(2) if fill.shape == "ellipses" else 1.0  # ellipses have the areas of the discs
-        self.half_axes = self.radii[:, None] * np.array([aspect, 1 / aspect])
+        self.half_axes = self.radii[:, None] * (aspect, 1 / aspect)
         self.area = len(self.offsets) * math.pi * self.half_axes.prod(axis=1)
         self.mass, self.reach = fill.density * self.area, self.half_axes[:, 0] * len(self.offsets)
-        self.moment = self.mass * ((self.half_axes**2).sum(axis=1) / 4 + (self.offsets[0]**2).sum(axis=1))
+        self.moment = self.mass * ((self.half_axes**2).sum(axis=1) / 4 + self.offsets[0]**2)
         self.diameter = 2 * np.mean(np.sqrt(self.area / math.pi))
 
     def step(self):
@@ -112,20 +112,20 @@ class Bodies:
 
     def tables(self):
         """Of the case file."""
-        (kN, kT), grains = self.fill.springs(), []
-        arrays = (self.places, self.angles, self.half_axes, self.radii)
-        for place, angle, axes, r in zip(*(array.tolist() for array in arrays)):
-            body = {"ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}}
-            grains.append({"position": place, "angle": angle, **body.get(self.fill.shape, {"radius": r})})
+        (kN, kT), shape = self.fill.springs(), self.fill.shape
+        arrays = (array.tolist() for array in (self.places, self.angles, self.half_axes, self.radii))
+        grains = [{"position": place, "angle": angle, **{
+            "ellipses": {"half_axes": axes}, "rigid_pairs": {"discs": [[-r, 0.0, r], [r, 0.0, r]]}
+        }.get(shape, {"radius": r})} for place, angle, axes, r in zip(*arrays)]
         walls = {"floor": ([0.0, 0.0], [0.0, 1.0]), "left": ([0.0, 0.0], [1.0, 0.0]),
                  "right": ([self.fill.width, 0.0], [-1.0, 0.0])}
         tables = {"grains": {"density": self.fill.density}, "grain": grains, "springs": {"kN": kN, "kT": kT},
                   "collisions": {"law": "linear_dashpot", "damping": self.fill.damping, "friction": self.fill.friction,
                                  "walls": {"friction": NUMBERS["wall friction"]}},
                   "wall": [{"name": name, "point": at, "normal": normal} for name, (at, normal) in walls.items()]}
-        if self.fill.shape == "ellipses":
+        if shape == "ellipses":
             tables["collisions"]["ellipse_contact"] = self.fill.ellipse_contact
-        if self.fill.shape == "bonded_pairs":
+        if shape == "bonded_pairs":
             dashpots = 0.5 * self.mass[::2] / self.fill.bond_step  # a tangential force also turns the disc: a third
             tables["bond"] = [{"grains": [2 * k, 2 * k + 1], "normal_dashpot": c, "tangential_dashpot": c / 3}
                               for k, c in enumerate(dashpots.tolist())]
@@ -134,69 +134,56 @@ class Bodies:
 
 class Moment:
     """The box at one time: places in the box, heap, surface, void ratios."""
-    def __init__(self, bodies, places, angles, left, inner=False):
+    def __init__(self, bodies, places, angles, left):
         self.places, self.angles, self.bodies = places - [left, 0.0], angles, bodies
-        width = bodies.fill.width
         # The heap: the largest set of bodies of which each is at most a mean diameter from another.
         pairs = cKDTree(places).query_pairs(2 * bodies.reach.max() + bodies.diameter, output_type="ndarray")
         gaps = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) - bodies.reach[pairs].sum(axis=1)
         i, j = pairs[gaps <= bodies.diameter].T
-        near = coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places)))
-        _, sets = connected_components(near, directed=False)
+        sets = connected_components(coo_matrix((np.ones(len(i)), (i, j)), (len(places), len(places))), False)[1]
         self.heap = sets == np.argmax(np.bincount(sets))
-        x, heights = self.surface(max(2, int(width / (4 * NUMBERS["largest radius"]))))
-        self.height = heights.mean()
-        self.slope, level = np.polyfit(x, heights, 1)
-        self.roughness = math.sqrt(((heights - level - self.slope * x)**2).sum() / len(x))
-        self.whole = width * self.height / bodies.area[self.heap].sum() - 1
-        self.centre = (bodies.mass[:, None] * self.places).sum(axis=0) / bodies.mass.sum()
-        self.inner = self.inner_void_ratio() if inner else math.nan
+        x, heights = self.surface(max(2, int(bodies.fill.width / (4 * NUMBERS["largest radius"]))))
+        line = np.polyfit(x, heights, 1)
+        self.height, self.slope, self.roughness = heights.mean(), line[0], np.std(heights - np.polyval(line, x))
+        self.whole = bodies.fill.width * self.height / bodies.area[self.heap].sum() - 1
+        self.centre = np.average(self.places, 0, bodies.mass)
 
     def parts(self, chosen=slice(None)):
         """Centres, angles and half-axes of discs and ellipses."""
-        axis = np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
-        centres = [self.places + offset[:, :1] * axis for offset in self.bodies.offsets]
-        return np.concatenate([c[chosen] for c in centres]), *(
-            np.concatenate([values[chosen]] * len(centres)) for values in (self.angles, self.bodies.half_axes))
+        count, axis = len(self.bodies.offsets), directions(self.angles)
+        centres = [(self.places + offset[:, None] * axis)[chosen] for offset in self.bodies.offsets]
+        return np.concatenate(centres), *(
+            np.concatenate([values[chosen]] * count) for values in (self.angles, self.bodies.half_axes))
 
     def surface(self, columns):
         """The middles of columns and the highest place of the heap in each."""
         wide = self.bodies.fill.width / columns
         centres, angles, axes = self.parts(self.heap)
-        c, s = np.cos(angles), np.sin(angles)
-        p, q = axes.T**-2.0
+        c, s, (p, q) = np.cos(angles), np.sin(angles), axes.T**-2.0
         A, B, C = p * c * c + q * s * s, (p - q) * c * s, p * s * s + q * c * c  # A x² + 2 B x y + C y² = 1
         D = A * C - B * B
-        half, top = np.sqrt(C / D), -B * np.sqrt(A / D) / A
-        heights = np.full(columns, 0.0)
-        for k in range(columns):
-            low, high = np.maximum(k * wide - centres[:, 0], -half), np.minimum((k + 1) * wide - centres[:, 0], half)
-            there = low <= high
-            x = np.clip(top, low, high)[there]
-            y = centres[there, 1] + (-B[there] * x + np.sqrt(np.maximum(0, C[there] - D[there] * x * x))) / C[there]
-            heights[k] = y.max(initial=0.0)
-        return wide * (np.arange(columns) + 0.5), heights
+        half, left = np.sqrt(C / D), wide * np.arange(columns)[:, None]
+        low, high = np.maximum(left - centres[:, 0], -half), np.minimum(left + wide - centres[:, 0], half)
+        x = np.clip(-B * np.sqrt(A / D) / A, low, high)
+        y = centres[:, 1] + (-B * x + np.sqrt(np.maximum(0, C - D * x * x))) / C
+        return left[:, 0] + 0.5 * wide, np.where(low <= high, y, 0.0).max(axis=1)
 
-    def inner_void_ratio(self, pixel=2.5e-4):
-        """Two mean diameters away from walls and floor, three below the lowest place of the surface; by pixels."""
-        strip = 2 * self.bodies.diameter
-        columns = max(1, int(self.bodies.fill.width / (4 * self.bodies.reach.max())))
-        low, high = np.array([strip, strip]), np.array([self.bodies.fill.width - strip,
-                                                        self.surface(columns)[1].min() - 1.5 * strip])
-        count = ((high - low) / pixel).astype(int)
+    def inner(self, pixel=2.5e-4):
+        """Void ratio two mean diameters away from walls and floor, three below the lowest place of the surface; by
+        pixels."""
+        strip, width = 2 * self.bodies.diameter, self.bodies.fill.width
+        lowest = self.surface(max(1, int(width / (4 * self.bodies.reach.max()))))[1].min()
+        low, high = np.array([strip, strip]), np.array([width - strip, lowest - 1.5 * strip])
         if min(high - low) < strip:
             return math.nan
+        count = ((high - low) / pixel).astype(int)
         solid, step = np.zeros(count, bool), (high - low) / count
-        for centre, angle, axes in zip(*self.parts()):
-            first = np.clip(((centre - axes[0] - low) / step).astype(int), 0, count)
-            last = np.clip(((centre + axes[0] - low) / step).astype(int) + 1, 0, count)
-            if (first >= last).any():
-                continue
-            x = (low[0] + step[0] * (np.arange(first[0], last[0]) + 0.5) - centre[0])[:, None]
-            y = (low[1] + step[1] * (np.arange(first[1], last[1]) + 0.5) - centre[1])[None, :]
-            c, s = math.cos(angle), math.sin(angle)
-            inside = ((c * x + s * y) / axes[0])**2 + ((c * y - s * x) / axes[1])**2 <= 1
-            solid[first[0]:last[0], first[1]:last[1]] |= inside
+        x, y = (low[k] + step[k] * (np.arange(count[k]) + 0.5) for k in (0, 1))
+        for centre, angle, (a, b) in zip(*self.parts()):
+            first, last = np.clip(((centre + [[-a], [a]] - low) / step).astype(int) + [[0], [1]], 0, count)
+            near, c, s = tuple(map(slice, first, last)), math.cos(angle), math.sin(angle)
+            dx, dy = x[near[0], None] - centre[0], y[near[1]] - centre[1]
+            solid[near] |= ((c * dx + s * dy) / a)**2 + ((c * dy - s * dx) / b)**2 <= 1
         return 1 / solid.mean() - 1
 
 
@@ -263,9 +250,9 @@ def run_box(fill, gal, frequency, cycles):
     run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],
                                                               "integrator": "velocity_verlet"})
 
-    def moment(inner=False):
+    def moment():
         phase = 2 * math.pi * frequency * min(max(run.time - fill.fall, 0.0), duration)
-        return Moment(bodies, np.array(run.positions), np.array(run.angles), a * (1 - math.cos(phase)), inner)
+        return Moment(bodies, np.array(run.positions), np.array(run.angles), a * (1 - math.cos(phase)))
 
     def advance(stage, end):
         zero, block = run.time, max(1, round(SAMPLE / step))
@@ -275,16 +262,16 @@ def run_box(fill, gal, frequency, cycles):
         return stage
 
     falling = advance(Stage(moment()), fill.fall)
-    filled = moment(inner=True)
+    filled = moment()
     shaken = advance(Stage(filled), fill.fall + duration + REST)
-    after = moment(inner=True)
+    after = moment()
     contacts, energy, bonds = run.contacts, run.energy, fill.shape == "bonded_pairs"
     i, j = contacts["bodies"].T
     bonded = bonds & (i // 2 == j // 2) & (j >= 0)
     overlap = (-contacts["normal_forces"][~bonded]).max(initial=0.0) / fill.springs()[0]
     numbers = {}
     for when, at in (("_before", filled), ("", after)):
-        numbers.update({f"void_ratio{when}": at.inner, f"whole_void_ratio{when}": at.whole,
+        numbers.update({f"void_ratio{when}": at.inner(), f"whole_void_ratio{when}": at.whole,
                         f"surface_height{when}_m": at.height, f"roughness{when}_m": at.roughness,
                         f"centre_height{when}_m": at.centre[1]})
     numbers.update(

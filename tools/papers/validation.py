@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-from common import (Output, Random, disc_stresses, eq, fit_line, hexagonal_moduli, main, mean_columns, mean_of,
-                    moduli_of, moved_discs, power, rows_of, seeds_of, tracked, turned, unit_motions)
+from common import (Output, disc_stresses, eq, fit_line, frames, hexagonal_moduli, main, mean_columns, mean_of,
+                    moduli_of, moved_discs, power, random_bits, rows_of, seeds_of, shuffle, tracked, unit_motions)
 from shown import Row
 from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
@@ -23,8 +23,8 @@ ROUND_OFF = 1e-12  # relative, of a computation of some thousand steps
 
 def estimate(found):
     """Number and standard error of a mean, of the end of a line at 0, or of a pair."""
-    return (found.mean, found.standard_error) if "mean" in found else (
-        (found.intercept, found.intercept_error) if "intercept" in found else found)
+    keys = next((keys for keys in (("mean", "standard_error"), ("intercept", "intercept_error")) if keys[0] in found), 0)
+    return [found[key] for key in keys] if keys else found
 
 
 # ---- missing bonds and discs
@@ -34,13 +34,8 @@ def estimate(found):
 REMAINDERS = (1e-11, 1e-10, 1e-9)
 
 
-def random_order(count, seed):
-    return np.array(Random(seed).shuffle(list(range(count))))
-
-
 def stiffnesses(cell, bonds, order, kept, removed=REMAINDERS[0]):
-    there = np.zeros(len(order), bool)
-    there[order[:kept]] = True
+    there = np.isin(np.arange(len(order)), order[:kept])
     return np.where(there if bonds else there[cell.contacts].all(axis=1), 1.0, removed)
 
 
@@ -55,23 +50,25 @@ def share_in_removed(cell, kN):
     return energy[kN < 1].sum() / energy.sum()
 
 
+def is_rigid(cell, bonds, order, kept):
+    for removed in REMAINDERS:
+        try:
+            return share_in_removed(cell, stiffnesses(cell, bonds, order, kept, removed)) < 0.5
+        except eq.ComputationFailed:
+            if removed == REMAINDERS[-1]:
+                raise
+
+
 def onset(arguments):
     """The share of bonds or sites at which a cell becomes rigid, as they come back in a random order."""
     bonds, size, seed = arguments
     cell = eq.delaunay(discs=size * size, points="perturbed_hexagonal", disorder=0.1, seed=seed, periodic=True,
                        radius=0.5)
-    order = random_order(len(cell.contacts) if bonds else len(cell), seed ^ 0x5BD1E995)
+    order = shuffle(np.arange(len(cell.contacts) if bonds else len(cell)), random_bits(seed ^ 0x5BD1E995))
     floppy, rigid = int(0.5 * len(order)), int(0.9 * len(order))
     while rigid - floppy > 1:
         middle = (floppy + rigid) // 2
-        for removed in REMAINDERS:
-            try:
-                share = share_in_removed(cell, stiffnesses(cell, bonds, order, middle, removed))
-                break
-            except eq.ComputationFailed:
-                if removed == REMAINDERS[-1]:
-                    raise
-        floppy, rigid = (floppy, middle) if share < 0.5 else (middle, rigid)
+        floppy, rigid = (floppy, middle) if is_rigid(cell, bonds, order, middle) else (middle, rigid)
     return rigid / len(order)
 
 
@@ -102,14 +99,13 @@ def site_dilution(size):
 
 def effective_medium(p):
     """K and G over those of the full lattice (Feng et al. 1985): (p - 2/3)/(1/3)."""
-    threshold = NUMBERS["effective-medium threshold"].value
-    return (p - threshold) / (1 - threshold)
+    return 1 - (1 - p) / (1 - NUMBERS["effective-medium threshold"].value)
 
 
 def relative_moduli(arguments):
     side, p, seed = arguments
     cell = eq.hexagonal(columns=side, rows=side, radius=0.5, periodic=True)
-    order = random_order(len(cell.contacts), seed)
+    order = shuffle(np.arange(len(cell.contacts)), random_bits(seed))
     kept = math.floor(p * len(order) + 0.5)
     diluted = eq.homogenize(cell, eq.Springs(stiffnesses(cell, True, order, kept), np.zeros(len(order))))
     full = eq.homogenize(cell, eq.Springs(1.0, 0.0))
@@ -262,20 +258,18 @@ def loaded_block(depth, kT):
                                      (places[:, 1] > -0.9 * reach))]
     half_way, deep, shallow = (below[share * len(below) // 4] for share in (2, 1, 3))
     ring = (r >= 0.25 * reach) & (r <= 0.75 * reach) & (places[:, 1] <= -2 * radius)
-    n, unit, t = places[ring] / r[ring, None], 2 / (math.pi * r[ring]), stresses[ring]
-
-    def stress(a, b):
-        return np.einsum("ki,kij,kj->k", a, t, b)
+    n, unit = places[ring] / r[ring, None], 2 / (math.pi * r[ring])
+    along = frames(n)  # radial direction, and across
+    t = along @ stresses[ring] @ along.transpose(0, 2, 1) / unit[:, None, None]
 
     def root(squares):
         return math.sqrt(np.mean(squares))
-    radial = 2 * places[ring, 1] / (math.pi * r[ring]**2)
     return Row(
         kT_over_kN=kT, rows=depth, half_way=half_way, deep=deep[0], shallow=shallow[0],
         # difference of the settlements at a quarter and at three quarters of the line over 2/pi ln(z2/z1)
         settled=(shallow[2] - deep[2]) / (2 / math.pi * math.log(deep[0] / shallow[0])),
-        stress_difference=root(((stress(n, n) - radial) / unit)**2),
-        other_stresses=root(((stress(turned(n), turned(n)) / unit)**2 + (stress(n, turned(n)) / unit)**2) / 2),
+        stress_difference=root((t[:, 0, 0] - n[:, 1])**2),
+        other_stresses=root((t[:, 1, 1]**2 + t[:, 0, 1]**2) / 2),
         displacement_difference=root((((motions[ring] - displacement(places[ring])) * young)**2).sum(axis=1)))
 
 
