@@ -332,8 +332,9 @@ TEST_CASE("numbers_as_people_write_them_are_answered_with_what_toml_wants") {
     const test::Refusal refused = test::refusal_of([&] { parse_case(file, "case.toml", ".", set); });
     return refused.message.empty() ? "(accepted)" : refused.message;
   };
-  const std::string head = "schema = \"equidem/1\"\nassembly = {kind = \"hexagonal\", columns = 2, rows = 2, radius = 1.0}\n"
-                           "\n[springs]\nkN = 1e8\n";
+  const std::string head =
+      "schema = \"equidem/1\"\nassembly = {kind = \"hexagonal\", columns = 2, rows = 2, radius = 1.0}\n"
+      "\n[springs]\nkN = 1e8\n";
   for (const Typed& typed : all) {
     for (const std::string& sentence :
          {refusal(head + "kT = " + typed.text + "  # soft\n", {}),

@@ -14,6 +14,7 @@
 #include "equidem/core/file.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/output/files/body_tables.hpp"
+#include "equidem/output/results.hpp"
 
 #include "output/states.hpp"
 #include "support/catch.hpp"

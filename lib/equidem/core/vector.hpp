@@ -71,9 +71,6 @@ constexpr Tensor2 outer(Vec2 a, Vec2 b) {
 constexpr Vec2 operator*(const Tensor2& t, Vec2 v) {
   return {t.xx * v.x + t.xy * v.y, t.yx * v.x + t.yy * v.y};
 }
-inline double norm(const Tensor2& t) {
-  return std::sqrt(squared(Vec2{t.xx, t.xy}) + squared(Vec2{t.yx, t.yy}));
-}
 /// t_xy - t_yx: zero for a symmetric tensor.
 constexpr double asymmetry(const Tensor2& t) {
   return t.xy - t.yx;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -71,9 +72,13 @@ Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForc
   return (1 / assembly.area()) * Tensor2{xx, xy, yx, yy};
 }
 
+double size_of(const Tensor2& t) {
+  return std::hypot(norm({t.xx, t.xy}), norm({t.yx, t.yy}));
+}
+
 double stress_scale(const Assembly& assembly, std::span<const ContactForce> forces) {
   const auto [sum] = contact_sums<1>(forces.size(), [&](std::size_t c, auto& sums) {
-    sums[0] += norm(force_by_branch(frame_of(assembly, c), forces[c]));
+    sums[0] += size_of(force_by_branch(frame_of(assembly, c), forces[c]));
   });
   return sum / assembly.area();
 }
