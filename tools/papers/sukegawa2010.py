@@ -335,7 +335,8 @@ def sheets(runs):
             found[f"{shape}_shakings"] = draw_sheet([(run.title, run.pictures[2]) for run in own],
                                                     f"Largest displacement of the centre of mass: {words(shape)}")
         if own and own[0].title == "400 gal, 10 Hz":
-            found[f"{shape}_pictures"] = draw_sheet([*zip(PICTURES, own[0].pictures)], f"{words(shape)}, {own[0].title}")
+            found[f"{shape}_pictures"] = draw_sheet([*zip(PICTURES, own[0].pictures)],
+                                                    f"{words(shape)}, {own[0].title}")
     return found
 
 

@@ -83,7 +83,7 @@ class Bodies:
         row, column = np.divmod(np.arange(n), columns)
         self.places = np.stack([(column + 0.5) * wide + row % 2 * (CELL / 2), (row + 0.5) * high * fill.row_share], 1)
         self.layers = np.arange(n) * 5 // n
-        self.offsets = np.outer((-1, 1) if fill.shape == "rigid_pairs" else (0,), self.radii)  # of discs, along the axis
+        self.offsets = np.outer((-1, 1) if fill.shape == "rigid_pairs" else (0,), self.radii)  # along the axis
         if fill.shape == "bonded_pairs":
             along = self.radii[:, None] * directions(self.angles)
             self.places = np.stack([self.places - along, self.places + along], axis=1).reshape(-1, 2)

@@ -23,8 +23,10 @@ ROUND_OFF = 1e-12  # relative, of a computation of some thousand steps
 
 def estimate(found):
     """Number and standard error of a mean, of the end of a line at 0, or of a pair."""
-    keys = next((keys for keys in (("mean", "standard_error"), ("intercept", "intercept_error")) if keys[0] in found), 0)
-    return [found[key] for key in keys] if keys else found
+    for number, error in (("mean", "standard_error"), ("intercept", "intercept_error")):
+        if number in found:
+            return found[number], found[error]
+    return found
 
 
 # ---- missing bonds and discs
