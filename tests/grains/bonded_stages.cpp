@@ -248,3 +248,30 @@ TEST_CASE("bonds_stiffer_than_the_step_bears_are_refused_where_they_are_made") {
   CAPTURE(likely);
   CHECK(likely < options.time_step);
 }
+
+TEST_CASE("a_bonded_pair_that_creeps_together_goes_on_into_the_next_stage") {
+  // a dashpot alone: the upper disc sinks into the lower one
+  const Stepping stepping = GENERATE(from_range(force_steppings));
+  GrainScene scene = scene_of({ball({0, 0.999}, 1), ball({0, 2.999}, 1)}, {line("floor", {0, 0}, {0, 1})},
+                              one_second(stepping.law, 0.3), {0, -1});
+  scene.pairs[0].stiffness *= 1000;
+  scene.bonds = {{.i = 0, .j = 1, .normal_dashpot = 1, .tangential_dashpot = 1, .rolling_dashpot = 1}};
+  GrainSimulation simulation(scene, options_of(stepping, 1e-3));
+  const auto distance = [&] { return simulation.grains()[1].position.y - simulation.grains()[0].position.y; };
+  while (distance() > 0.9 && simulation.step() < 20000) simulation.advance(100);
+  const double before = distance();
+  CAPTURE(stepping.name(), before);
+  REQUIRE(before < 1);
+  GrainScene next = scene;
+  next.gravity = {};
+  const std::vector<Grain> grains = simulation.grains();
+  for (std::size_t k = 0; k < grains.size(); ++k) next.grains[k] = grains[k];
+  simulation.change(next, {.bodies = {0, 1}, .bonds = {0}, .walls = {0}});
+  CHECK(distance() == before);
+  simulation.advance(100);
+  CHECK(std::abs(distance() - before) < 1);
+  next.grains.push_back(next.grains[0]);
+  CHECK(refusal_of([&] {
+          simulation.change(next, {.bodies = {0, 1, -1}, .bonds = {0}, .walls = {0}});
+        }).says("start inside one another"));
+}

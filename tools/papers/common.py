@@ -76,8 +76,8 @@ def main(reproduce, add_options=lambda parser: None):
             present += sorted(options.out.glob("[!.]*.*"))
         for path in present:
             if path.exists() and not options.overwrite:
-                raise eq.BadInput(f"'{path}' exists", "files are not replaced unasked",
-                                  "Give --overwrite, or another folder")
+                raise FileExistsError(f"'{path}' exists (files are not replaced unasked). Give --overwrite, or another "
+                                      "folder.")
         page = Page(name, {**globals(), **vars(script)}, vars(options))
         options.size = page.names["size"] = Row(page.told["size"]["quick" if options.quick else "full"])
         deliver(options, page, reproduce(options, page))

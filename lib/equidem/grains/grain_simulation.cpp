@@ -35,7 +35,8 @@ constexpr std::int64_t steps_between_kept_states = 1024;
 GrainSimulation::GrainSimulation(const GrainScene& scene, const GrainOptions& options,
                                  const std::vector<std::size_t>& order)
     : AnySimulation(BodyFamily::colliding, options.time_step),
-      implementation_((check(scene, options), hidden<Implementation>(scene, options, order))) {}
+      implementation_((check(scene, options, {}, std::vector<std::int32_t>(order.size())),
+                       hidden<Implementation>(scene, options, order))) {}
 
 GrainSimulation::Implementation::Implementation(const GrainScene& scene, const GrainOptions& options,
                                                 const std::vector<std::size_t>& order)

@@ -52,7 +52,7 @@ class GrainSimulation final : public AnySimulation {
  public:
   /// Determines the effects and chooses the loop. Bodies and walls are sorted by position internally, so results do not
   /// depend on the caller's order.
-  /// \param order in which the loops take the bodies, as order(); empty: by position
+  /// \param order in which the loops take the bodies, as order() of the run that they are from; empty: by position
   /// \throws Error as check(scene, options)
   GrainSimulation(const GrainScene& scene, const GrainOptions& options, const std::vector<std::size_t>& order = {});
 

@@ -191,7 +191,7 @@ void check_table(const GrainScene& scene, const GrainOptions& options) {
 }
 
 /// Nothing may start inside something else.
-void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
+void check_places(const GrainScene& scene, const PlaceOfGrain& where, std::span<const std::int32_t> origins) {
   std::vector<Circle> circles;
   for (const Grain& grain : scene.grains) circles.push_back({grain.position, grain.radius});
   std::optional<Periods> periods;
@@ -202,6 +202,7 @@ void check_places(const GrainScene& scene, const PlaceOfGrain& where) {
   }
   for (const CirclePair& pair : pairs_within(circles, periods, 0)) {
     const auto i = static_cast<std::size_t>(pair.i), j = static_cast<std::size_t>(pair.j.body);
+    if (!origins.empty() && origins[i] >= 0 && origins[j] >= 0) continue;
     const Vec2 branch = circles[j].centre + pair.shift - circles[i].centre;
     if (!are_inside_one_another(outline_of(scene.grains[i], scene.clumps), outline_of(scene.grains[j], scene.clumps),
                                 branch))
@@ -269,7 +270,8 @@ double reference_length(const GrainScene& scene, const GrainOptions& options) {
   return 2 * largest;
 }
 
-void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where) {
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where,
+           std::span<const std::int32_t> origins) {
   if (scene.grains.empty()) bad_input("the scene has no grains", "there is nothing to move", "Add a grain");
   check_bounds(options, option_bounds, [] { return ""; });
   check_laws_of_shapes(scene, options);
@@ -309,7 +311,7 @@ void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGr
   }
   check_table(scene, options);
   if (scene.cell) check_cell(scene, options);
-  check_places(scene, where);
+  check_places(scene, where, origins);
   check_bonds(scene, options);
 }
 

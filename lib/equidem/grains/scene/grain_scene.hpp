@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -160,7 +161,10 @@ using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 ///         grain_scene.hpp, the time step not positive, grains that start inside one another (centre within the other)
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty
-void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {});
+/// \param origins of the bodies, as SceneOrigins::bodies: where a run has brought two of them into one another, as bonds
+///        without springs do, they stay so; empty: all are new
+void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {},
+           std::span<const std::int32_t> origins = {});
 
 /// \throws Error (bad_input): bonds of bodies that do not exist or are not discs, of a body with itself, or of the same
 ///         two a second time; centres that coincide; dashpots and springs that are negative, not finite or all 0

@@ -187,7 +187,7 @@ bool begin_controls(const GrainSystem& old, GrainSystem& own) {
 
 void GrainSimulation::change(const GrainScene& scene, const SceneOrigins& origins) {
   const GrainSystem& system = implementation_->system;
-  check(scene, system.options);
+  check(scene, system.options, {}, origins.bodies);
   std::vector<std::size_t> order(origins.bodies.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t body) {
