@@ -161,8 +161,8 @@ using PlaceOfBond = std::function<std::string(std::size_t bond)>;
 ///         grain_scene.hpp, the time step not positive, grains that start inside one another (centre within the other)
 ///         or with the centre behind a line
 /// \param where place of a grain in the user's input, for error messages; may be empty
-/// \param origins of the bodies, as SceneOrigins::bodies: where a run has brought two of them into one another, as bonds
-///        without springs do, they stay so; empty: all are new
+/// \param origins of the bodies, as SceneOrigins::bodies; two that a run has brought into one another, as bonds without
+///        springs do, stay so; empty: all are new
 void check(const GrainScene& scene, const GrainOptions& options, const PlaceOfGrain& where = {},
            std::span<const std::int32_t> origins = {});
 
