@@ -89,17 +89,10 @@ def plan(options, told):
     return found
 
 
-def run_of(arguments):
-    """A run; where a path is given it is kept in that file, and taken from there if it exists."""
+def kept_run(arguments):
+    """A run, kept in a file where a path is given."""
     fill, *shaking, path = arguments
-    settings = dataclasses.asdict(fill)
-    if path and path.exists():
-        found = json.loads(path.read_text(encoding="utf-8"))
-        if found["fill"] != settings:
-            raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
-                              "Choose another --out, or remove it")
-        return found
-    found = {"fill": settings, **run_box(fill, *shaking)}
+    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")
@@ -108,13 +101,23 @@ def run_of(arguments):
     return found
 
 
+def read_run(path, fill):
+    found = json.loads(path.read_text(encoding="utf-8"))
+    if found["fill"] != dataclasses.asdict(fill):
+        raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
+                          "Choose another --out, or remove it")
+    return found
+
+
 def compute(options, planned):
     """The runs of the plan, those that are in --out already taken from there."""
     kept = options.out and options.out / "runs"
-    found = samples_of("reproducing Sukegawa 2010:", run_of, [
-        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, kept and kept / f"{row.run}.json")
-        for row, fill in planned], 1)
-    return [Run(row, **one) for (row, _), one in zip(planned, found)]
+    wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
+    runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
+    todo = [one for one in wanted if one[0].run not in runs]
+    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
+        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
+    return [Run(row, **runs[row.run]) for row, _, _ in wanted]
 
 
 # ---- words of tables
