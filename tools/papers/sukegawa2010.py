@@ -105,7 +105,7 @@ def read_run(path, fill):
     found = json.loads(path.read_text(encoding="utf-8"))
     if found["fill"] != dataclasses.asdict(fill):
         raise eq.BadInput(f"'{path}' has another filling", "results of different settings must not be mixed",
-                          "Choose another --out, or remove it")
+                          "Choose another folder, or remove it")
     return found
 
 

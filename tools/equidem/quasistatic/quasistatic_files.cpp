@@ -201,8 +201,8 @@ FreeKeysOfPath check_same_path(const std::filesystem::path& there, const Case& r
                      ? fmt::format("the events there are of a version before {}", library_version())
                      : "the events there are of another case",
                  found->text,
-                 fmt::format("{}hoose another --out, or leave out --resume and pass --overwrite",
-                             found->of_earlier_version ? "C" : "Take the value there, or c"));
+                 fmt::format("{} another --out, or leave out --resume and pass --overwrite",
+                             found->of_earlier_version ? "Choose" : "Take the value there, or choose"));
   }
   const auto number = [&](const char* key) {
     const TomlValue& value = value_at(kept, key);
