@@ -9,7 +9,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from common import eq, published, random_bits, shuffle, uniforms
+from common import eq, published
 
 # The tables of sections 8.2 to 8.4.
 NUMBERS = {name: row.value for name, row in published("sukegawa2010/published").items()}
@@ -73,12 +73,13 @@ def directions(angles):
 class Bodies:
     """The bodies of a filling: `radii` drawn, `half_axes` of ellipses, `mass` and `moment` of each grain."""
     def __init__(self, fill):
-        self.fill, bits = fill, random_bits(fill.seed)
+        self.fill, random = fill, eq._core.Random(fill.seed)
         columns = fill.columns // 2 if fill.pairs else fill.columns
         n = columns * fill.rows
         least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
-        self.radii = shuffle(least + (most - least) * (np.arange(n) + uniforms(bits, n)) / n, bits)
-        self.angles = 2 * math.pi * uniforms(bits, n) * (fill.shape != "discs")
+        drawn = least + (most - least) * (np.arange(n) + random.uniforms(n)) / n
+        self.radii = drawn[random.order(n)]
+        self.angles = 2 * math.pi * np.array(random.uniforms(n)) * (fill.shape != "discs")
         wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
         row, column = np.divmod(np.arange(n), columns)
         self.places = np.stack([(column + 0.5) * wide + row % 2 * (CELL / 2), (row + 0.5) * high * fill.row_share], 1)
@@ -244,7 +245,7 @@ def run_box(fill, gal, frequency, cycles):
     stages and the moments PICTURES, as lists that JSON can hold."""
     begun, bodies = time.monotonic(), Bodies(fill)
     step, duration, a = bodies.step(), cycles / frequency, 0.01 * gal / (2 * math.pi * frequency)**2
-    shaking = {"shaking": {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": cycles}} if gal else {}
+    shaking = {"shaking": {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": int(cycles)}} if gal else {}
     stages = [{"name": "fall", "duration": fill.fall}, {"name": "shake", "duration": duration, **shaking},
               {"name": "rest", "duration": REST}]
     run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],

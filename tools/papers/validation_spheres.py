@@ -8,8 +8,7 @@ import numpy as np
 from common import DATA, eq, published, rows_of, tracked
 from shown import Row
 
-MATERIALS = {row.name: Row(young=float(row.young_Pa), poisson=float(row.poisson), density=float(row.density_kg_per_m3))
-             for row in rows_of("validation/materials")}
+MATERIALS = {row.name: row for row in rows_of("validation/materials", "name", "source")}
 NUMBERS = published("validation/published")
 # Numbers of ours beside published ones, computed while the method was still there: shown, not judged.
 STORED = rows_of("validation/stored")
@@ -83,7 +82,7 @@ def peak(samples):
 def hertz_stiffness(material, reduced_radius, two):
     """F = k d^(3/2), k = 4/3 E* sqrt(R*); a rigid plane does not add to the compliance."""
     own = MATERIALS[material]
-    return 4 / 3 * own.young / (1 - own.poisson**2) / (2 if two else 1) * math.sqrt(reduced_radius)
+    return 4 / 3 * own.young_Pa / (1 - own.poisson**2) / (2 if two else 1) * math.sqrt(reduced_radius)
 
 
 def hertz_elastic(scene, v):
@@ -95,7 +94,7 @@ def hertz_elastic(scene, v):
 
 def meeting_spheres(material):
     """Test 1: two equal spheres meet head on at 20 m/s."""
-    density, radius = MATERIALS[material].density, 0.01
+    density, radius = MATERIALS[material].density_kg_per_m3, 0.01
     return Scene([sphere(radius, density, (-radius, 0), (10, 0)), sphere(radius, density, (radius, 0), (-10, 0))],
                  "hertz_dashpot", {"stiffness": hertz_stiffness(material, radius / 2, True), "restitution": 1.0})
 
@@ -106,7 +105,7 @@ def impact_on_floor(material, radius, normal, tangential=0.0, restitution=1.0, m
     contact = {"stiffness": k, "restitution": restitution}
     if mu:
         contact.update(friction=mu, tangential_ratio=2 / 7)
-    body = sphere(radius, MATERIALS[material].density, (0, radius), (tangential, -normal))
+    body = sphere(radius, MATERIALS[material].density_kg_per_m3, (0, radius), (tangential, -normal))
     scene = Scene([body], "hertz_dashpot" if hertz else "linear_dashpot", contact, [FLOOR])
     return scene, hertz_elastic(scene, normal)[2] if hertz else math.pi * math.sqrt(mass_of(body) / k)
 
