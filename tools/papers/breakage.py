@@ -45,12 +45,6 @@ def notched_plate(arguments):
                energy_error=found.energy_error)
 
 
-def griffith_toughness(ratio):
-    """Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least, so that
-    K² = E G >= E f_t²/(kN d)."""
-    return math.sqrt(hexagonal_moduli(ratio)[2])
-
-
 def fit_shifted(half, y, slope=None):
     """Least squares y = A + p ln(a + c), of a given slope p or of the best one: A, p, c and their standard errors."""
     free = slope is None
@@ -72,10 +66,12 @@ def fit_of(own):
     if long.sum() >= 3:
         line, covariance = np.polyfit(np.log(half[long]), y[long], 1, cov=True)
         plain = line[0], math.sqrt(covariance[0, 0])
+    # Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least: K² >= E f_t²/(kN d).
+    griffith = math.sqrt(hexagonal_moduli(own[0].ratio)[2])
     return Row(columns=own[0].columns, ratio=own[0].ratio, exponent=free.p, exponent_error=free.p_error,
                shift=as_root.c, shift_error=as_root.c_error, toughness=toughness,
                toughness_error=toughness * as_root.A_error, plain_exponent=plain[0], plain_exponent_error=plain[1],
-               lattice=LATTICE[own[0].ratio].toughness, griffith=griffith_toughness(own[0].ratio))
+               lattice=LATTICE[own[0].ratio].toughness, griffith=griffith)
 
 
 def notches(size):

@@ -31,9 +31,6 @@ except ImportError as missing:
              "release \"build python\" equidem_python, and take the interpreter that it was built for, such as "
              "/usr/bin/python3")
 
-EXIT_CODES = """
-Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted."""
-
 
 # ---- the command line, and what is delivered
 
@@ -52,8 +49,10 @@ def main(reproduce, add_options=lambda parser: None):
     options.size has the numbers of NAME.toml by which quick and full computations differ."""
     script = sys.modules["__main__"]
     name = pathlib.Path(script.__file__).stem
-    parser = argparse.ArgumentParser(prog=f"tools/papers/{name}.py", description=script.__doc__, epilog=EXIT_CODES,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+    parser = argparse.ArgumentParser(
+        prog=f"tools/papers/{name}.py", description=script.__doc__, allow_abbrev=False,
+        epilog="Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; "
+               "130 interrupted.", formatter_class=argparse.RawDescriptionHelpFormatter)
     add_options(parser)
     parser.add_argument("--quick", action="store_true",
                         help="a smaller computation: seconds or a minute instead of minutes or hours")
@@ -270,11 +269,3 @@ def hexagonal_moduli(ratio):
     """K, G, E and nu in the plane of the hexagonal lattice with kN = 1 and that kT/kN (Abe 1996, eq. 34)."""
     K, G = math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + ratio)
     return K, G, 4 * K * G / (K + G), (K - G) / (K + G)
-
-
-def moved_discs(discs, motions, **groups):
-    """Supports of discs, each with its motion, and their groups beside those given."""
-    names = [f"disc {disc}" for disc in discs]
-    return {"supports": [{"group": name, "ux": float(u[0]), "uy": float(u[1])} for name, u in zip(names, motions)],
-            "group": [{"name": name, "discs": [int(disc)]} for name, disc in zip(names, discs)] +
-                     [{"name": name, "discs": members} for name, members in groups.items()]}

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fujioka & Ushijima (2005), "An evaluation method of normal contact force with energy conservation in distinct element
-method", section 5, computed again: Tables 1, 2 and Figs. 4 to 7, 10, 11, the law exact_flow beside the paper's, and bodies
-that come to rest, which are not in the paper. Times of computing, single equations as they are printed and the law C
-without lag are stored results, with their date.
+method", section 5, computed again: Tables 1, 2 and Figs. 4 to 7, 10, 11, the law exact_flow beside the paper's, and
+bodies that come to rest, which are not in the paper. Times of computing, single equations as they are printed and the
+law C without lag are stored results, with their date.
 
 Example:
   tools/papers/fujioka2005.py --out figures      minutes; with --quick seconds
@@ -213,8 +213,7 @@ def settle(variant, balls, duration, e):
 
 
 def come_to_rest(balls, duration, e=E):
-    return [settle(variant, balls, duration, e)
-            for variant in tracked(f"{balls} at rest:", variants(STIFF))]
+    return [settle(variant, balls, duration, e) for variant in tracked(f"{balls} at rest:", variants(STIFF))]
 
 
 def compute(size):
@@ -222,9 +221,9 @@ def compute(size):
     return Row(slow_impacts=[watch_impacts(variant, False) for variant in laws],
                fast_impacts=[watch_impacts(variant, True) for variant in (
                    *laws[:2], Variant("hertz_dashpot", SOFT_HERTZ, "T soft"), *laws[2:])],
-               printed=rows_of("fujioka2005/corrections", "reading"), bouncing_ball=costs("ball"), stacked_costs=costs("stacked"),
+               printed=rows_of("fujioka2005/corrections", "reading"), bouncing_ball=costs("ball"),
                table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS]) for variant in laws],
-               stacked=slide_stacked(size), rest=come_to_rest(1, 6),
+               stacked_costs=costs("stacked"), stacked=slide_stacked(size), rest=come_to_rest(1, 6),
                column=come_to_rest(size.balls, size.duration), lossless=come_to_rest(5, size.duration, 1.0),
                table1=table1())
 

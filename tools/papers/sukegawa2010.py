@@ -47,12 +47,6 @@ class Run(Row):
             return self[key[0]] - self[key[1]]
         return self.filling[key.removeprefix("filling.")] if key.startswith("filling.") else self[key]
 
-    @property
-    def mapped(self):
-        """Part of the table over amplitudes and frequencies (sections 8.6 to 9.2)."""
-        return (self.seed == 1 and not self.variant and self["shape"] in ("discs", "bonded_pairs") and
-                self.acceleration_gal > 0 and self.cycles <= 10)
-
 
 class Runs(list):
     def of_seeds(self, key, shape="discs", gal=400, frequency=10, variant="", cycles=None):
@@ -66,8 +60,9 @@ class Runs(list):
         return list(self.of_seeds(key, *chosen, **more).values())
 
     def mapped(self, shape, frequencies=None):
-        return [run for run in self if run.mapped and run.shape == shape and
-                (frequencies is None or run.frequency_Hz in frequencies)]
+        """Those of the table over amplitudes and frequencies (sections 8.6 to 9.2)."""
+        return [run for run in self if (run.shape, run.variant, run.seed) == (shape, "", 1) and run.cycles <= 10 and
+                run.acceleration_gal > 0 and (frequencies is None or run.frequency_Hz in frequencies)]
 
     def resonance(self):
         return sorted((run for run in self.mapped("discs") if run.acceleration_gal == 400),
@@ -88,8 +83,8 @@ def plan(options, told):
 
 def kept_run(arguments):
     """A run, kept in a file where a path is given."""
-    fill, *shaking, path = arguments
-    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
+    row, fill, path = arguments
+    found = {"fill": dataclasses.asdict(fill), **run_box(fill, row.acceleration_gal, row.frequency_Hz, row.cycles)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")
@@ -112,8 +107,7 @@ def compute(options, planned):
     wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
     runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
     todo = [one for one in wanted if one[0].run not in runs]
-    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
-        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
+    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, todo, 1)))
     return [Run(row, **runs[row.run]) for row, _, _ in wanted]
 
 

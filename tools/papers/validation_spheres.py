@@ -48,7 +48,7 @@ class Scene:
 
     def collide(self, step, deep=False):
         """An impact of bodies that begin in touch, until they part: velocities and spins; where `deep` also the largest
-        overlap and force, and the duration."""
+        overlap and force, the duration, and the overlap at each step."""
         run = simulation(self.tables, step, 100 * STEPS_PER_CONTACT)
         gap, overlaps, forces = -1.0, [0.0], [0.0]
         while gap < 0:
@@ -60,7 +60,7 @@ class Scene:
         duration = run.time - step * gap / (gap - before)
         run.advance(1)  # a step that ends apart may have begun in contact
         return Row(velocities=run.velocities, spins=run.spins, overlap=peak(overlaps), force=peak(forces),
-                   duration=duration)
+                   duration=duration, overlaps=overlaps)
 
     def measured(self, duration, measure, deep=False):
         """Numbers of an impact with a step, half and a quarter of it."""
@@ -133,13 +133,10 @@ def surface_after(found):
 
 def force_rows(material):
     """Test 1: force over time, kN and µs, and the closed form of its peak and end."""
-    scene, rows = meeting_spheres(material), []
+    scene = meeting_spheres(material)
     _, largest, duration = hertz_elastic(scene, 20)
-    run = simulation(scene.tables, duration / 100, 200)
-    for _ in range(101):
-        rows.append(Row(time=1e6 * run.time,
-                        force=1e-3 * scene.contact["stiffness"] * max(0.0, -scene.gap(run.positions))**1.5))
-        run.advance(1)
+    overlaps, k = scene.collide(duration / 100, deep=True).overlaps, 1e-3 * scene.contact["stiffness"]
+    rows = [Row(time=1e4 * duration * step, force=k * max(0.0, depth)**1.5) for step, depth in enumerate(overlaps)]
     return rows, [Row(time=0.5e6 * duration, force=1e-3 * largest), Row(time=1e6 * duration, force=0)]
 
 
