@@ -171,7 +171,8 @@ def slide_stacked(size):
     curves = [variant.row(points=[slide(variant, step) for step in steps])
               for variant in tracked("stacked spheres:", variants(STIFF))]
     without_lag = dataclasses.replace(variants(STIFF)[0], label="C, no lag")
-    curves.append(without_lag.row(points=rows_of("fujioka2005/without_lag", "label")))
+    curves.append(without_lag.row(points=[row for row in rows_of("fujioka2005/without_lag", "label")
+                                          if round(-4 * math.log10(row.time_step)) in size.quarters]))
     for one in curves:
         for what in ("speed", "parting"):
             fine = [(p.time_step, p[what + "_error"]) for p in one.points
