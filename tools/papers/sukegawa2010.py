@@ -69,16 +69,12 @@ class Runs(list):
                       key=lambda run: -run.frequency_Hz)
 
 
-def stored_runs():
-    return rows_of("sukegawa2010/runs", "run", "shape", "variant")
-
-
-def plan(options, told):
+def plan(options, told, stored):
     """(row of runs.csv without its numbers, filling) of the runs that the program can do, the most important first."""
     keys = ("run", "shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
     return [(Row({key: row[key] for key in keys}),
              Fill(row["shape"], int(row["seed"]), **{**options.size, **told["variants"][row["variant"]]}))
-            for row in (told["quick_runs"] if options.quick else stored_runs()) if row["variant"] in told["variants"]]
+            for row in (told["quick_runs"] if options.quick else stored) if row["variant"] in told["variants"]]
 
 
 def kept_run(arguments):
@@ -321,7 +317,8 @@ def sheets(runs):
 
 
 def reproduce(options, page):
-    old, planned = [Run(row) for row in stored_runs()], plan(options, page.told)
+    stored = rows_of("sukegawa2010/runs", "run", "shape", "variant")
+    old, planned = [Run(row) for row in stored], plan(options, page.told, stored)
     new = {} if options.stored else {run.run: run for run in compute(options, planned)}
     fill = planned[0][1]
     missing = [] if options.quick else [run for run in old if run.run not in new]

@@ -15,7 +15,8 @@ from common import eq, published
 NUMBERS = {name: row.value for name, row in published("sukegawa2010/published").items()}
 CELL, PAIR_ROW = 0.03, 0.041  # m, distance of places and height of rows of pairs, which take two places of a row
 SAMPLE = 0.01  # s
-REST = 0.5  # s, after the shaking
+REST = 1.5  # s, the longest after the shaking, which ends where the kinetic energy is below
+RESTING, CREEPING = 1e-6, 3e-4  # times the weight times the smallest radius; the latter of pairs that creep
 PICTURES = ("start", "filled", "during", "after")
 
 
@@ -255,18 +256,19 @@ def run_box(fill, gal, frequency, cycles):
         phase = 2 * math.pi * frequency * min(max(run.time - fill.fall, 0.0), duration)
         return Moment(bodies, np.array(run.positions), np.array(run.angles), a * (1 - math.cos(phase)))
 
-    def advance(stage, end):
-        zero, block = run.time, max(1, round(SAMPLE / step))
-        while run.time < end - 0.5 * step:
+    def advance(stage, begin, end, quiet=-1.0):
+        block = max(1, round(SAMPLE / step))
+        while run.time < end - 0.5 * step and run.energy["kinetic"] > quiet:
             run.advance(min(block, max(1, round((end - run.time) / step))))
-            stage.add(run.time - zero, moment())
+            stage.add(run.time - begin, moment())
         return stage
 
-    falling = advance(Stage(moment()), fill.fall)
-    filled = moment()
-    shaken = advance(Stage(filled), fill.fall + duration + REST)
-    after = moment()
-    contacts, energy, bonds = run.contacts, run.energy, fill.shape == "bonded_pairs"
+    falling = advance(Stage(moment()), 0.0, fill.fall)
+    filled, bonds, shaken_until = moment(), fill.shape == "bonded_pairs", fill.fall + duration
+    quiet = (CREEPING if bonds else RESTING) * bodies.mass.sum() * NUMBERS["gravity"] * bodies.radii.min()
+    shaken = advance(Stage(filled), fill.fall, shaken_until)
+    advance(shaken, fill.fall, shaken_until + REST, quiet)
+    after, contacts, energy = moment(), run.contacts, run.energy
     i, j = contacts["bodies"].T
     bonded = bonds & (i // 2 == j // 2) & (j >= 0)
     overlap = (-contacts["normal_forces"][~bonded]).max(initial=0.0) / fill.springs()[0]
