@@ -264,10 +264,10 @@ def run_box(fill, gal, frequency, cycles):
         return stage
 
     falling = advance(Stage(moment()), 0.0, fill.fall)
-    filled, bonds, shaken_until = moment(), fill.shape == "bonded_pairs", fill.fall + duration
+    filled, bonds, begin, end = moment(), fill.shape == "bonded_pairs", run.time, fill.fall + duration
     quiet = (CREEPING if bonds else RESTING) * bodies.mass.sum() * NUMBERS["gravity"] * bodies.radii.min()
-    shaken = advance(Stage(filled), fill.fall, shaken_until)
-    advance(shaken, fill.fall, shaken_until + REST, quiet)
+    shaken = advance(Stage(filled), begin, end)
+    advance(shaken, begin, end + REST, quiet)
     after, contacts, energy = moment(), run.contacts, run.energy
     i, j = contacts["bodies"].T
     bonded = bonds & (i // 2 == j // 2) & (j >= 0)
