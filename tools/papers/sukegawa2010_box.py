@@ -172,20 +172,20 @@ class Moment:
 
     def inner(self, pixel=2.5e-4):
         """Void ratio two mean diameters away from walls and floor, three below the lowest place of the surface; by
-        pixels."""
+        pixels. Where bodies overlap, each counts with its whole area, as in `whole`."""
         strip, width = 2 * self.bodies.diameter, self.bodies.fill.width
         lowest = self.surface(max(1, int(width / (4 * self.bodies.reach.max()))))[1].min()
         low, high = np.array([strip, strip]), np.array([width - strip, lowest - 1.5 * strip])
         if min(high - low) < strip:
             return math.nan
         count = ((high - low) / pixel).astype(int)
-        solid, step = np.zeros(count, bool), (high - low) / count
+        solid, step = np.zeros(count), (high - low) / count
         x, y = (low[k] + step[k] * (np.arange(count[k]) + 0.5) for k in (0, 1))
         for centre, angle, (a, b) in zip(*self.parts()):
             first, last = np.clip(((centre + [[-a], [a]] - low) / step).astype(int) + [[0], [1]], 0, count)
             near, c, s = tuple(map(slice, first, last)), math.cos(angle), math.sin(angle)
             dx, dy = x[near[0], None] - centre[0], y[near[1]] - centre[1]
-            solid[near] |= ((c * dx + s * dy) / a)**2 + ((c * dy - s * dx) / b)**2 <= 1
+            solid[near] += ((c * dx + s * dy) / a)**2 + ((c * dy - s * dx) / b)**2 <= 1
         return 1 / solid.mean() - 1
 
 
