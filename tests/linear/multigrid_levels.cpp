@@ -5,23 +5,17 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <vector>
 
-#include "equidem/assembly/delaunay.hpp"
-#include "equidem/assembly/lattices.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/linear/multigrid/block_matrix.hpp"
 #include "equidem/linear/multigrid/grouped_rows.hpp"
 #include "equidem/linear/multigrid/transfer.hpp"
-#include "equidem/linear/stiffness_matrix.hpp"
 
 #include "support/catch.hpp"
-#include "support/fields.hpp"
 
 using namespace equidem;
 using namespace equidem::multigrid;
-using namespace equidem::test;
 
 namespace {
 
@@ -107,16 +101,6 @@ GroupedRows grouped(const BlockMatrix& matrix) {
   return {matrix, one_chunk};
 }
 
-double twice_energy(const BlockMatrix& matrix, const QuadVector& x) {
-  QuadVector zero(x.size(), Quad{}), force(x.size());
-  residual(grouped(matrix), zero, x, force);
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    for (int e = 0; e < 3; ++e) sum -= static_cast<double>(x[k][e]) * force[k][e];
-  }
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("nodes_give_points_rigid_motions_and_pure_bending_exactly") {
@@ -125,40 +109,6 @@ TEST_CASE("nodes_give_points_rigid_motions_and_pure_bending_exactly") {
   grid.keep_nodes(std::vector<double>(grid.nodes(), 1.0));
   for (const Motion& motion : rigid_motions()) CHECK(largest_miss(grid, points, motion) < rounding);
   for (const Motion& motion : bendings()) CHECK(largest_miss(grid, points, motion) < rounding);
-}
-
-TEST_CASE("cells_store_the_energy_of_uniform_strain_and_none_of_rigid_motions") {
-  const Assembly assembly = delaunay_assembly({.discs = 400, .radii = {.smallest = 0.004, .largest = 0.006}});
-  const double a = assembly.mean_radius();
-  const ContactSprings springs({2e9, 0.7e9});
-  const ContactGraph graph(assembly);
-  const DegreesOfFreedom unknowns = all_free(assembly, 3);
-  const StiffnessMatrix k = assemble_stiffness(assembly, graph, springs, unknowns);
-  const Motion strain = [](Vec2 x) { return std::array{0.02 * x.x - 0.03 * x.y, 0.01 * x.x + 0.05 * x.y, 0.04}; };
-  std::vector<double> u, force(3 * assembly.size());
-  for (const Vec2 x : assembly.centres) {
-    for (const double component : strain((1 / a) * x)) u.push_back(component);
-  }
-  multiply(k, assembly, graph, u, force);
-  const double wanted = product(u, force) / 2e9;
-
-  Vec2 high;
-  for (const Vec2 x : assembly.centres) high = {std::max(high.x, x.x / a), std::max(high.y, x.y / a)};
-  Grid fine({.low = 0, .spacing = high.x / 8, .cells = 8}, {.low = 0, .spacing = high.y / 8, .cells = 8});
-  Grid coarse = fine.coarser();
-  fine.keep_nodes(std::vector<double>(fine.nodes(), 1.0));
-  coarse.keep_nodes(std::vector<double>(coarse.nodes(), 1.0));
-  const CellStiffness cells = stiffness_of_contacts(fine, assembly, springs, unknowns, 2e9);
-  const CellStiffness coarser = stiffness_on_coarser(coarse, fine, cells);
-  for (const auto& [grid, stiffness] : {std::pair{&fine, &cells}, std::pair{&coarse, &coarser}}) {
-    Transfer numbering(*grid, {});
-    number_in_place(numbering, *grid);
-    const BlockMatrix matrix = assemble_cells(numbering, *stiffness);
-    CHECK(twice_energy(matrix, on_nodes(*grid, strain)) == Approx(wanted).epsilon(1e-4));
-    for (const Motion& motion : rigid_motions()) {
-      CHECK(std::abs(twice_energy(matrix, on_nodes(*grid, motion))) < 1e-5 * wanted);
-    }
-  }
 }
 
 TEST_CASE("envelope_cholesky_solves_and_holds_what_has_no_stiffness") {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "equidem/core/checksum.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/files/open_file.hpp"
 #include "equidem/core/random.hpp"
@@ -140,7 +141,25 @@ TEST_CASE("a_checkpoint_of_another_version_is_refused") {
   write_file(path, text, true);
   const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
   CAPTURE(current, refusal.message);
+  CHECK(refusal.says(path.string()));
   CHECK(refusal.says("its format has version '" + other + "', and this library reads version " + current));
+}
+
+TEST_CASE("a_checkpoint_without_the_names_of_its_arrays_is_refused_by_what_it_lacks") {
+  const TemporaryFolder folder;
+  const auto path = folder / "run.checkpoint.h5";
+  CheckpointWriter(path, case_text, false).write({state_at(5, 12)});
+  std::string text = read_file(path);
+  text.replace(text.find("energies"), 8, "energiez");  // its checksum is wrong: HDF5 leaves it out
+  const std::size_t sum = text.find("fnv1a ");
+  Checksum fits;
+  for (const std::string& part : {text.substr(0, sum), text.substr(512)}) fits.add(std::as_bytes(std::span(part)));
+  text.replace(sum + 6, 16, fits.text());
+  write_file(path, text, true);
+  const auto refusal = refusal_of([&] { read_checkpoint(path, case_text); });
+  CAPTURE(refusal.message);
+  CHECK(refusal.says(path.string()));
+  CHECK(refusal.says("it has no attribute 'arrays'"));
 }
 
 TEST_CASE("what_is_no_checkpoint_is_refused") {

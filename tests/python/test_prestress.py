@@ -43,9 +43,22 @@ def test_the_stiffness_matrix_holds_the_forces_at_rest_that_the_solution_holds()
     assert abs(eq.stiffness_matrix(carrying, (1.0, 0.5)).toarray() - without).max() > 1e-6
 
 
+def test_the_mean_stress_of_discs_is_that_of_the_forces_on_their_edges():
+    """(1/A) sum f_i x_j over the outer forces: a pull of 3 N/m along x over 15 m."""
+    held = [{"group": "left", "ux": 0.0}, {"group": [0], "uy": 0.0}]
+    pulled = eq.solve(column(), (1.0, 0.5), supports=held,
+                      loads=[{"group": "right", "kind": "total", "force": [3.0, 0.0]}])
+    stresses = column().disc_stresses(pulled.contact_forces)
+    mean = np.average(stresses, 0, column().cell_areas)
+    np.testing.assert_allclose(mean, [[3.0 * 15.0 / column().area, 0.0], [0.0, 0.0]], atol=1e-12)
+    assert stresses.shape == (32, 2, 2)
+
+
 def test_wrong_forces_are_refused():
     for wrong in ([(1.0, 1.0)], np.full((len(column().contacts), 2), np.nan)):
         with pytest.raises(eq.BadInput):
             column().with_forces(wrong)
+        with pytest.raises(eq.BadInput):
+            column().disc_stresses(wrong)
     with pytest.raises(eq.BadInput, match="no contact carries a force"):
         eq.Case(assembly=column(), springs=(1.0, 0.5), supports=CLAMPED, effects={"prestress": "on"}).stability()

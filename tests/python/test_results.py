@@ -216,6 +216,8 @@ def test_pictures_are_drawn(tmp_path):
     axes = run.plot()
     assert "kinetic" in [line.get_label() for line in axes.lines] and axes.get_xlabel() == "time, s"
     BLOCK.plot(values=np.arange(len(BLOCK)), label="number")
+    ellipses = eq.plot.bodies([[0, 0], [np.nan, 0]], [[2, 1], [2, 1]], angles=[0.5, 0]).collections[0]
+    assert len(ellipses.get_offsets()) == 1 and ellipses.axes.get_ylim() == (-4, 4)
     with pytest.raises(eq.BadInput, match="no picture"):
         eq.study(STUDY, rounds=3, budget=1).plot()
     plt.savefig(tmp_path / "discs.png")

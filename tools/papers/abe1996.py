@@ -12,8 +12,8 @@ import math
 
 import numpy as np
 
-from common import (Output, affine_motions, disc_stresses, eq, hexagonal_moduli, main, means_of, power, tracked,
-                    unit_motions, vectors_of)
+from common import (Output, affine_motions, eq, frames, hexagonal_moduli, main, means_of, power, tracked,
+                    unit_motions)
 from shown import Row, save
 
 SQRT3 = math.sqrt(3)
@@ -81,7 +81,7 @@ def uniform_state(block, ratio):
     side over the mean load of a row."""
     e11 = STRESS / theory_stiffness(ratio)
     forces = affine_forces(block, ratio, np.diag([e11, -in_plane_stress(theory_nu(ratio)) * e11]))
-    missing, on_first = np.zeros((len(block), 3)), vectors_of(forces, block.normals)
+    missing, on_first = np.zeros((len(block), 3)), np.einsum("cij,ci->cj", frames(block.normals), forces)
     for side, sign in ((0, -1), (1, 1)):
         loads = np.column_stack([sign * on_first, -block.levers[:, side] * forces[:, 1]])
         np.add.at(missing, block.contacts[:, side], loads)
@@ -126,11 +126,11 @@ def check_stress(size):
             # (55) over the cell 2 sqrt3 a^2, its first bracket completed by d_2i d_2j (u_1,1 + 3 u_2,2)
             cosserat = continuum + SQRT3 / 2 * ratio * spin * np.array([[0, -1], [1, 0]])
             for name, rotation, expected in (("free", spin / 2, continuum), ("restrained", 0, cosserat)):
-                stresses = disc_stresses(cell, affine_forces(cell, ratio, h, rotation))
+                stresses = cell.disc_stresses(affine_forces(cell, ratio, h, rotation))
                 worst[name] = max(worst[name], np.abs(stresses - expected).max() / np.abs(expected).max())
     ratio, spin = 0.5, 1e-3
     forces = KN * affine_forces(cell, ratio, [[0, 0], [spin, 0]])
-    stress = scatter(disc_stresses(cell, forces), cell.cell_areas)[0]
+    stress = scatter(cell.disc_stresses(forces), cell.cell_areas)[0]
     test = tension(block_of(size.columns, size.rows), ratio, effects={"rotation": "restrained"})
     return Row(free_rotation_deviation=worst["free"], restrained_rotation_deviation=worst["restrained"],
                ratio=ratio, spin=spin, asymmetry=stress[0, 1] - stress[1, 0],
@@ -205,7 +205,7 @@ def unequal_sample(spread, seed):
     found = eq.homogenize(cell, (1.0, UNEQUAL_RATIO), homogenize={"bounds": "affine"})
     compliance = np.linalg.inv(found.stiffness)[:, 0]
     forces = np.tensordot(compliance, sum(unit_motions(cell, found)), 1) * (1, UNEQUAL_RATIO)
-    stresses = disc_stresses(cell, forces)
+    stresses = cell.disc_stresses(forces)
     # (50) as printed, with the area of the disc over the solid fraction of the assembly in place of the cell
     areas = math.pi * cell.radii ** 2 / cell.solid_fraction
     printed_mean, printed_scatter = scatter(stresses * (cell.cell_areas / areas)[:, None, None], areas)
@@ -276,7 +276,7 @@ def draw_block(size, path):
     test = tension(block, SHOWN_RATIO)
     axes = pyplot.subplots(figsize=(9, 8), dpi=100)[1]
     eq.plot.discs(block, axes, displacements=test.displacements, label="stress xx, Pa",
-                  values=disc_stresses(block, test.contact_forces)[:, 0, 0])
+                  values=block.disc_stresses(test.contact_forces)[:, 0, 0])
     centres, radius = block.centres, block.radii[0]
     for side, sign in (("left", -1), ("right", 1)):
         for x, y in centres[block.groups[side]]:

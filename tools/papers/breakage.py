@@ -11,15 +11,17 @@ import math
 import time
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import curve_fit
 
-from common import Output, eq, hexagonal_moduli, main, mean_of, moved_discs, power, samples_of
+from common import Output, eq, hexagonal_moduli, main, mean_of, power, rows_of, samples_of
 from shown import Row
 
 # The share of the peak to which the load falls, at which tests are over; of plates with scattered strengths.
 TEST_OVER, SCATTERED_TEST_OVER = 0.9, 0.7
 # Notches: up to this share of the width; exponents of a alone are those of notches from so many distances on.
 LARGEST_SHARE, LEAST_LENGTH = 0.6, 12
+# K sqrt(d)/f_t of the infinite lattice at each kT/kN, a stored result.
+LATTICE = {row.ratio: row for row in rows_of("breakage/lattice_toughness", "date", "commit")}
 RATIOS, MODULI = (0.0, 0.4), (2, 4, 8)  # kT/kN of notched plates; Weibull moduli
 
 
@@ -43,54 +45,18 @@ def notched_plate(arguments):
                energy_error=found.energy_error)
 
 
-def griffith_toughness(ratio):
-    """Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least, so that
-    K² = E G >= E f_t²/(kN d)."""
-    return math.sqrt(hexagonal_moduli(ratio)[2])
-
-
-def toughness_within(radius, ratio):
-    """K sqrt(d)/f_t of the infinite lattice: K of the field of a crack around its tip (Williams 1957) at which the
-    first contact reaches f_t, of the lattice within a circle about the tip whose rim is moved by that field."""
-    half_row, reach, rim = math.sqrt(3) / 4, int(radius) + 2, 2.5  # the rim has every contact of the discs inside
-    rows, columns = np.meshgrid(np.arange(-2 * reach, 2 * reach + 1), np.arange(-reach, reach + 1), indexing="ij")
-    places = np.stack([columns + np.where(rows % 2 == 0, 0, 0.5), half_row * (2 * rows + 1)], axis=-1).reshape(-1, 2)
-    places = places[np.hypot(*places.T) < radius]
-    found = eq.Assembly(places, 0.5, gap_tolerance=1e-3)
-    i, j = found.contacts.T
-    # The crack opens the row of triangles along y = 0 for x < 0: its contacts are missing.
-    opened = (places[i, 1] * places[j, 1] < 0) & (places[i, 0] + places[j, 0] < 0)
-    lattice = eq.Assembly(places, 0.5, found.contacts[~opened])
-    _, G, _, nu = hexagonal_moduli(ratio)
-    kappa = (3 - nu) / (1 + nu)
-    held = np.flatnonzero(np.hypot(*places.T) > radius - rim)
-    x, y = places[held].T
-    half, size = 0.5 * np.arctan2(y, x), np.sqrt(np.hypot(x, y) / (2 * math.pi)) / (2 * G)
-    moved = np.stack([size * np.cos(half) * (kappa - 1 + 2 * np.sin(half) ** 2),
-                      size * np.sin(half) * (kappa + 1 - 2 * np.cos(half) ** 2)], axis=1)
-    u = eq.solve(lattice, eq.Springs(1.0, float(ratio)), **moved_discs(held, moved)).displacements
-    i, j = lattice.contacts.T
-    return 1 / ((u[j] - u[i]) * lattice.normals).sum(axis=1).max()
-
-
 def fit_shifted(half, y, slope=None):
-    """Least squares y = A + p ln(a + c) with c where the sum of squares is least; the slope is found too where none is
-    given. Returns A, p, c and their standard errors."""
-    def line_at(shift):
-        x = np.log(half + shift)
-        p = np.polyfit(x, y, 1)[0] if slope is None else slope
-        A = np.mean(y - p * x)
-        return A, p, ((y - A - p * x) ** 2).sum()
-    shift = minimize_scalar(lambda c: line_at(c)[2], bounds=(-0.9 * half[0], 3.0), method="bounded",
-                            options={"xatol": 1e-10}).x
-    A, p, square = line_at(shift)
-    by = np.stack([np.ones(len(half)), np.log(half + shift), p / (half + shift)])  # derivatives by A, p and c
-    by = by if slope is None else by[[0, 2]]
-    error = np.sqrt(square / (len(y) - len(by)) * np.diag(np.linalg.inv(by @ by.T)))
-    return Row(A=A, p=p, c=shift, A_error=error[0], p_error=error[1], c_error=error[-1])
+    """Least squares y = A + p ln(a + c), of a given slope p or of the best one: A, p, c and their standard errors."""
+    free = slope is None
+
+    def line(a, A, c, p=slope):
+        return A + p * np.log(a + c)
+    found, covariance = curve_fit(line, half, y, [y[0], 0.1, -0.5][:2 + free], xtol=1e-14, ftol=1e-14)
+    names, errors = "Acp", np.sqrt(np.diag(covariance))
+    return Row({"p": slope, **dict(zip(names, found)), **{name + "_error": one for name, one in zip(names, errors)}})
 
 
-def fit_of(own, lattice):
+def fit_of(own):
     """sigma sqrt(sec(pi a/W)) against a, over the plates of one lattice and size."""
     half = np.array([0.5 * one.notch_over_distance for one in own])
     y = np.log([one.toughness for one in own]) - 0.5 * np.log(math.pi * half)
@@ -100,22 +66,20 @@ def fit_of(own, lattice):
     if long.sum() >= 3:
         line, covariance = np.polyfit(np.log(half[long]), y[long], 1, cov=True)
         plain = line[0], math.sqrt(covariance[0, 0])
+    # Two bonds break for each d of a crack along a row, each with the energy f_t²/(2 kN) at least: K² >= E f_t²/(kN d).
+    griffith = math.sqrt(hexagonal_moduli(own[0].ratio)[2])
     return Row(columns=own[0].columns, ratio=own[0].ratio, exponent=free.p, exponent_error=free.p_error,
                shift=as_root.c, shift_error=as_root.c_error, toughness=toughness,
                toughness_error=toughness * as_root.A_error, plain_exponent=plain[0], plain_exponent_error=plain[1],
-               lattice=lattice, griffith=griffith_toughness(own[0].ratio))
+               lattice=LATTICE[own[0].ratio].toughness, griffith=griffith)
 
 
 def notches(size):
     places = [(columns, ratio, cut) for ratio in RATIOS for columns in size.widths
               for cut in (2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96) if cut <= LARGEST_SHARE * columns]
-    plates, fits = samples_of("notched plates:", notched_plate, places), []
-    for ratio in RATIOS:
-        # The field is that of a continuum at the rim: what it lacks there falls with the radius.
-        lattice = 2 * toughness_within(2 * size.rim, ratio) - toughness_within(size.rim, ratio)
-        fits += [fit_of([one for one in plates if (one.columns, one.ratio) == (columns, ratio)], lattice)
-                 for columns in size.widths]
-    return plates, fits
+    plates = samples_of("notched plates:", notched_plate, places)
+    return plates, [fit_of([one for one in plates if (one.columns, one.ratio) == (columns, ratio)])
+                    for ratio in RATIOS for columns in size.widths]
 
 
 # ---- Weibull

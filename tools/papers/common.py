@@ -31,9 +31,6 @@ except ImportError as missing:
              "release \"build python\" equidem_python, and take the interpreter that it was built for, such as "
              "/usr/bin/python3")
 
-EXIT_CODES = """
-Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; 130 interrupted."""
-
 
 # ---- the command line, and what is delivered
 
@@ -52,8 +49,10 @@ def main(reproduce, add_options=lambda parser: None):
     options.size has the numbers of NAME.toml by which quick and full computations differ."""
     script = sys.modules["__main__"]
     name = pathlib.Path(script.__file__).stem
-    parser = argparse.ArgumentParser(prog=f"tools/papers/{name}.py", description=script.__doc__, epilog=EXIT_CODES,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False)
+    parser = argparse.ArgumentParser(
+        prog=f"tools/papers/{name}.py", description=script.__doc__, allow_abbrev=False,
+        epilog="Exit codes: 0 done; 1 the computation failed, and the message says why; 2 bad input or usage; "
+               "130 interrupted.", formatter_class=argparse.RawDescriptionHelpFormatter)
     add_options(parser)
     parser.add_argument("--quick", action="store_true",
                         help="a smaller computation: seconds or a minute instead of minutes or hours")
@@ -142,10 +141,11 @@ tracked.shown = True
 
 # ---- data, words
 
-def rows_of(name):
-    """The rows of data/papers/NAME.csv as texts."""
+def rows_of(name, *texts):
+    """The rows of data/papers/NAME.csv: texts; where columns of texts are named, the others are numbers."""
     with open(DATA / (name + ".csv"), newline="", encoding="utf-8") as file:
-        return [Row(row) for row in csv.DictReader(file)]
+        return [Row({key: cell if key in texts or not texts else float(cell) for key, cell in row.items()})
+                for row in csv.DictReader(file)]
 
 
 def published(name):
@@ -226,35 +226,6 @@ def fit_line(points):
     return Row(intercept=intercept, slope=slope, intercept_error=intercept_error, slope_error=slope_error)
 
 
-def random_bits(seed):
-    """64 at a time, xoshiro256++ seeded through splitmix64: those of equidem/core/random.hpp."""
-    state = []
-    for k in range(1, 5):
-        z = (seed + k * 0x9E3779B97F4A7C15) % 2**64
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9 % 2**64
-        z = (z ^ z >> 27) * 0x94D049BB133111EB % 2**64
-        state.append(z ^ z >> 31)
-    a, b, c, d = state
-    while True:
-        total = (a + d) % 2**64
-        yield ((total << 23 | total >> 41) + a) % 2**64
-        c, d = c ^ a, d ^ b
-        a, b, c, d = a ^ d, b ^ c, c ^ (b << 17) % 2**64, (d << 45 | d >> 19) % 2**64
-
-
-def uniforms(bits, count):
-    """From 0 to below 1."""
-    return np.array([(next(bits) >> 11) * 2.0**-53 for _ in range(count)])
-
-
-def shuffle(values, bits):
-    """A list in random order, in place."""
-    for k in range(len(values), 1, -1):
-        other = next(bits) * k >> 64
-        values[k - 1], values[other] = values[other], values[k - 1]
-    return values
-
-
 # ---- contacts and moduli
 
 UNIT_STRAINS = {"xx": [[1, 0], [0, 0]], "yy": [[0, 0], [0, 1]], "xy": [[0, 0.5], [0.5, 0]]}
@@ -268,20 +239,6 @@ def frames(normals):
 def components(vectors, normals):
     """Along the normal and the tangent of each contact."""
     return np.einsum("cij,cj->ci", frames(normals), vectors)
-
-
-def vectors_of(forces, normals):
-    """Normal (tension positive) and tangential forces (contacts, 2) as vectors, on the first disc of each contact."""
-    return np.einsum("cij,ci->cj", frames(normals), forces)
-
-
-def disc_stresses(assembly, forces):
-    """Abe (1996), (50), of every disc, (n, 2, 2): sum of force by arm over the area of the cell of the disc."""
-    stresses = np.zeros((len(assembly), 2, 2))
-    dyad = vectors_of(forces, assembly.normals)[:, :, None] * assembly.normals[:, None, :]
-    for end in (0, 1):  # on the second disc the opposite force, at the opposite arm
-        np.add.at(stresses, assembly.contacts[:, end], assembly.levers[:, end, None, None] * dyad)
-    return stresses / assembly.cell_areas[:, None, None]
 
 
 def affine_motions(assembly, gradient):
@@ -312,11 +269,3 @@ def hexagonal_moduli(ratio):
     """K, G, E and nu in the plane of the hexagonal lattice with kN = 1 and that kT/kN (Abe 1996, eq. 34)."""
     K, G = math.sqrt(3) / 2, math.sqrt(3) / 4 * (1 + ratio)
     return K, G, 4 * K * G / (K + G), (K - G) / (K + G)
-
-
-def moved_discs(discs, motions, **groups):
-    """Supports of discs, each with its motion, and their groups beside those given."""
-    names = [f"disc {disc}" for disc in discs]
-    return {"supports": [{"group": name, "ux": float(u[0]), "uy": float(u[1])} for name, u in zip(names, motions)],
-            "group": [{"name": name, "discs": [int(disc)]} for name, disc in zip(names, discs)] +
-                     [{"name": name, "discs": members} for name, members in groups.items()]}

@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fujioka & Ushijima (2005), "An evaluation method of normal contact force with energy conservation in distinct element
-method", section 5, computed again: Tables 1, 2 and Figs. 4 to 7, 10, 11, the law exact_flow beside the paper's; and two
-tests that are not in the paper: coming to rest, and time of computing for an accuracy.
+method", section 5, computed again: Tables 1, 2 and Figs. 4 to 7, 10, 11, the law exact_flow beside the paper's, and
+bodies that come to rest, which are not in the paper. Times of computing, single equations as they are printed and the
+law C without lag are stored results, with their date.
 
 Example:
   tools/papers/fujioka2005.py --out figures      minutes; with --quick seconds
 """
 import dataclasses
-import functools
 import math
-import time
 
 import numpy as np
 
-from common import Output, eq, main, published, tracked
+from common import Output, eq, main, published, rows_of, tracked
 from shown import Row
 
 PRINTED = {name: row.value for name, row in published("fujioka2005").items()}
-SOURCE_OF_X = published("fujioka2005")["law_alone_X"].source
+# Results of this project: TIMES of a release build on an idle machine, PARTS computed by methods that are gone.
+TIMES, PARTS = Row(date="2026-11-23", commit="b6047f21"), Row(date="2026-11-29", commit="b733177e")
 E, G, D, DROP, FAST, R0 = (PRINTED[name] for name in ("restitution", "gravity", "diameter", "drop", "fast_speed",
                                                       "stacked_radius"))
 EXACT_SPEED, EXACT_PARTING = PRINTED["exact_speed"], PRINTED["exact_parting"]
@@ -51,9 +51,6 @@ class Variant:
     def row(self, **found):
         return Row(law=self.law, letter=LETTERS[self.law], a=self.a, label=self.label, **found)
 
-    def alone(self):
-        return eq._core.Law(self.law, self.a, E)
-
     def spheres(self, centres, step, e=E, velocity=0.0, radius=D / 2, refuse_crossing=True):
         """Spheres over a floor, moving along y; contacts end at zero overlap as in the paper, those of X where the
         force is zero."""
@@ -84,66 +81,23 @@ def count_steps(variant, step):
     return count
 
 
-def impact(law, depth, closing, amend=lambda *step: step[-2:]):
-    """States (depth, closing) of an impact without gravity, the last one apart."""
-    first = True
-    while depth > 0:
-        yield depth, closing
-        change, shift = amend(depth, closing, first, *law.step(depth, closing, first))
-        closing, first = closing + change, False
-        depth += shift + closing
-    yield depth, closing
-
-
-def samples_of_law(law):
-    """Depths and closings of 4096 states during impacts that begin at all phases of a step."""
-    states = []
-    while len(states) < 4096:
-        phase = math.fmod(0.618033988749895 * (len(states) + 0.5), 1)
-        states += [*impact(law, max(1e-6, phase) * 1e-3, 1e-3)][:-1]
-    return np.ascontiguousarray(np.array(states[:4096]).T)
-
-
-def gravity_first(law, step):
-    """Evaluations in the paper's run where gravity is added before the contact force."""
-    fall, depth, closing, count = G * step * step / D, -DROP, 0.0, 0
-    for _ in range(round(DURATION / step)):
-        closing += fall
-        if depth > 0:
-            count += 1
-            change, shift = law.step(depth, closing, closing >= depth)
-            closing += change
-            depth += shift
-        depth += closing
-    return BALLS * count
-
-
-def seconds_of(work, clock=time.perf_counter):
-    begun = clock()
-    work()
-    return clock() - begun
-
-
-def measure_table1(size):
-    """Time of the processor, by turns, of equal runs the least of each slice: other load of the machine has little
-    effect."""
-    slices, rows, works = 50, [], []
-    for variant in variants(VERY_STIFF):
-        step, law = STEP if variant.label == "X stiff" else size.table1_step, variant.alone()
-        balls = [(1.5 * D * k, column(1)[0][1]) for k in range(BALLS)]
-        rows.append(variant.row(time_step=step, run_seconds=0.0,
-                                law_alone_nanoseconds=math.inf if variant.of_paper else math.nan,
-                                evaluations_gravity_first=gravity_first(law, step) if variant.of_paper else 0))
-        works.append(([variant.spheres(balls, step) for _ in range(3)], round(DURATION / step) // slices,
-                      variant.of_paper and functools.partial(law.sum, *samples_of_law(law), 20)))
-    for part in tracked("Table 1:", range(slices)):
-        for row, (runs, steps, alone) in zip(rows, works):
-            row["run_seconds"] += min(seconds_of(lambda: run.advance(steps), time.process_time) for run in runs)
-            if part % 5 == 0 and alone:
-                row["law_alone_nanoseconds"] = min(row.law_alone_nanoseconds, seconds_of(alone) * 1e9 / (20 * 4096))
-    for row, (runs, _, _) in zip(rows, works):
-        row["evaluations"] = runs[0].counters.evaluations
+def table1(size):
+    """Evaluations of the law in the paper's run, beside the stored times. The balls do not meet: each makes those of
+    one."""
+    stored, rows = rows_of("fujioka2005/table1", "law", "letter"), []
+    for variant, row in tracked("Table 1:", zip(variants(VERY_STIFF), stored), len(stored)):
+        row["step_s"], row["label"] = max(row.step_s, size.table1_step), variant.label
+        run = variant.spheres(column(1), row.step_s)
+        run.advance(round(DURATION / row.step_s))
+        rows.append(Row({**row, "evaluations": BALLS * run.counters.evaluations}))
     return rows
+
+
+def costs(test):
+    """Curves of error against time of computing."""
+    rows = [row for row in rows_of("fujioka2005/costs", "test", "label") if row.test == test]
+    own = {label: [row for row in rows if row.label == label] for label in dict.fromkeys(row.label for row in rows)}
+    return [Row(label=label, letter=label[0], a=points[0].a, points=points) for label, points in own.items()]
 
 
 # ---- Figs. 4 to 7: one ball on a floor
@@ -193,32 +147,10 @@ def watch_impacts(variant, fast):
                        deepest=max((depth for path in paths for depth, _ in path), default=0.0), ran_away=ran_away)
 
 
-def compare_printed():
-    """Energy after over before an impact by P without gravity over all phases of the contact step, with single
-    equations as the paper prints them; theory: e²."""
-    def amend(depth, closing, first, change, shift):
-        s = closing / depth
-        root = math.sqrt((1 + a) * s * s + a * a)
-        if first and reading == "(20) with d_j":  # (17), (15) and (20) with d_j in place of the corrected depth
-            corrected = s * E / math.sqrt(s * s + a) * closing
-            return corrected - closing - depth / (1 + a) * ((1 + a) * s + a - root), corrected / s - depth
-        if not first and s > 0 and reading == "(21) in all of mode 2":  # also where it gives d' <= 0
-            change = -depth / (1 + a) * ((1 + a) * s + a + root)
-        return change, shift
-    rows = []
-    for a in (0.10, 0.9):
-        for reading in ("as used", "(20) with d_j", "(21) in all of mode 2"):
-            law = eq._core.Law("energy_map", a, E)
-            found = [[*impact(law, (k + 0.5) / 4000, 1.0, amend)][-1][1]**2 for k in range(4000)]
-            rows.append(Row(reading=reading, a=a, mean=sum(found) / 4000, least=min(found), largest=max(found)))
-    return rows
-
-
 # ---- Figs. 10, 11: a sphere slides down between two others
 
 def slide(variant, step):
-    """Errors of the final speed d' and of the time T0 at which B and C part, sweeps of X in a step, and time of
-    computing."""
+    """Errors of the final speed d' and of the time T0 at which B and C part, and sweeps of X in a step."""
     centres = [(-R0, R0), (R0, R0), (0, (1 + math.sqrt(3)) * R0)]
     run, parting, last = variant.spheres(centres, step, radius=R0), 0, math.ceil(1.3 * EXACT_PARTING / step)
     for k in range(1, last + 1):
@@ -227,80 +159,26 @@ def slide(variant, step):
             parting = k
     # an Euler step lists the contacts at its start, a step of X those at its end
     later = 0 if variant.of_paper or not parting else 1
-    steps, times = math.ceil(EXACT_PARTING / step), []
-    while len(times) < 3 or (sum(times) < 0.05 and len(times) < 100):
-        timed = variant.spheres(centres, step, radius=R0)
-        times.append(seconds_of(lambda: timed.advance(steps)))
-    return errors_of(step, run.sphere(1)[2], (parting + later) * step, min(times), run.counters.sweeps / last)
-
-
-def errors_of(step, speed, parting, seconds=0.0, sweeps=0.0):
-    return Row(time_step=step, speed_error=abs(speed / math.sqrt(4 * G * R0) / EXACT_SPEED - 1),
-               parting_error=abs(parting / EXACT_PARTING - 1), seconds=seconds, sweeps_in_a_step=sweeps)
-
-
-def slide_without_lag(step):
-    """C by symmetry: the closing speed is the change of overlap since the step before, not the old velocity along the
-    new normal."""
-    law, b, v, c, w = variants(STIFF)[0].alone(), R0 + 1j * R0, 0, 1j * (1 + math.sqrt(3)) * R0, 0  # x + i y of B and C
-    pair_before = floor_before = parting = 0.0
-    for n in range(1, math.ceil(1.3 * EXACT_PARTING / step) + 1):
-        pair, floor, normal = 2 * R0 - abs(b - c), R0 - b.imag, (b - c) / abs(b - c)
-        if pair > 0:
-            # change of the closing speed shared by two equal masses; A acts on C as the mirror image of B
-            push = -0.5 * law.step(pair, pair - pair_before, True)[0] / step
-            v, w, parting = v + push * normal, w - 2j * push * normal.imag, n * step
-        if floor > 0:
-            v -= 1j * law.step(floor, floor - floor_before, True)[0] / step
-        pair_before, floor_before, v, w = pair, floor, v - 1j * G * step, w - 1j * G * step
-        b, c = b + step * v, c + step * w
-    return errors_of(step, v.real, parting)
+    return Row(time_step=step, speed_error=abs(run.sphere(1)[2] / math.sqrt(4 * G * R0) / EXACT_SPEED - 1),
+               parting_error=abs((parting + later) * step / EXACT_PARTING - 1),
+               sweeps_in_a_step=run.counters.sweeps / last)
 
 
 def slide_stacked(size):
-    """1e-3 s and less, by quarters of a decade; orders: slopes of log(error) over log(step) up to 1e-4 s."""
+    """1e-3 s and less, by quarters of a decade; orders: slopes of log(error) over log(step) up to 1e-4 s. Last: C whose
+    closing speed is the change of overlap since the step before, not the old velocity along the new normal."""
     steps = [10 ** (-k / 4) for k in size.quarters]
     curves = [variant.row(points=[slide(variant, step) for step in steps])
               for variant in tracked("stacked spheres:", variants(STIFF))]
     without_lag = dataclasses.replace(variants(STIFF)[0], label="C, no lag")
-    curves.append(without_lag.row(points=[slide_without_lag(step) for step in steps]))
+    curves.append(without_lag.row(points=[row for row in rows_of("fujioka2005/without_lag", "label")
+                                          if round(-4 * math.log10(row.time_step)) in size.quarters]))
     for one in curves:
         for what in ("speed", "parting"):
             fine = [(p.time_step, p[what + "_error"]) for p in one.points
                     if p.time_step <= 1.01e-4 and p[what + "_error"] > 0]
             one[what + "_order"] = np.polyfit(*np.log(fine).T, 1)[0]
     return curves
-
-
-# ---- a bouncing ball over 3 s, beside the rigid one
-
-def rigid_height(at):
-    """Of a ball that was thrown up from the floor so that it is highest at the time 0."""
-    speed = math.sqrt(2 * G * DROP * D)
-    left = at + speed / G
-    while left > 2 * speed / G:
-        left -= 2 * speed / G
-        speed *= E
-    return speed * left - 0.5 * G * left * left
-
-
-def follow_ball(variant, a, step):
-    between, times = round(0.1 / step), []
-    while len(times) < 3 or (sum(times) < 0.005 and len(times) < 200):
-        run, heights, taken = Variant(variant.law, a).spheres(column(1), step), [], 0.0
-        for _ in range(30):
-            taken += seconds_of(lambda: run.advance(between))
-            heights.append(run.sphere(0)[1] - 0.5 * D)
-        times.append(taken)
-    squares = sum((height - rigid_height(k * 0.1)) ** 2 for k, height in enumerate(heights, 1))
-    return Row(time_step=step, a=a, error=math.sqrt(squares / 30) / (DROP * D), seconds=min(times))
-
-
-def cost_of_ball(size):
-    one_step = Variant("exact_flow", 0.0, "X, step 0.1 s")
-    curves = [variant.row(points=[follow_ball(variant, variant.a, step) for step in size.ball_steps])
-              for variant in tracked("a bouncing ball:", variants(STIFF)[:-1])]
-    return [*curves, one_step.row(points=[follow_ball(one_step, 10.0**k, 0.1) for k in range(4, 13)])]
 
 
 # ---- bodies that come to rest under gravity; not in the paper
@@ -337,8 +215,7 @@ def settle(variant, balls, duration, e):
 
 
 def come_to_rest(balls, duration, e=E):
-    return [settle(variant, balls, duration, e)
-            for variant in tracked(f"{balls} at rest:", variants(STIFF))]
+    return [settle(variant, balls, duration, e) for variant in tracked(f"{balls} at rest:", variants(STIFF))]
 
 
 def compute(size):
@@ -346,11 +223,11 @@ def compute(size):
     return Row(slow_impacts=[watch_impacts(variant, False) for variant in laws],
                fast_impacts=[watch_impacts(variant, True) for variant in (
                    *laws[:2], Variant("hertz_dashpot", SOFT_HERTZ, "T soft"), *laws[2:])],
-               printed=compare_printed(),
+               printed=rows_of("fujioka2005/corrections", "reading"), bouncing_ball=costs("ball"),
                table2=[variant.row(steps=[count_steps(variant, step) for step in TABLE2_STEPS]) for variant in laws],
-               bouncing_ball=cost_of_ball(size), stacked=slide_stacked(size), rest=come_to_rest(1, 6),
+               stacked_costs=costs("stacked"), stacked=slide_stacked(size), rest=come_to_rest(1, 6),
                column=come_to_rest(size.balls, size.duration), lossless=come_to_rest(5, size.duration, 1.0),
-               table1=measure_table1(size))
+               table1=table1(size))
 
 
 # ---- what the report says
@@ -377,9 +254,9 @@ def at_steps(points, key, steps=(1e-3, 1e-4, 1e-5, 1e-6)):
     return [next((p[key] for p in points if abs(p.time_step / step - 1) < 0.01), None) for step in steps]
 
 
-def least_costs(points, key, wanted):
+def least_costs(points, wanted):
     """Times of the cheapest points with at most the wanted errors."""
-    return [min((p.seconds for p in points if p[key] <= accuracy), default=None) for accuracy in wanted]
+    return [min((p.seconds for p in points if p.error <= accuracy), default=None) for accuracy in wanted]
 
 
 def passages(law):
@@ -450,15 +327,12 @@ def numbers_of(row):
 def reproduce(options, _page):
     r = compute(options.size)
     c, f, p = (of(r.table1, letter) for letter in "CFP")
-    names = {**r, **conclusions(r), "c": c, "f": f, "p": p, "step": c.time_step,
+    names = {**r, **conclusions(r), "c": c, "f": f, "p": p,
              "at_rest_from": math.sqrt(2 * DROP * D / G) * (1 + E) / (1 - E)}
     numbers = {"exact_speed": EXACT_SPEED, "exact_parting_time": EXACT_PARTING,
                **{key: [numbers_of(row) for row in rows] for key, rows in r.items() if key != "printed"}}
-    of_table1 = {"law": "law", "letter": "letter", "a": "a", "time_step": "step_s", "evaluations": "evaluations",
-                 "evaluations_gravity_first": "evaluations_gravity_first", "run_seconds": "run_s",
-                 "law_alone_nanoseconds": "law_alone_ns"}
     return Output(names, numbers, {
-        "table1": [{name: row[key] for key, name in of_table1.items()} for row in r.table1],
+        "table1": [{key: row[key] for key in row if key != "label"} for row in r.table1],
         "table2": [{"law": row.law, "letter": row.letter, "a": row.a, **{
             f"steps_at_{step:.0e}_s": steps for step, steps in zip(TABLE2_STEPS, row.steps)}} for row in r.table2]})
 

@@ -38,8 +38,7 @@ class Run(Row):
     filling, falling, shaking, pictures = None, (), (), ()
 
     def __init__(self, row, numbers=(), **more):
-        super().__init__({key: value if key in ("run", "shape", "variant") else float(value)
-                          for key, value in {**row, **dict(numbers)}.items()})
+        super().__init__({**row, **dict(numbers)})
         vars(self).update(more, title=f"{self.acceleration_gal:g} gal, {self.frequency_Hz:.3g} Hz")
 
     def number(self, key):
@@ -47,12 +46,6 @@ class Run(Row):
         if isinstance(key, tuple):
             return self[key[0]] - self[key[1]]
         return self.filling[key.removeprefix("filling.")] if key.startswith("filling.") else self[key]
-
-    @property
-    def mapped(self):
-        """Part of the table over amplitudes and frequencies (sections 8.6 to 9.2)."""
-        return (self.seed == 1 and not self.variant and self["shape"] in ("discs", "bonded_pairs") and
-                self.acceleration_gal > 0 and self.cycles <= 10)
 
 
 class Runs(list):
@@ -67,32 +60,27 @@ class Runs(list):
         return list(self.of_seeds(key, *chosen, **more).values())
 
     def mapped(self, shape, frequencies=None):
-        return [run for run in self if run.mapped and run.shape == shape and
-                (frequencies is None or run.frequency_Hz in frequencies)]
+        """Those of the table over amplitudes and frequencies (sections 8.6 to 9.2)."""
+        return [run for run in self if (run.shape, run.variant, run.seed) == (shape, "", 1) and run.cycles <= 10 and
+                run.acceleration_gal > 0 and (frequencies is None or run.frequency_Hz in frequencies)]
 
     def resonance(self):
         return sorted((run for run in self.mapped("discs") if run.acceleration_gal == 400),
                       key=lambda run: -run.frequency_Hz)
 
 
-def plan(options, told):
-    """(row of runs.csv without numbers, filling) of the runs that the program can do, the most important first."""
-    kinds = {"shape": str, "variant": str, "seed": int, "acceleration_gal": float, "frequency_Hz": float, "cycles": int}
-    rows, found = told["quick_runs"] if options.quick else rows_of("sukegawa2010/runs"), []
-    for row in (row for row in rows if row["variant"] in told["variants"]):
-        own = Row({key: kind(row[key]) for key, kind in kinds.items()})
-        name = "_".join(filter(None, (own.shape, own.variant, str(own.seed), f"{own.acceleration_gal:g}gal",
-                                      f"{own.frequency_Hz:.3g}Hz")))
-        name += f"_{own.cycles}cycles" if own.cycles > usual_cycles(own.frequency_Hz) else ""
-        settings = {**options.size, **told["variants"][own.variant]}
-        found.append((Row(run=name, **own), Fill(own.shape, own.seed, **settings)))
-    return found
+def plan(options, told, stored):
+    """(row of runs.csv without its numbers, filling) of the runs that the program can do, the most important first."""
+    keys = ("run", "shape", "variant", "seed", "acceleration_gal", "frequency_Hz", "cycles")
+    return [(Row({key: row[key] for key in keys}),
+             Fill(row["shape"], int(row["seed"]), **{**options.size, **told["variants"][row["variant"]]}))
+            for row in (told["quick_runs"] if options.quick else stored) if row["variant"] in told["variants"]]
 
 
 def kept_run(arguments):
     """A run, kept in a file where a path is given."""
-    fill, *shaking, path = arguments
-    found = {"fill": dataclasses.asdict(fill), **run_box(fill, *shaking)}
+    row, fill, path = arguments
+    found = {"fill": dataclasses.asdict(fill), **run_box(fill, row.acceleration_gal, row.frequency_Hz, row.cycles)}
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_suffix(".part")
@@ -115,8 +103,7 @@ def compute(options, planned):
     wanted = [(row, fill, kept and kept / f"{row.run}.json") for row, fill in planned]
     runs = {row.run: read_run(path, fill) for row, fill, path in wanted if path and path.exists()}
     todo = [one for one in wanted if one[0].run not in runs]
-    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, [
-        (fill, row.acceleration_gal, row.frequency_Hz, row.cycles, path) for row, fill, path in todo], 1)))
+    runs.update(zip([row.run for row, _, _ in todo], samples_of("reproducing Sukegawa 2010:", kept_run, todo, 1)))
     return [Run(row, **runs[row.run]) for row, _, _ in wanted]
 
 
@@ -147,19 +134,10 @@ def half_width(values):
     return stdtrit(len(values) - 1, 0.975) * mean_of(values).standard_error if len(values) > 1 else math.nan
 
 
-def judge(differences, half=None):
+def judge(differences):
     """A difference that a statement says is positive."""
-    mean, half = mean_of(differences).mean, half_width(differences) if half is None else half
+    mean, half = mean_of(differences).mean, half_width(differences)
     return "holds" if mean - half > 0 else "does not hold" if mean + half < 0 else "not decided"
-
-
-def printed_verdict(found, capped):
-    """Whether a detail explains the printed void ratio of discs before shaking. With one seed: judged by the scatter of
-    the runs with (2.16) alone."""
-    half = half_width(capped) * math.sqrt(len(capped)) if len(found) == 1 else half_width(found)
-    looser = judge([value - NUMBERS["discs, void ratio before"] for value in found], half)
-    return {"holds": "does not explain it, too loose", "does not hold": "does not explain it, too dense"}.get(
-        looser, "agrees with it within the scatter" if math.isfinite(half) else "not decided")
 
 
 def fastest(radius):
@@ -292,9 +270,8 @@ def histories(runs, fill):
 
 def compaction_curves(runs):
     """Discs shaken by 400 gal, 10 Hz for 20 s; with the printed limit of friction as stored."""
-    rows = rows_of("sukegawa2010/compaction_over_time")
-    time, void_ratio = list(rows[0])[1:3]
-    curves = {name: [(float(row[time]), float(row[void_ratio])) for row in rows if row.series == name]
+    rows = rows_of("sukegawa2010/compaction_over_time", "series")
+    curves = {name: [(time, void_ratio) for series, time, void_ratio in map(dict.values, rows) if series == name]
               for name in dict.fromkeys(row.series for row in rows)}
     for run in runs:
         if run.run == "discs_1_400gal_10Hz_200cycles" and run.shaking:
@@ -306,7 +283,6 @@ def draw_sheet(pictures, title):
     """A function of the path that draws bodies, coloured by the five layers of the start, side by side."""
     def draw(path):
         from matplotlib import pyplot
-        from matplotlib.collections import EllipseCollection
         columns = len(pictures) if len(pictures) < 5 else 3
         rows = -(-len(pictures) // columns)
         figure, axes = pyplot.subplots(rows, columns, squeeze=False, layout="constrained",
@@ -315,13 +291,10 @@ def draw_sheet(pictures, title):
         for one in axes.flat:
             one.set_axis_off()
         for one, (label, (centres, angles, half_axes, layers)) in zip(axes.flat, pictures):
-            centres, half_axes = np.array(centres), np.array(half_axes)
-            one.add_collection(EllipseCollection(
-                *(2 * half_axes.T), np.degrees(angles), units="xy", offsets=centres, transOffset=one.transData,
-                array=layers, cmap="viridis", edgecolors="black", linewidths=0.2))
-            low, high = centres.min(axis=0) - half_axes.max(), centres.max(axis=0) + half_axes.max()
-            one.plot([0, 0, high[0], high[0]], [high[1], 0, 0, high[1]], "k", linewidth=1)
-            one.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=label)
+            eq.plot.bodies(centres, half_axes, one, angles=angles, values=layers)
+            right, top = one.get_xlim()[1], one.get_ylim()[1]
+            one.plot([0, 0, right, right], [top, 0, 0, top], "k", linewidth=1)
+            one.set_title(label)
         figure.savefig(f"{path}.png", dpi=150, bbox_inches="tight", metadata={"Software": None})
         pyplot.close(figure)
     return draw
@@ -344,14 +317,14 @@ def sheets(runs):
 
 
 def reproduce(options, page):
-    old, planned = [Run(row) for row in rows_of("sukegawa2010/runs")], plan(options, page.told)
+    stored = rows_of("sukegawa2010/runs", "run", "shape", "variant")
+    old, planned = [Run(row) for row in stored], plan(options, page.told, stored)
     new = {} if options.stored else {run.run: run for run in compute(options, planned)}
     fill = planned[0][1]
     missing = [] if options.quick else [run for run in old if run.run not in new]
     runs = Runs(new.values() if options.quick else [new.get(run.run, run) for run in old])
     page.names.update(
         runs=runs, fill=fill, width=fill.width, missing=missing, before=runs.values(WHOLE[0]),
-        capped=runs.values(WHOLE[0], variant="printed_cap"),
         radius=0.5 * (NUMBERS["smallest radius"] + NUMBERS["largest radius"]),
         depth=runs.of_seeds("surface_height_before_m")[1.0])
     names = {"resonance": around_resonance(runs, fill.width), "best": [*best_shakings(runs)],

@@ -9,13 +9,14 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from common import eq, published, random_bits, shuffle, uniforms
+from common import eq, published
 
 # The tables of sections 8.2 to 8.4.
 NUMBERS = {name: row.value for name, row in published("sukegawa2010/published").items()}
 CELL, PAIR_ROW = 0.03, 0.041  # m, distance of places and height of rows of pairs, which take two places of a row
 SAMPLE = 0.01  # s
-REST = 0.5  # s, after the shaking
+REST = 1.5  # s, the longest after the shaking, which ends where the kinetic energy is below
+RESTING, CREEPING = 1e-6, 3e-4  # times the weight times the smallest radius; the latter of pairs that creep
 PICTURES = ("start", "filled", "during", "after")
 
 
@@ -73,12 +74,13 @@ def directions(angles):
 class Bodies:
     """The bodies of a filling: `radii` drawn, `half_axes` of ellipses, `mass` and `moment` of each grain."""
     def __init__(self, fill):
-        self.fill, bits = fill, random_bits(fill.seed)
+        self.fill, random = fill, eq._core.Random(fill.seed)
         columns = fill.columns // 2 if fill.pairs else fill.columns
         n = columns * fill.rows
         least, most = NUMBERS["smallest radius"], NUMBERS["largest radius"]
-        self.radii = shuffle(least + (most - least) * (np.arange(n) + uniforms(bits, n)) / n, bits)
-        self.angles = 2 * math.pi * uniforms(bits, n) * (fill.shape != "discs")
+        drawn = least + (most - least) * (np.arange(n) + random.uniforms(n)) / n
+        self.radii = drawn[random.order(n)]
+        self.angles = 2 * math.pi * np.array(random.uniforms(n)) * (fill.shape != "discs")
         wide, high = CELL * (2 if fill.pairs else 1), PAIR_ROW if fill.pairs else CELL
         row, column = np.divmod(np.arange(n), columns)
         self.places = np.stack([(column + 0.5) * wide + row % 2 * (CELL / 2), (row + 0.5) * high * fill.row_share], 1)
@@ -170,20 +172,20 @@ class Moment:
 
     def inner(self, pixel=2.5e-4):
         """Void ratio two mean diameters away from walls and floor, three below the lowest place of the surface; by
-        pixels."""
+        pixels. Where bodies overlap, each counts with its whole area, as in `whole`."""
         strip, width = 2 * self.bodies.diameter, self.bodies.fill.width
         lowest = self.surface(max(1, int(width / (4 * self.bodies.reach.max()))))[1].min()
         low, high = np.array([strip, strip]), np.array([width - strip, lowest - 1.5 * strip])
         if min(high - low) < strip:
             return math.nan
         count = ((high - low) / pixel).astype(int)
-        solid, step = np.zeros(count, bool), (high - low) / count
+        solid, step = np.zeros(count), (high - low) / count
         x, y = (low[k] + step[k] * (np.arange(count[k]) + 0.5) for k in (0, 1))
         for centre, angle, (a, b) in zip(*self.parts()):
             first, last = np.clip(((centre + [[-a], [a]] - low) / step).astype(int) + [[0], [1]], 0, count)
             near, c, s = tuple(map(slice, first, last)), math.cos(angle), math.sin(angle)
             dx, dy = x[near[0], None] - centre[0], y[near[1]] - centre[1]
-            solid[near] |= ((c * dx + s * dy) / a)**2 + ((c * dy - s * dx) / b)**2 <= 1
+            solid[near] += ((c * dx + s * dy) / a)**2 + ((c * dy - s * dx) / b)**2 <= 1
         return 1 / solid.mean() - 1
 
 
@@ -244,7 +246,7 @@ def run_box(fill, gal, frequency, cycles):
     stages and the moments PICTURES, as lists that JSON can hold."""
     begun, bodies = time.monotonic(), Bodies(fill)
     step, duration, a = bodies.step(), cycles / frequency, 0.01 * gal / (2 * math.pi * frequency)**2
-    shaking = {"shaking": {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": cycles}} if gal else {}
+    shaking = {"shaking": {"acceleration": 0.01 * gal, "frequency": frequency, "cycles": int(cycles)}} if gal else {}
     stages = [{"name": "fall", "duration": fill.fall}, {"name": "shake", "duration": duration, **shaking},
               {"name": "rest", "duration": REST}]
     run = eq.simulation(**bodies.tables(), stage=stages, run={"time_step": step, "gravity": [0.0, -NUMBERS["gravity"]],
@@ -254,18 +256,19 @@ def run_box(fill, gal, frequency, cycles):
         phase = 2 * math.pi * frequency * min(max(run.time - fill.fall, 0.0), duration)
         return Moment(bodies, np.array(run.positions), np.array(run.angles), a * (1 - math.cos(phase)))
 
-    def advance(stage, end):
-        zero, block = run.time, max(1, round(SAMPLE / step))
-        while run.time < end - 0.5 * step:
+    def advance(stage, begin, end, quiet=-1.0):
+        block = max(1, round(SAMPLE / step))
+        while run.time < end - 0.5 * step and run.energy["kinetic"] > quiet:
             run.advance(min(block, max(1, round((end - run.time) / step))))
-            stage.add(run.time - zero, moment())
+            stage.add(run.time - begin, moment())
         return stage
 
-    falling = advance(Stage(moment()), fill.fall)
-    filled = moment()
-    shaken = advance(Stage(filled), fill.fall + duration + REST)
-    after = moment()
-    contacts, energy, bonds = run.contacts, run.energy, fill.shape == "bonded_pairs"
+    falling = advance(Stage(moment()), 0.0, fill.fall)
+    filled, bonds, begin, end = moment(), fill.shape == "bonded_pairs", run.time, fill.fall + duration
+    quiet = (CREEPING if bonds else RESTING) * bodies.mass.sum() * NUMBERS["gravity"] * bodies.radii.min()
+    shaken = advance(Stage(filled), begin, end)
+    advance(shaken, begin, end + REST, quiet)
+    after, contacts, energy = moment(), run.contacts, run.energy
     i, j = contacts["bodies"].T
     bonded = bonds & (i // 2 == j // 2) & (j >= 0)
     overlap = (-contacts["normal_forces"][~bonded]).max(initial=0.0) / fill.springs()[0]

@@ -11,8 +11,8 @@ import time
 
 import numpy as np
 
-from common import (Output, disc_stresses, eq, fit_line, frames, hexagonal_moduli, main, mean_columns, mean_of,
-                    moduli_of, moved_discs, power, random_bits, rows_of, seeds_of, shuffle, tracked, unit_motions)
+from common import (Output, eq, fit_line, frames, hexagonal_moduli, main, mean_columns, mean_of,
+                    moduli_of, power, rows_of, seeds_of, tracked, unit_motions)
 from shown import Row
 from validation_spheres import NUMBERS, STORED, THEIR_TOLERANCE, impacts, lammps, step_error
 
@@ -66,7 +66,7 @@ def onset(arguments):
     bonds, size, seed = arguments
     cell = eq.delaunay(discs=size * size, points="perturbed_hexagonal", disorder=0.1, seed=seed, periodic=True,
                        radius=0.5)
-    order = shuffle(np.arange(len(cell.contacts) if bonds else len(cell)), random_bits(seed ^ 0x5BD1E995))
+    order = eq._core.Random(seed ^ 0x5BD1E995).order(len(cell.contacts) if bonds else len(cell))
     floppy, rigid = int(0.5 * len(order)), int(0.9 * len(order))
     while rigid - floppy > 1:
         middle = (floppy + rigid) // 2
@@ -107,7 +107,7 @@ def effective_medium(p):
 def relative_moduli(arguments):
     side, p, seed = arguments
     cell = eq.hexagonal(columns=side, rows=side, radius=0.5, periodic=True)
-    order = shuffle(np.arange(len(cell.contacts)), random_bits(seed))
+    order = eq._core.Random(seed).order(len(cell.contacts))
     kept = math.floor(p * len(order) + 0.5)
     diluted = eq.homogenize(cell, eq.Springs(stiffnesses(cell, True, order, kept), np.zeros(len(order))))
     full = eq.homogenize(cell, eq.Springs(1.0, 0.0))
@@ -220,10 +220,6 @@ def friction(size):
             "falls": falls and 3 < z[-1] < 3.25 and z[0] > 3.75}, {"friction": over_friction + over_stiffness[1:]}
 
 
-def shown_z(row):
-    return f"{row.z_without_rattlers:.3f} ± {row.standard_error:.3f}"
-
-
 # ---- a point load
 
 def half_plane(kT):
@@ -250,9 +246,10 @@ def loaded_block(depth, kT):
     loaded = int(top[len(top) // 2])
     places, (young, displacement) = block.centres - block.centres[loaded], half_plane(kT)
     held = list(dict.fromkeys(int(disc) for side in ("left", "right", "bottom") for disc in block.groups[side]))
-    rest = eq.solve(block, eq.Springs(1.0, kT), **moved_discs(held, displacement(places[held]), loaded=[loaded]),
-                    loads=[{"group": "loaded", "kind": "total", "force": [0.0, -1.0]}])
-    motions, stresses, r = rest.displacements, disc_stresses(block, rest.contact_forces), np.hypot(*places.T)
+    rest = eq.solve(block, eq.Springs(1.0, kT), loads=[{"group": [loaded], "kind": "total", "force": [0.0, -1.0]}],
+                    supports=[{"group": [disc], "ux": float(u[0]), "uy": float(u[1])}
+                              for disc, u in zip(held, displacement(places[held]))])
+    motions, stresses, r = rest.displacements, block.disc_stresses(rest.contact_forces), np.hypot(*places.T)
     reach = -places[block.groups["bottom"][0], 1]
     # depth over the diameter, stress over Flamant's and settlement times E/P below the load, the deepest first
     below = [(-places[d, 1] / (2 * radius), -stresses[d, 1, 1] * math.pi * r[d] / 2, -motions[d, 1] * young)
@@ -345,10 +342,6 @@ def shown(value, error):
         return f"{value:.10g}"
     decimals = min(max(1 - math.floor(math.log10(error)), 0), 12)
     return f"{value:.{decimals}f} ± {error:.{decimals}f}"
-
-
-def seconds_text(seconds):
-    return "under a second" if seconds < 1 else f"{seconds:.0f} s"
 
 
 def judged(page, told, names):

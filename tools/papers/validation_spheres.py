@@ -8,8 +8,7 @@ import numpy as np
 from common import DATA, eq, published, rows_of, tracked
 from shown import Row
 
-MATERIALS = {row.name: Row(young=float(row.young_Pa), poisson=float(row.poisson), density=float(row.density_kg_per_m3))
-             for row in rows_of("validation/materials")}
+MATERIALS = {row.name: row for row in rows_of("validation/materials", "name", "source")}
 NUMBERS = published("validation/published")
 # Numbers of ours beside published ones, computed while the method was still there: shown, not judged.
 STORED = rows_of("validation/stored")
@@ -49,7 +48,7 @@ class Scene:
 
     def collide(self, step, deep=False):
         """An impact of bodies that begin in touch, until they part: velocities and spins; where `deep` also the largest
-        overlap and force, and the duration."""
+        overlap and force, the duration, and the overlap at each step."""
         run = simulation(self.tables, step, 100 * STEPS_PER_CONTACT)
         gap, overlaps, forces = -1.0, [0.0], [0.0]
         while gap < 0:
@@ -61,7 +60,7 @@ class Scene:
         duration = run.time - step * gap / (gap - before)
         run.advance(1)  # a step that ends apart may have begun in contact
         return Row(velocities=run.velocities, spins=run.spins, overlap=peak(overlaps), force=peak(forces),
-                   duration=duration)
+                   duration=duration, overlaps=overlaps)
 
     def measured(self, duration, measure, deep=False):
         """Numbers of an impact with a step, half and a quarter of it."""
@@ -83,7 +82,7 @@ def peak(samples):
 def hertz_stiffness(material, reduced_radius, two):
     """F = k d^(3/2), k = 4/3 E* sqrt(R*); a rigid plane does not add to the compliance."""
     own = MATERIALS[material]
-    return 4 / 3 * own.young / (1 - own.poisson**2) / (2 if two else 1) * math.sqrt(reduced_radius)
+    return 4 / 3 * own.young_Pa / (1 - own.poisson**2) / (2 if two else 1) * math.sqrt(reduced_radius)
 
 
 def hertz_elastic(scene, v):
@@ -95,7 +94,7 @@ def hertz_elastic(scene, v):
 
 def meeting_spheres(material):
     """Test 1: two equal spheres meet head on at 20 m/s."""
-    density, radius = MATERIALS[material].density, 0.01
+    density, radius = MATERIALS[material].density_kg_per_m3, 0.01
     return Scene([sphere(radius, density, (-radius, 0), (10, 0)), sphere(radius, density, (radius, 0), (-10, 0))],
                  "hertz_dashpot", {"stiffness": hertz_stiffness(material, radius / 2, True), "restitution": 1.0})
 
@@ -106,7 +105,7 @@ def impact_on_floor(material, radius, normal, tangential=0.0, restitution=1.0, m
     contact = {"stiffness": k, "restitution": restitution}
     if mu:
         contact.update(friction=mu, tangential_ratio=2 / 7)
-    body = sphere(radius, MATERIALS[material].density, (0, radius), (tangential, -normal))
+    body = sphere(radius, MATERIALS[material].density_kg_per_m3, (0, radius), (tangential, -normal))
     scene = Scene([body], "hertz_dashpot" if hertz else "linear_dashpot", contact, [FLOOR])
     return scene, hertz_elastic(scene, normal)[2] if hertz else math.pi * math.sqrt(mass_of(body) / k)
 
@@ -134,13 +133,10 @@ def surface_after(found):
 
 def force_rows(material):
     """Test 1: force over time, kN and µs, and the closed form of its peak and end."""
-    scene, rows = meeting_spheres(material), []
+    scene = meeting_spheres(material)
     _, largest, duration = hertz_elastic(scene, 20)
-    run = simulation(scene.tables, duration / 100, 200)
-    for _ in range(101):
-        rows.append(Row(time=1e6 * run.time,
-                        force=1e-3 * scene.contact["stiffness"] * max(0.0, -scene.gap(run.positions))**1.5))
-        run.advance(1)
+    overlaps, k = scene.collide(duration / 100, deep=True).overlaps, 1e-3 * scene.contact["stiffness"]
+    rows = [Row(time=1e4 * duration * step, force=k * max(0.0, depth)**1.5) for step, depth in enumerate(overlaps)]
     return rows, [Row(time=0.5e6 * duration, force=1e-3 * largest), Row(time=1e6 * duration, force=0)]
 
 

@@ -122,6 +122,28 @@ class Assembly:
         rows = floats("forces", forces, (len(self.contacts), 2))
         return Assembly._of(self._native.with_forces(rows))
 
+    def disc_stresses(self, forces: npt.ArrayLike) -> Floats:
+        """Stress of each disc under forces of its contacts: s_ij = (1/V) sum F_i l_j, l from its centre to each contact
+        point and V the area of its cell (Abe 1996, eq. 50). Not symmetric where a moment holds the disc.
+
+        Parameters
+        ----------
+        forces : array (m, 2)
+            N/m, as of `with_forces`, such as `contact_forces` of a solution.
+
+        Returns
+        -------
+        array (n, 2, 2)
+            Pa.
+
+        Raises
+        ------
+        BadInput
+            Another shape, a force that is not finite, or a disc whose cell has no area.
+        """
+        rows = floats("forces", forces, (len(self.contacts), 2))
+        return self._native.disc_stresses(rows).reshape(-1, 2, 2)
+
     @property
     def kind(self) -> str:
         """"hexagonal", "square", "delaunay", "arrays", "file", ..."""

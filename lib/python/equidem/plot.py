@@ -51,20 +51,32 @@ def discs(assembly: Assembly, ax: Axes | None = None, *, displacements: npt.Arra
     return axes
 
 
-def bodies(centres: npt.ArrayLike, radii: npt.ArrayLike, ax: Axes | None = None, *, values: npt.ArrayLike | None = None,
-           label: str = "", cmap: str = "viridis") -> Axes:
-    """Discs at places (n, 2), in m, such as those of a frame; the other parameters as of `discs`. Bodies that a stage
-    has removed have no place and are left out."""
+def bodies(centres: npt.ArrayLike, radii: npt.ArrayLike, ax: Axes | None = None, *, angles: npt.ArrayLike | None = None,
+           values: npt.ArrayLike | None = None, label: str = "", cmap: str = "viridis") -> Axes:
+    """Discs or ellipses at their places, such as those of a frame; the other parameters as of `discs`. Bodies that a
+    stage has removed have no place and are left out.
+
+    Parameters
+    ----------
+    centres : array (n, 2)
+        m.
+    radii : array (n,) or (n, 2)
+        m, of discs, or half-axes of ellipses.
+    angles : array (n,), optional
+        rad, from the x-axis to the first half-axis of each ellipse; left out: 0.
+    """
     from matplotlib.collections import EllipseCollection
 
-    places, width = np.asarray(centres), 2 * np.asarray(radii)
+    places, axes_of = np.asarray(centres), 2 * np.asarray(radii)
+    width = np.column_stack([axes_of, axes_of]) if axes_of.ndim == 1 else axes_of
+    turned = np.zeros(len(places)) if angles is None else np.asarray(angles)
     there = np.isfinite(places).all(axis=1)
     if not there.any():
         raise BadInput("there is nothing to draw", "no body is there", "Draw an earlier state")
-    places, width = places[there], width[there]
+    places, width, turned = places[there], width[there], turned[there]
     axes = _axes(ax)
-    drawn = EllipseCollection(width, width, np.zeros(len(places)), units="x", offsets=places,
-                              transOffset=axes.transData, facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
+    drawn = EllipseCollection(*width.T, np.degrees(turned), units="xy", offsets=places, transOffset=axes.transData,
+                              facecolors="#dde6f0", edgecolors="#3b5b7a", linewidths=0.4)
     axes.add_collection(drawn)
     if values is not None:
         drawn.set_array(np.asarray(values)[there])

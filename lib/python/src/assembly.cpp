@@ -16,6 +16,7 @@
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/given.hpp"
+#include "equidem/homogenize/stress.hpp"
 #include "equidem/packing/measures.hpp"
 #include "equidem/packing/packing.hpp"
 
@@ -130,6 +131,15 @@ py::array normals_of(const Assembly& assembly) {
   return columns_of(owner, *owner, &Vec2::x, 2);
 }
 
+/// (n, 4): xx, xy, yx, yy
+py::array stresses_of(const Assembly& assembly, const Floats& forces) {
+  std::vector<ContactForce> on_i;
+  for (py::ssize_t c = 0; c < forces.shape(0); ++c)
+    on_i.push_back({.normal = forces.at(c, 0), .tangential = forces.at(c, 1)});
+  const auto owner = std::make_shared<const std::vector<Tensor2>>(disc_stresses(assembly, on_i));
+  return columns_of(owner, *owner, &Tensor2::xx, 4);
+}
+
 py::dict groups_of(const Shared& assembly) {
   py::dict result;
   for (const auto& [name, group] : assembly->groups)
@@ -211,6 +221,7 @@ void bind_assembly(py::module_& module) {
       .def("with_springs", with_pairs<&Assembly::contact_kN, &Assembly::contact_kT>)
       .def("with_strengths", with_pairs<&Assembly::contact_tension, &Assembly::contact_shear>)
       .def("with_forces", with_pairs<&Assembly::contact_normal_force, &Assembly::contact_tangential_force>)
+      .def("disc_stresses", stresses_of)
       .def("json", json_of);
 
   module.def("from_arrays", from_arrays);

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Spheres on a floor under a law of normal contact, and the law alone, without dimensions: the scenes and laws of
-/// Fujioka & Ushijima (2005), which may let bodies pass through one another.
+/// Spheres on a floor under a law of normal contact, the scenes of Fujioka & Ushijima (2005), which may let bodies pass
+/// through one another; the random numbers of packings.
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
 
-#include "equidem/contact/laws/visit.hpp"
 #include "equidem/core/names.hpp"
+#include "equidem/core/random.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/inertia.hpp"
 
@@ -66,53 +65,6 @@ class Spheres {
   GrainSimulation simulation_;
 };
 
-/// A law without dimensions: the change of the closing speed and the shift of the depth in a step.
-class Law {
- public:
-  Law(const std::string& name, double stiffness, double restitution)
-      : law_(enum_from<NormalLaw>(name)), stiffness_(stiffness) {
-    dissipation_ = visit_law(law_, [&]<class Given>(std::type_identity<Given>) {
-      if constexpr (Given::kind == LawKind::simultaneous) {
-        return 0.0;
-      } else {
-        const double c = Given::dissipation(restitution, ContactEnd::at_zero_overlap);
-        return Given::kind == LawKind::map ? c : c * std::sqrt(stiffness);
-      }
-    });
-  }
-
-  /// (change, shift) \param first whether the contact begins
-  [[nodiscard]] std::pair<double, double> step(double depth, double closing, bool first) const {
-    return visit_law(law_, [&]<class Given>(std::type_identity<Given>) -> std::pair<double, double> {
-      const ContactStep made = one<Given>(depth, closing, first);
-      return {made.change, made.shift};
-    });
-  }
-  /// Sum of the changes at all places, which takes as long as the law.
-  [[nodiscard]] double sum(const Floats& depths, const Floats& closings, int repeats) const {
-    return visit_law(law_, [&]<class Given>(std::type_identity<Given>) {
-      const double *const depth = depths.data(), *const closing = closings.data();
-      double sum = 0;
-      for (int r = 0; r < repeats; ++r)
-        for (py::ssize_t k = 0; k < depths.size(); ++k)
-          sum += one<Given>(depth[k], closing[k], closing[k] >= depth[k]).change;
-      return sum;
-    });
-  }
-
- private:
-  template <class Given>
-  [[nodiscard]] ContactStep one(double depth, double closing, bool first) const {
-    if constexpr (Given::kind == LawKind::force)
-      return force_step<Given>(depth, closing, stiffness_, dissipation_, true);
-    if constexpr (Given::kind == LawKind::map) return Given::step(depth, closing, stiffness_, dissipation_, first);
-    return {};
-  }
-
-  NormalLaw law_;
-  double stiffness_, dissipation_ = 0;
-};
-
 }  // namespace
 
 void bind_collisions(py::module_& module) {
@@ -131,11 +83,20 @@ void bind_collisions(py::module_& module) {
       .def("contacts", &Spheres::contacts)
       .def_property_readonly("step", &Spheres::step)
       .def_property_readonly("counters", [](const Spheres& spheres) { return spheres.counters(); });
-  py::class_<Law>(module, "Law")
-      .def(py::init<const std::string&, double, double>(), py::arg("name"), py::arg("stiffness"),
-           py::arg("restitution"))
-      .def("step", &Law::step)
-      .def("sum", &Law::sum);
+  py::class_<Random>(module, "Random")
+      .def(py::init<std::uint64_t>(), py::arg("seed"))
+      .def("uniforms",
+           [](Random& random, std::size_t count) {
+             std::vector<double> numbers(count);
+             for (double& number : numbers) number = random.uniform();
+             return numbers;
+           })
+      .def("order", [](Random& random, std::size_t count) {
+        std::vector<std::size_t> order(count);
+        std::iota(order.begin(), order.end(), 0);
+        for (std::size_t k = count; k > 1; --k) std::swap(order[k - 1], order[random.below(k)]);
+        return order;
+      });
 }
 
 }  // namespace equidem::python

@@ -197,7 +197,7 @@ constexpr const char* introduction = R"(
 One thread, processor time; medians (smallest .. largest) of rounds in
 which all take turns. Laws: C linear spring and dashpot, T Hertz spring and dashpot, F and P the maps of Fujioka &
 Ushijima, X the linear spring and dashpot solved exactly within the step. Dimensionless stiffness a = k dt²/m = 0.1
-(T: 4.62) unless stated. `tools/papers/fujioka2005.py` measures the evaluation of each law alone.
+(T: 4.62) unless stated.
 
 ## A step with each law
 

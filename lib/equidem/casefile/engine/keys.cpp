@@ -309,6 +309,7 @@ constexpr const char* table_of_displacement =
     "schedule of [[wall]]";
 constexpr const char* end_of_law =
     "Leave it out: contacts end where their law says (linear_dashpot at zero force, hertz_dashpot at zero overlap)";
+constexpr const char* falls_in_time = "Leave it out: bodies fall in time; method = \"growth\" begins dense";
 constexpr const char* both_limited = "Leave it out: friction limits spring and dashpot together";
 
 /// Keys and tables, in the order of the reference page.
@@ -345,7 +346,13 @@ constexpr std::array keys_of_earlier_versions{
     RemovedKey{"collisions", "ellipse_contact", "enlarged_as_printed", "Write \"enlarged\""},
     RemovedKey{"run", "integrator", "corrected_verlet", "Write \"velocity_verlet\""},
     RemovedKey{"strength", "after_breaking", "rubs", "Write \"frictional\""},
-    RemovedKey{"settling", "start", "", "Leave it out: bodies fall in time; method = \"growth\" begins dense"},
+    RemovedKey{"settling", "start", "", falls_in_time},
+    RemovedKey{"packing", "relax_first", "", falls_in_time},
+    RemovedKey{"packing", "from_grid", "", "Leave it out: local moves start from places at random"},
+    RemovedKey{"run", "confirm_rest", "",
+               "Leave it out: 'unbalanced' says when bodies rest, and 'equidem solve' answers for what is at rest"},
+    RemovedKey{"solver", "method", "single",
+               "Write \"auto\": elimination is in double precision, and multigrid is the fast way for many discs"},
 };
 
 /// Options and verbs of the command line.

@@ -2,8 +2,10 @@
 #include "equidem/output/files/checkpoint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -84,7 +86,7 @@ void check_whole(const std::filesystem::path& path, const OpenFile& file) {
   const std::string version = next_value(rest, magic);
   if (version != fmt::format("{}", format_version)) {
     refuse(path, fmt::format("its format has version '{}', and this library reads version {}", version, format_version),
-           "Go on with the library that wrote it");
+           "Go on with the library that wrote it, or start the run afresh");
   }
   Header header;
   header.library = next_value(rest, "library ");
@@ -100,7 +102,7 @@ void check_whole(const std::filesystem::path& path, const OpenFile& file) {
     refuse(path,
            fmt::format("equidem {} wrote it, this is {}, and the bits of two versions may differ", header.library,
                        library_version()),
-           "Go on with the version that wrote it");
+           "Go on with the version that wrote it, or start the run afresh");
   }
 }
 
@@ -114,11 +116,11 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-constexpr std::string_view first_of_record = "energies";
+/// The arrays of the record, behind those of the state; names that no simulation uses.
+constexpr std::array<std::string_view, 4> record_names{"energies", "paths", "film", "film_walls"};
 
-/// The record as arrays behind those of the state; names that no simulation uses.
 std::vector<SavedArray> arrays_of(const RunRecord& record) {
-  SavedArray energies{.name = std::string(first_of_record), .columns = 2 + energy_terms().size(), .values = {}};
+  SavedArray energies{.name = std::string(record_names[0]), .columns = 2 + energy_terms().size(), .values = {}};
   for (const EnergySample& sample : record.energies) {
     energies.values.insert(energies.values.end(), {static_cast<double>(sample.step), sample.time});
     for (const EnergyTerm& term : energy_terms()) energies.values.push_back(sample.ledger.*term.value);
@@ -229,9 +231,11 @@ OpenFile open_whole(const std::filesystem::path& path) {
 }
 
 Hdf5Layout find_arrays(const std::filesystem::path& path) {
-  const std::string listed = read_hdf5_layout(path, {}).attributes["arrays"];
+  const std::map<std::string, std::string> attributes = read_hdf5_layout(path, {}).attributes;
+  for (const char* name : {"arrays", "files"})
+    if (!attributes.contains(name)) refuse(path, fmt::format("it has no attribute '{}'", name));
   std::vector<std::string> names{"case", "step"};
-  for (const std::string_view name : words_of(listed)) names.emplace_back(name);
+  for (const std::string_view name : words_of(attributes.at("arrays"))) names.emplace_back(name);
   return read_hdf5_layout(path, names);
 }
 
@@ -308,7 +312,10 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
     arrays.push_back({found.name, found.shape.size() > 1 ? found.shape[1] : 1, std::vector<double>(found.size())});
     get(file, found, std::span(arrays.back().values));
   }
-  const auto record = std::ranges::find(arrays, first_of_record, &SavedArray::name);
+  const auto record = std::ranges::find(arrays, record_names[0], &SavedArray::name);
+  for (std::ptrdiff_t k = 0; k < std::ssize(record_names); ++k)
+    if (arrays.end() - record <= k || record[k].name != record_names[k])
+      refuse(path, fmt::format("it has no array '{}'", record_names[k]));
   result.record = record_of({record, arrays.end()});
   arrays.erase(record, arrays.end());
   result.state.arrays = std::move(arrays);

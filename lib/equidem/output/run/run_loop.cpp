@@ -100,7 +100,11 @@ class RunLoop {
   /// one at its end.
   Checkpoint go_on(const std::filesystem::path& path) {
     Checkpoint checkpoint = read_checkpoint(path, plan_.case_text);
-    simulation_.restore(checkpoint.state);
+    try {
+      simulation_.restore(checkpoint.state);
+    } catch (const Error& error) {
+      throw error.at(path.string());
+    }
     if (simulation_.step() > plan_.steps) {
       bad_input(fmt::format("the run is to end at {:.6g} s, and its checkpoint lies at {:.6g} s",
                             static_cast<double>(plan_.steps) * plan_.time_step, simulation_.time()),
