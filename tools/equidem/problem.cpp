@@ -249,8 +249,9 @@ SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, c
   SolvedCase result{.name = loads.name, .equilibrium = solver.solve(loads.loads)};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
-    result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
-    result.stress_scale = stress_scale(problem.assembly, equilibrium.contact_forces);
+    const ScaledStress found = scaled_stress(problem.assembly, equilibrium.contact_forces);
+    result.stress = found.stress;
+    result.stress_scale = found.scale;
     result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
     result.empty_cells = !cells_hold_area(problem.assembly);
   }
