@@ -200,8 +200,10 @@ Problem problem_of(Case resolved, Purpose purpose) {
   Assembly assembly = assembly_of(resolved);
   if (resolved.assembly.kind == AssemblyKind::file) resolved.assembly.arrangement = lattice_of(assembly);
   times.add("assembly", watch.lap());
+  stop_if_interrupted();
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
+  stop_if_interrupted();
   return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
 }
 
