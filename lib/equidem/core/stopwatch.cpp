@@ -150,20 +150,20 @@ void stop_if_interrupted() {
 
 namespace {
 
-thread_local int held_back = 0;
+thread_local int holds_of_stops = 0;
 
 }  // namespace
 
 StopsHeldBack::StopsHeldBack() {
-  ++held_back;
+  ++holds_of_stops;
 }
 
 StopsHeldBack::~StopsHeldBack() {
-  --held_back;
+  --holds_of_stops;
 }
 
 bool StopsHeldBack::any() {
-  return held_back > 0;
+  return holds_of_stops > 0;
 }
 
 }  // namespace equidem
