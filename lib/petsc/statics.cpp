@@ -65,7 +65,7 @@ void describe(const Network& network, const LoadCase& loads, std::span<const dou
     sums[0] += linear_spring_energy_of(springs, force);
     if (network.effects.restrained) sums[1] -= moment_on_i(frame, force) + moment_on_j(frame, force);
     const Tensor2 work = force_by_branch(frame, force);
-    sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy, sums[6] += size_of(work);
+    sums[2] += work.xx, sums[3] += work.xy, sums[4] += work.yx, sums[5] += work.yy, sums[6] += frobenius_norm(work);
     const Contact& contact = assembly.contacts[c];
     const double radii = assembly.radii[contact.i] + assembly.radii[contact.j];
     if (springs.kN != 0)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """equidem run stopped, damaged and gone on with: run_resume.py PROGRAM SOURCE_FOLDER [unittest options]."""
 import random
+import re
 import resource
 import signal
 import subprocess
@@ -184,6 +185,19 @@ class Resume(RunTest):
                     resume = ("--resume",)
                 self.run_case(case, "--out", whole, "--overwrite", *option, *last, "--set", f"run.time_step={step!r}")
                 self.check_same(out, whole)
+
+    def test_a_finished_run_that_is_resumed_keeps_its_film_to_the_end(self):
+        """Its last frame is not one that a longer run has, and is not in the checkpoint of one that is resumed."""
+        def film(out):
+            return re.search(r'<section id="motion".*?</section>', (out / "index.html").read_text(), re.DOTALL)[0]
+
+        out = self.folder / "out"
+        # 1012 steps: the last one is a sample of the energies, and none of the film
+        settings = ("--out", out, "--set", "run.time_step=1e-5", "--set", "run.duration=1.012e-2")
+        self.assertEqual(self.run_case(CORNER, *settings)["steps"], 1012)
+        whole = film(out)
+        self.run_case(CORNER, *settings, "--resume")
+        self.assertEqual(film(out), whole)
 
     def test_a_run_goes_on_with_the_step_that_it_had(self):
         # So short a run takes its step from the bound, a longer one would take it from the exact limit.

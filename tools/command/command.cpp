@@ -413,7 +413,9 @@ class Deliverer {
 
 void deliver(const CommonOptions& options, const std::string& given_status, Results results, StageTimes times,
              const std::vector<OutputPart>& parts, const std::optional<Error>& failure) {
-  const bool interrupted = failure && failure->kind() == ErrorKind::interrupted;
+  const bool interrupted = given_status == "interrupted" || (failure && failure->kind() == ErrorKind::interrupted);
+  std::optional<StopsHeldBack> held_back;
+  if (interrupted) held_back.emplace();
   const std::string status = interrupted ? "interrupted" : failure ? "failed" : given_status;
   if (failure) {
     const std::string where = failure->where().empty() ? "" : failure->where() + ": ";
@@ -447,7 +449,12 @@ void deliver(const CommonOptions& options, const std::string& given_status, Resu
   const Stopwatch watch;
   const DrawnFigures drawn;
   for (const OutputPart& part : parts)
-    if (options.out || part.place == OutputPart::file) all.attempt(part.name, [&] { part.write(options); });
+    if (options.out || part.place == OutputPart::file) {
+      all.attempt(part.name, [&] {
+        stop_if_interrupted();
+        part.write(options);
+      });
+    }
   for (const DrawnFigure& figure : drawn.list())
     if (!figure.missing.empty()) all.warn(figure.missing);
   const bool timed = options.out && !parts.empty();

@@ -200,8 +200,10 @@ Problem problem_of(Case resolved, Purpose purpose) {
   Assembly assembly = assembly_of(resolved);
   if (resolved.assembly.kind == AssemblyKind::file) resolved.assembly.arrangement = lattice_of(assembly);
   times.add("assembly", watch.lap());
+  stop_if_interrupted();
   BuiltSprings springs = build_springs(resolved, assembly);
   times.add("springs", watch.lap());
+  stop_if_interrupted();
   return {std::move(resolved), std::move(assembly), std::move(springs), {}, {}, {}, std::move(times)};
 }
 
@@ -249,8 +251,9 @@ SolvedCase solve_case(const Problem& problem, const EquilibriumSolver& solver, c
   SolvedCase result{.name = loads.name, .equilibrium = solver.solve(loads.loads)};
   const Equilibrium& equilibrium = result.equilibrium;
   if (!problem.assembly.cell_areas.empty()) {
-    result.stress = macroscopic_stress(problem.assembly, equilibrium.contact_forces);
-    result.stress_scale = stress_scale(problem.assembly, equilibrium.contact_forces);
+    const ScaledStress found = scaled_stress(problem.assembly, equilibrium.contact_forces);
+    result.stress = found.stress;
+    result.stress_scale = found.scale;
     result.moment_per_area = outer_moment(problem.assembly, loads.loads, equilibrium) / problem.assembly.area();
     result.empty_cells = !cells_hold_area(problem.assembly);
   }

@@ -43,4 +43,16 @@ VerbRun::VerbRun(const std::string& verb, const std::filesystem::path& case_file
   }
 }
 
+std::set<std::string> flags_of_verbs() {
+  std::set<std::string> names;
+  for (const Verb& verb : verbs) {
+    CLI::App command;
+    const Run run = verb.declare(command);
+    for (const CLI::Option* option : command.get_options())
+      if (option->get_items_expected_max() == 0)
+        names.insert(option->get_lnames().begin(), option->get_lnames().end());
+  }
+  return names;
+}
+
 }  // namespace equidem

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -64,5 +65,8 @@ inline constexpr std::array verbs{
     Verb{"sweep", "a verb over values of keys and seeds: one table, and curves", declare_sweep},
     Verb{"study", "error against time: the order of a method, the cheapest setting for an accuracy", declare_study},
 };
+
+/// Names of the options of all verbs that take no value, without hyphens in front.
+std::set<std::string> flags_of_verbs();
 
 }  // namespace equidem

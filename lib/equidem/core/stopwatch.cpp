@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <string_view>
 #include <utility>
 
@@ -47,18 +48,29 @@ namespace {
 std::atomic<bool> progress_shown{true};
 std::atomic<int> existing{0};
 volatile std::sig_atomic_t stop_asked = 0;
+timespec asked_at = {};
+
+double seconds_since(const timespec& then) {
+  timespec now = {};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec - then.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - then.tv_nsec);
+}
 
 /// Calls what is safe in a signal handler alone.
 void ask_to_stop(int signal_number) {
   constexpr std::string_view answer = "stopping: what is done is written first; a second signal ends this at once\n";
+  constexpr double one_request = 0.5;  // s
   const int error = errno;
   if (stop_asked == 0) {
     [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, answer.data(), answer.size());
+    clock_gettime(CLOCK_MONOTONIC, &asked_at);
+    stop_asked = 1;
+  } else if (signal_number != SIGHUP && seconds_since(asked_at) > one_request) {
+    // of a terminal that closes, SIGHUP comes from the system and from its shell
+    std::signal(signal_number, SIG_DFL);
+    std::raise(signal_number);
   }
   errno = error;
-  stop_asked = 1;
-  // of a terminal that closes, SIGHUP comes from the system and from its shell
-  if (signal_number != SIGHUP) std::signal(signal_number, SIG_DFL);
 }
 
 /// s
@@ -127,8 +139,31 @@ void set_progress_display(std::function<void(const std::string&)> shown_by) {
   display = std::move(shown_by);
 }
 
+bool stop_is_asked() {
+  return stop_asked != 0;
+}
+
 void stop_if_interrupted() {
-  if (stop_asked != 0) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+  if (stop_is_asked() && !StopsHeldBack::any())
+    throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+}
+
+namespace {
+
+thread_local int holds_of_stops = 0;
+
+}  // namespace
+
+StopsHeldBack::StopsHeldBack() {
+  ++holds_of_stops;
+}
+
+StopsHeldBack::~StopsHeldBack() {
+  --holds_of_stops;
+}
+
+bool StopsHeldBack::any() {
+  return holds_of_stops > 0;
 }
 
 }  // namespace equidem

@@ -70,10 +70,26 @@ class Progress {
 };
 
 /// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (not under nohup) ask the running computation to stop at its next
-/// safe point, which stderr says at once; a second SIGINT or SIGTERM ends the process at once. SIGXFSZ is ignored.
+/// safe point, which stderr says at once; a second SIGINT or SIGTERM, later than half a second (timeout of coreutils
+/// sends two), ends the process at once. SIGXFSZ is ignored.
 void catch_interrupts();
 /// \throws Error of kind interrupted where the user asked to stop
 void stop_if_interrupted();
+/// Whether the user asked to stop.
+bool stop_is_asked();
+
+/// While one exists, stop_if_interrupted returns in this thread, and in the loops that it shares out: what was done
+/// before the user asked to stop is evaluated and written to its end.
+class StopsHeldBack {
+ public:
+  StopsHeldBack();
+  ~StopsHeldBack();
+  StopsHeldBack(const StopsHeldBack&) = delete;
+  StopsHeldBack& operator=(const StopsHeldBack&) = delete;
+
+  /// Whether one exists for this thread.
+  [[nodiscard]] static bool any();
+};
 
 /// For programs that handle SIGINT themselves: while one exists, Ctrl-C asks the running computation to stop;
 /// afterwards their handler is back, and nothing is asked any more. At most one exists.

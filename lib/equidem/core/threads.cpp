@@ -8,6 +8,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -42,6 +43,7 @@ struct Job {
   std::vector<Share> shares;  ///< one for all threads, or one for each
   std::mutex failure_mutex;
   std::exception_ptr failure;
+  bool stops_held_back = StopsHeldBack::any();
 
   Job(std::size_t tasks, std::size_t parts, const std::function<void(std::size_t, int)>& work)
       : body(&work), shares(parts) {
@@ -54,6 +56,8 @@ struct Job {
 
   void work(int worker) {
     inside_task = true;
+    std::optional<StopsHeldBack> held_back;
+    if (stops_held_back) held_back.emplace();
     for (std::size_t k = 0; k < shares.size(); ++k)
       work(shares[(static_cast<std::size_t>(worker) + k) % shares.size()], worker);
     inside_task = false;

@@ -71,6 +71,9 @@ constexpr Tensor2 outer(Vec2 a, Vec2 b) {
 constexpr Vec2 operator*(const Tensor2& t, Vec2 v) {
   return {t.xx * v.x + t.xy * v.y, t.yx * v.x + t.yy * v.y};
 }
+inline double frobenius_norm(const Tensor2& t) {
+  return std::hypot(norm({t.xx, t.xy}), norm({t.yx, t.yy}));
+}
 /// t_xy - t_yx: zero for a symmetric tensor.
 constexpr double asymmetry(const Tensor2& t) {
   return t.xy - t.yx;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <numeric>
 
 #include "equidem/contact/linear_spring.hpp"
@@ -63,24 +62,18 @@ Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f) {
                                                     : (frame.lever_i + frame.lever_j) * outer(force, frame.normal);
 }
 
-Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
+ScaledStress scaled_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
   assert(forces.size() == assembly.contacts.size());
-  const auto [xx, xy, yx, yy] = contact_sums<4>(forces.size(), [&](std::size_t c, auto& sums) {
+  const auto [xx, xy, yx, yy, size] = contact_sums<5>(forces.size(), [&](std::size_t c, auto& sums) {
     const Tensor2 work = force_by_branch(frame_of(assembly, c), forces[c]);
-    sums[0] += work.xx, sums[1] += work.xy, sums[2] += work.yx, sums[3] += work.yy;
+    sums[0] += work.xx, sums[1] += work.xy, sums[2] += work.yx, sums[3] += work.yy, sums[4] += frobenius_norm(work);
   });
-  return (1 / assembly.area()) * Tensor2{xx, xy, yx, yy};
+  const double area = assembly.area();
+  return {(1 / area) * Tensor2{xx, xy, yx, yy}, size / area};
 }
 
-double size_of(const Tensor2& t) {
-  return std::hypot(norm({t.xx, t.xy}), norm({t.yx, t.yy}));
-}
-
-double stress_scale(const Assembly& assembly, std::span<const ContactForce> forces) {
-  const auto [sum] = contact_sums<1>(forces.size(), [&](std::size_t c, auto& sums) {
-    sums[0] += size_of(force_by_branch(frame_of(assembly, c), forces[c]));
-  });
-  return sum / assembly.area();
+Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces) {
+  return scaled_stress(assembly, forces).stress;
 }
 
 double outer_moment(const Assembly& assembly, const LoadCase& loads, const Equilibrium& equilibrium) {

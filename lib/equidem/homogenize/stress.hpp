@@ -44,10 +44,12 @@ Tensor2 force_by_branch(const ContactFrame& frame, const ContactForce& f);
 /// Stress of the whole assembly, Pa: the average of the stresses of all discs. Where the levers of each contact add
 /// up to its branch it is also the stress of the outer forces f on the discs, (1/A) sum f_i x_j.
 Tensor2 macroscopic_stress(const Assembly& assembly, std::span<const ContactForce> forces);
-/// Frobenius norm.
-double size_of(const Tensor2& tensor);
-/// Sum of the sizes |F| |l| of the terms of macroscopic_stress, over the area, Pa: what its round-off is relative to.
-double stress_scale(const Assembly& assembly, std::span<const ContactForce> forces);
+/// That stress, and the sum of the sizes |F| |l| of its terms over the area: what its round-off is relative to.
+struct ScaledStress {
+  Tensor2 stress;    ///< Pa
+  double scale = 0;  ///< Pa
+};
+ScaledStress scaled_stress(const Assembly& assembly, std::span<const ContactForce> forces);
 
 /// Sum of the moments, N, that act on discs other than through contacts: those of restrained rotations, of supports and
 /// of loads. The contact forces of a disc turn it with the moment sum l x F = V (s_yx - s_xy); at rest an outer moment

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "equidem/contact/linear_spring.hpp"
+#include "equidem/core/stopwatch.hpp"
 #include "equidem/core/threads.hpp"
 
 namespace equidem {
@@ -162,7 +163,9 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
   out.first.reserve(out.size + 1);
   out.first.push_back(0);
   std::vector<std::pair<std::int64_t, double>> entries;
+  constexpr std::int64_t between_looks = 65536;  // columns
   for (const std::int64_t component : out.component) {
+    if (std::ssize(out.first) % between_looks == 0) stop_if_interrupted();
     const std::size_t disc = component / b;
     const auto c = static_cast<int>(component % b);
     const std::int64_t column = column_of[component];
@@ -193,6 +196,7 @@ CompressedColumns compress(const StiffnessMatrix& matrix, const Assembly& assemb
 }
 
 CompressedColumns with_upper_triangle(const CompressedColumns& lower) {
+  stop_if_interrupted();
   CompressedColumns full;
   full.size = lower.size;
   full.component = lower.component;

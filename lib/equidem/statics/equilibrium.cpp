@@ -65,6 +65,7 @@ StiffnessSolver EquilibriumSolver::Implementation::build(std::span<const Support
               "Add discs that touch it");
   }
   times.add("check", watch.lap());
+  stop_if_interrupted();
   return {
       assembly, scaled ? *scaled : springs, std::move(graph), std::move(unknowns), options.solver, options.mechanisms,
       times};

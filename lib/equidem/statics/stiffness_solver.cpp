@@ -287,14 +287,17 @@ void StiffnessSolver::eliminate(SolverMethod method, StageTimes& times) const {
   Stopwatch watch;
   DissectionTree tree = dissect(assembly_, graph_);
   times.add("order", watch.lap());
+  stop_if_interrupted();
   symbolic_ = std::make_shared<const SymbolicFactor>(analyze(std::move(tree), graph_, unknowns_.per_disc));
   times.add("analyze", watch.lap());
+  stop_if_interrupted();
   SolveEstimate size = estimate(*symbolic_, unknowns_, springs_.may_be_indefinite());
   size.peak_bytes *= memory_factor(method, options_.ordering);
   check_memory(size, options_.memory_limit);
   watch.lap();
   matrix_ = assemble_stiffness(assembly_, graph_, springs_, unknowns_);
   times.add("assemble", watch.lap());
+  stop_if_interrupted();
   factor_ = factorize(system(), method, mechanisms_, times);
 }
 
@@ -354,6 +357,7 @@ void StiffnessSolver::refine(std::span<const RightHandSide> cases, std::vector<S
     times.add("solve", watch.lap());
   }
   for (int pass = 0; pass <= options_.max_refinements; ++pass) {
+    stop_if_interrupted();
     std::vector<Refinement*> open;  // their residuals stand one after another at the front of x
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (all[k].done) continue;
@@ -447,6 +451,7 @@ SoftestMotion StiffnessSolver::iterate_inverse(std::span<const double> start, st
   };
   if (!(make_unit() > 0)) return result;
   for (int pass = 0; pass < 2; ++pass) {
+    stop_if_interrupted();
     multiply_by_scale();
     factor_->solve_roughly(x);
     multiply_by_scale();

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 
@@ -32,9 +33,14 @@ def without_memory_names(text: str) -> str:
     return text if "#" not in text else re.sub(r"(--set [\w.]+=\")?\b(case|assembly)#\d+(:\d+)*\"?(: |$)", "", text)
 
 
-_FLAGS = ("dry_run", "list", "overwrite", "quiet", "require_stable", "resume")
 _OPTION = re.compile(r"(?<![\w'\"-])--(?:set (?P<taken>[\w.]+)=none|accept (?P<accepted>(?!with)[a-z]\w*)|"
                      r"(?P<name>[a-z]+(?:-[a-z]+)*)(?P<value> [A-Z]+\b)?)")
+
+
+@functools.cache
+def _flags() -> frozenset[str]:
+    from . import _core  # which imports this module
+    return frozenset(_core.flags_of_verbs())
 
 
 def in_python(text: str) -> str:
@@ -44,8 +50,8 @@ def in_python(text: str) -> str:
             return f'set("{option["taken"]}", None)'
         if option["accepted"]:
             return f'accept="{option["accepted"]}"'
-        name = option["name"].replace("-", "_")
-        return name + (option["value"] or "=True" * (name in _FLAGS)).replace(" ", "=")
+        name = option["name"]
+        return name.replace("-", "_") + (option["value"] or "=True" * (name in _flags())).replace(" ", "=")
 
     return _OPTION.sub(argument, text)
 

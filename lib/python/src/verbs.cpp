@@ -90,6 +90,7 @@ py::dict arrays_of(const std::vector<ResultArray>& arrays) {
 void bind_verbs(py::module_& module) {
   py::class_<Delivered>(module, "Delivered", made_here()).def("texts", &Delivered::texts).def("page", &Delivered::page);
   module.def("run_verb", run_verb);
+  module.def("flags_of_verbs", flags_of_verbs);
 }
 
 }  // namespace equidem::python

@@ -47,13 +47,19 @@ void add_stress(Results& out, const SolvedCase& result) {
   const Tensor2& s = *result.stress;
   // The forces that add up to the stress may cancel, and are as right as the solution.
   const Equilibrium& e = result.equilibrium;
-  const double round_off = std::max({1e-9, e.error_bound, e.relative_residual}) * result.stress_scale;
-  const bool symmetric = std::abs(asymmetry(s)) <= round_off;
+  const double round_off = 1e-9 * result.stress_scale;
+  const double error = std::max(e.error_bound, e.relative_residual) * result.stress_scale;
+  const double found = std::abs(asymmetry(s));
+  const bool symmetric = found <= std::max(round_off, error);
   out.set("stress", voigt_stress(s)).set("stress_tensor", s);
   out.add("", "", symmetric ? ResultValue(voigt_stress(s)) : ResultValue(s), "Pa", {Shown::components});
   out.note(", mean over the assembly");
   if (symmetric) {
     out.set("stress_asymmetry", asymmetry(s)).set("moment_per_area", result.moment_per_area);
+    if (found <= round_off || result.moment_per_area == 0) return;  // without a moment the rest is error
+    out.line("", fmt::format("whether it is symmetric is not known: xy - yx = {:.2g} Pa, and the error of the solution "
+                             "may make {:.2g} Pa of it",
+                             asymmetry(s), error));
     return;
   }
   out.line("", "not symmetric: ")

@@ -165,6 +165,7 @@ constexpr double per_unit = 2;           // image pixels
 /// On the hexagonal lattice every point is within 2/sqrt3 radii of a centre.
 constexpr double cell_reach = 1.1547005383792517;
 constexpr double irregular_reach = 1.35;  // of the radius of a circle as large as the cell
+constexpr double largest_reach = 2.5;     // radii
 constexpr double too_small_to_see = 0.6;  // image pixels, radius: below it a pixel takes the mean of its discs
 
 Colour colour_of(const PictureScene& scene, std::size_t disc) {
@@ -176,10 +177,20 @@ double reach_of(const Assembly& assembly, std::size_t disc) {
   double reach = cell_reach * assembly.radii[disc];
   if (!assembly.cell_areas.empty()) {
     const double as_circle = std::sqrt(std::max(assembly.cell_areas[disc], 0.0) / std::numbers::pi);
-    reach = std::max(reach, std::min(irregular_reach * as_circle, 2.5 * assembly.radii[disc]));
+    reach = std::max(reach, std::min(irregular_reach * as_circle, largest_reach * assembly.radii[disc]));
   }
   return reach;
 }
+
+/// Rows of an image that are painted at once: what a pixel needs while it is painted takes six times the image.
+constexpr int rows_at_once = 64;
+
+/// A pixel while it is painted.
+struct Pixel {
+  float nearest = std::numeric_limits<float>::infinity();  ///< the smallest power distance
+  std::int32_t owner = -1;                                 ///< the disc that has it
+  float red = 0, green = 0, blue = 0, count = 0;           ///< sums over discs smaller than pixels
+};
 
 /// Each pixel shows the disc with the smallest power distance d² - r²; where discs are smaller than pixels, the mean
 /// of those in it.
@@ -190,54 +201,56 @@ Raster paint_cells(const PictureScene& scene) {
   const int width = std::max(1, static_cast<int>(std::ceil(frame.extent.x * scale)));
   const int height = std::max(1, static_cast<int>(std::ceil(frame.extent.y * scale)));
   Raster raster(width, height);
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::vector<float> nearest(pixels, std::numeric_limits<float>::infinity());
-  std::vector<std::int32_t> owner(pixels, -1);
-  std::vector<float> red(pixels, 0), green(pixels, 0), blue(pixels, 0), count(pixels, 0);
-
-  for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
-    const double x = (scene.centres[disc].x - frame.corner.x) * scale;
-    const double y = (frame.corner.y + frame.extent.y - scene.centres[disc].y) * scale;
-    const double radius = assembly.radii[disc] * scale;
-    if (radius < too_small_to_see) {
-      const auto at =
-          static_cast<std::size_t>(std::clamp(static_cast<int>(y), 0, height - 1)) * static_cast<std::size_t>(width) +
-          static_cast<std::size_t>(std::clamp(static_cast<int>(x), 0, width - 1));
-      const Colour colour = colour_of(scene, disc);
-      red[at] += static_cast<float>(colour.red);
-      green[at] += static_cast<float>(colour.green);
-      blue[at] += static_cast<float>(colour.blue);
-      count[at] += 1;
-      continue;
-    }
-    const double reach = reach_of(assembly, disc) * scale;
-    const int left = std::max(0, static_cast<int>(x - reach));
-    const int right = std::min(width - 1, static_cast<int>(x + reach));
-    const int top = std::max(0, static_cast<int>(y - reach));
-    const int bottom = std::min(height - 1, static_cast<int>(y + reach));
-    for (int row = top; row <= bottom; ++row) {
-      for (int column = left; column <= right; ++column) {
-        const double dx = column + 0.5 - x, dy = row + 0.5 - y;
-        const double squared = dx * dx + dy * dy;
-        if (squared > reach * reach) continue;
-        const auto at =
-            static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
-        const auto power = static_cast<float>(squared - radius * radius);
-        if (power < nearest[at]) {
-          nearest[at] = power;
-          owner[at] = static_cast<std::int32_t>(disc);
+  std::vector<Pixel> pixels;
+  for (int first = 0; first < height; first += rows_at_once) {
+    const int last = std::min(first + rows_at_once, height) - 1;
+    pixels.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(last - first + 1), {});
+    const auto pixel = [&](int column, int row) -> Pixel& {
+      return pixels[static_cast<std::size_t>(row - first) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(column)];
+    };
+    for (std::size_t disc = 0; disc < assembly.size(); ++disc) {
+      const double x = (scene.centres[disc].x - frame.corner.x) * scale;
+      const double y = (frame.corner.y + frame.extent.y - scene.centres[disc].y) * scale;
+      const double radius = assembly.radii[disc] * scale;
+      if (radius < too_small_to_see) {
+        const int row = std::clamp(static_cast<int>(y), 0, height - 1);
+        if (row < first || row > last) continue;
+        Pixel& at = pixel(std::clamp(static_cast<int>(x), 0, width - 1), row);
+        const Colour colour = colour_of(scene, disc);
+        at.red += static_cast<float>(colour.red);
+        at.green += static_cast<float>(colour.green);
+        at.blue += static_cast<float>(colour.blue);
+        at.count += 1;
+        continue;
+      }
+      if (y + largest_reach * radius < first || y - largest_reach * radius > last + 1) continue;
+      const double reach = reach_of(assembly, disc) * scale;
+      const int left = std::max(0, static_cast<int>(x - reach));
+      const int right = std::min(width - 1, static_cast<int>(x + reach));
+      const int top = std::max(first, static_cast<int>(y - reach));
+      const int bottom = std::min(last, static_cast<int>(y + reach));
+      for (int row = top; row <= bottom; ++row) {
+        for (int column = left; column <= right; ++column) {
+          const double dx = column + 0.5 - x, dy = row + 0.5 - y;
+          const double squared = dx * dx + dy * dy;
+          if (squared > reach * reach) continue;
+          const auto power = static_cast<float>(squared - radius * radius);
+          if (Pixel& at = pixel(column, row); power < at.nearest) {
+            at.nearest = power;
+            at.owner = static_cast<std::int32_t>(disc);
+          }
         }
       }
     }
-  }
-  for (int row = 0; row < height; ++row) {
-    for (int column = 0; column < width; ++column) {
-      const auto at =
-          static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
-      if (owner[at] >= 0) {
-        raster.set(column, row, colour_of(scene, static_cast<std::size_t>(owner[at])));
-      } else if (count[at] > 0) {
-        raster.set(column, row, {red[at] / count[at], green[at] / count[at], blue[at] / count[at]});
+    for (int row = first; row <= last; ++row) {
+      for (int column = 0; column < width; ++column) {
+        const Pixel& at = pixel(column, row);
+        if (at.owner >= 0) {
+          raster.set(column, row, colour_of(scene, static_cast<std::size_t>(at.owner)));
+        } else if (at.count > 0) {
+          raster.set(column, row, {at.red / at.count, at.green / at.count, at.blue / at.count});
+        }
       }
     }
   }

@@ -104,15 +104,6 @@ class Gnuplot {
   std::string text_;
 };
 
-bool stop_is_asked() {
-  try {
-    stop_if_interrupted();
-  } catch (const Error&) {
-    return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 GnuplotRun run_gnuplot(const std::filesystem::path& folder, const std::string& script, double time_limit) {
@@ -120,10 +111,9 @@ GnuplotRun run_gnuplot(const std::filesystem::path& folder, const std::string& s
   if (gnuplot.failure() == ENOENT) return {false, "gnuplot is not installed"};
   if (gnuplot.failure() != 0)
     return {false, fmt::format("gnuplot could not be started: {}", std::strerror(gnuplot.failure()))};
-  constexpr int poll_every = 20;                // ms
-  const bool stopped_before = stop_is_asked();  // the figures of what is done are drawn all the same
+  constexpr int poll_every = 20;  // ms
   for (const Stopwatch watch; !gnuplot.ended(poll_every);) {
-    if (!stopped_before) stop_if_interrupted();
+    stop_if_interrupted();
     if (watch.seconds() > time_limit) return {false, fmt::format("gnuplot took more than {} s", time_limit), true};
   }
   if (gnuplot.succeeded()) return {true, {}};

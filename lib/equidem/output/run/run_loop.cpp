@@ -165,7 +165,10 @@ class RunLoop {
     const bool frame = frames_ && frames_->last_step() < step && (regular_frame || last);
     const bool row = history_ && history_->last_step() < step && probing;
     const bool recorded = plan_.recorder != nullptr && plan_.recorder->last_step() < step && probing;
-    if (!plan_.watch_between && !stage_ends && !sample && !frame && !row && !recorded) return;
+    auto& film = result_.record.film;
+    const bool filmed =
+        plan_.film_frames > 0 && (last || is_filmed(step)) && (film.empty() || film.back().step < step);
+    if (!plan_.watch_between && !stage_ends && !sample && !frame && !row && !recorded && !filmed) return;
     const EnergyLedger ledger = simulation_.energy();
     try {
       if (plan_.watch) plan_.watch(ledger);
@@ -173,9 +176,6 @@ class RunLoop {
       fail(error);
     }
     const double time = simulation_.time();
-    auto& film = result_.record.film;
-    const bool filmed =
-        sample && plan_.film_frames > 0 && (last || is_filmed(step)) && (film.empty() || film.back().step < step);
     if (sample) energies.push_back({step, time, ledger});
     if (recorded) plan_.recorder->record(step, time, regular_row);
     const bool path = sample && plan_.paths;
