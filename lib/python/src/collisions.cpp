@@ -12,7 +12,7 @@
 
 #include <pybind11/stl.h>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/names.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/inertia.hpp"
@@ -72,11 +72,11 @@ class Law {
   Law(const std::string& name, double stiffness, double restitution)
       : law_(enum_from<NormalLaw>(name)), stiffness_(stiffness) {
     dissipation_ = visit_law(law_, [&]<class Given>(std::type_identity<Given>) {
-      if constexpr (Given::kind == LawKind::simultaneous) {
+      if constexpr (Given::facts.kind == LawKind::simultaneous) {
         return 0.0;
       } else {
-        const double c = Given::dissipation(restitution, ContactEnd::at_zero_overlap);
-        return Given::kind == LawKind::map ? c : c * std::sqrt(stiffness);
+        const double c = Given::facts.dissipation(restitution, ContactEnd::at_zero_overlap);
+        return Given::facts.kind == LawKind::map ? c : c * std::sqrt(stiffness);
       }
     });
   }
@@ -103,9 +103,9 @@ class Law {
  private:
   template <class Given>
   [[nodiscard]] ContactStep one(double depth, double closing, bool first) const {
-    if constexpr (Given::kind == LawKind::force)
+    if constexpr (Given::facts.kind == LawKind::force)
       return force_step<Given>(depth, closing, stiffness_, dissipation_, true);
-    if constexpr (Given::kind == LawKind::map) return Given::step(depth, closing, stiffness_, dissipation_, first);
+    if constexpr (Given::facts.kind == LawKind::map) return Given::step(depth, closing, stiffness_, dissipation_, first);
     return {};
   }
 
