@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"

@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/shaking.hpp"
+#include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
 

@@ -21,7 +21,7 @@
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
-#include "equidem/motion/servo.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

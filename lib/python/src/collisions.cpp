@@ -105,7 +105,8 @@ class Law {
   [[nodiscard]] ContactStep one(double depth, double closing, bool first) const {
     if constexpr (Given::facts.kind == LawKind::force)
       return force_step<Given>(depth, closing, stiffness_, dissipation_, true);
-    if constexpr (Given::facts.kind == LawKind::map) return Given::step(depth, closing, stiffness_, dissipation_, first);
+    if constexpr (Given::facts.kind == LawKind::map)
+      return Given::step(depth, closing, stiffness_, dissipation_, first);
     return {};
   }
 
