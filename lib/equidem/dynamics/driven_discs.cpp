@@ -6,6 +6,7 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 namespace equidem {
 namespace {
@@ -35,6 +36,16 @@ class ValuesAt {
   double time_, value_ = 0;
   std::int32_t last_ = -1;
 };
+
+/// Cundall's damping of an acceleration, and back: damping leaves the sign of the resultant.
+double with_damping(double free, double v, double share) {
+  const double taken = share * std::abs(free);
+  return free - (v > 0 ? taken : v < 0 ? -taken : 0.0);
+}
+double without_damping(double a, double v, double share) {
+  if (v == 0) return a;
+  return a / (1 - ((a > 0) == (v > 0) ? share : -share));
+}
 
 }  // namespace
 
@@ -139,8 +150,7 @@ std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t st
 
 bool DrivenDiscs::touches_wall(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const {
   for (std::size_t k = 0; k < walls_.size(); ++k) {
-    const double gap = dot(walls_[k].normal, disc.centre + u - walls_[k].point) - motions[k].moved - disc.radius;
-    if (!(gap >= 0)) return true;
+    if (!(gap_to(walls_[k], motions[k].moved, disc.centre + u, disc.radius) >= 0)) return true;
   }
   return false;
 }
@@ -149,9 +159,9 @@ DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span
   Push push;
   for (std::size_t k = 0; k < walls_.size(); ++k) {
     const Wall& wall = walls_[k];
-    const double gap = dot(wall.normal, disc.centre + u - wall.point) - motions[k].moved - disc.radius;
+    const double gap = gap_to(wall, motions[k].moved, disc.centre + u, disc.radius);
     if (gap >= 0) continue;
-    push.force -= wall.kN * gap * wall.normal;
+    push.force += force_of(wall, gap);
     push.work -= wall.kN * gap * motions[k].way;
   }
   return push;
@@ -240,18 +250,6 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
   }
 }
 
-/// Cundall's damping of an acceleration, and back: damping leaves the sign of the resultant.
-double DrivenDiscs::with_damping(double free, double v, double share) const {
-  if (!local_) return free;
-  const double taken = share * std::abs(free);
-  return free - (v > 0 ? taken : v < 0 ? -taken : 0.0);
-}
-
-double DrivenDiscs::without_damping(double a, double v, double share) const {
-  if (!local_ || v == 0) return a;
-  return a / (1 - ((a > 0) == (v > 0) ? share : -share));
-}
-
 void DrivenDiscs::prescribe(double* motion, double time) const {
   for (const Disc& disc : discs_) {
     for (int c = 0; c < unknowns_; ++c) {
@@ -264,11 +262,7 @@ void DrivenDiscs::prescribe(double* motion, double time) const {
 
 DrivingWork DrivenDiscs::work() const {
   DrivingWork sum;
-  for (const DrivingWork& of_strip : work_) {
-    sum.loads += of_strip.loads;
-    sum.supports += of_strip.supports;
-    sum.walls += of_strip.walls;
-  }
+  for (const DrivingWork& of_strip : work_) sum += of_strip;
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include "equidem/core/statistics.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -302,20 +303,12 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
 }
 
 static void check(const Scene& scene, const RelaxationOptions& options) {
-  if (!(options.tolerance > 0)) {
-    bad_input(fmt::format("the relative unbalanced force wanted is {}", options.tolerance), "rounding leaves some",
-              "Give a number > 0, such as 1e-10");
-  }
-  if (options.max_steps <= 0)
-    bad_input(fmt::format("at most {} steps are allowed", options.max_steps), "rest takes some", "Give a number > 0");
-  if (!options.start.empty() && options.start.size() != scene.assembly.size()) {
-    bad_input(fmt::format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
-              fmt::format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
-  }
-  if (scene.weighs() && scene.inertia.size() != scene.assembly.size()) {
-    bad_input(fmt::format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
-              fmt::format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
-  }
+  check_positive(options.tolerance, "relative unbalanced force wanted");
+  check_positive(static_cast<double>(options.max_steps), "largest number of steps");
+  if (!options.start.empty())
+    check_count(scene, options.start.size(), "in the start", "Start from a state of the same assembly");
+  if (scene.weighs())
+    check_count(scene, scene.inertia.size(), "with a mass, and gravity acts", "Give the inertia of every disc");
 }
 
 Relaxation relax(const Scene& scene, const RelaxationOptions& options) {

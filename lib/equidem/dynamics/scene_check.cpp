@@ -157,10 +157,7 @@ void check_alone(const Wall& wall, const Assembly& assembly) {
               "Give it a displacement, or load the discs");
   }
   check(wall);
-  if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
-    bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
-              "Give a positive one");
-  }
+  check_positive(wall.kN, fmt::format("kN of wall '{}'", wall.name), "Pa");
 }
 
 /// Times at which a displacement turns or ends.
@@ -219,8 +216,7 @@ std::vector<DiscAtWall> wall_contacts(const Scene& scene, const std::vector<Disc
     const Wall& wall = scene.walls[w];
     const double moved = wall.displacement_along_normal(time);
     for (std::size_t d = 0; d < motions.size(); ++d) {
-      const Vec2 centre = scene.assembly.centres[d] + motions[d].u;
-      const double gap = dot(wall.normal, centre - wall.point) - moved - scene.assembly.radii[d];
+      const double gap = gap_to(wall, moved, scene.assembly.centres[d] + motions[d].u, scene.assembly.radii[d]);
       if (!(gap >= 0)) contacts.push_back({.wall = w, .disc = d, .gap = gap});
     }
   }
@@ -232,7 +228,7 @@ WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motion
   if (!scene.walls.empty()) result.forces.resize(motions.size());
   for (const auto& [w, disc, gap] : wall_contacts(scene, motions, time)) {
     const Wall& wall = scene.walls[w];
-    result.forces[disc] -= wall.kN * gap * wall.normal;
+    result.forces[disc] += force_of(wall, gap);
     result.energy += 0.5 * wall.kN * gap * gap;
   }
   return result;

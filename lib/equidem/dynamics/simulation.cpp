@@ -128,6 +128,15 @@ namespace {
 constexpr int lane_count = DiscLayout::lanes;
 constexpr int stages_in_flight = 12;  // strips of that many steps lie in the cache at a time
 
+/// A motion after some time at a velocity.
+DiscMotion after(const DiscMotion& motion, double time, const DiscMotion& velocity) {
+  return {motion.u + time * velocity.u, motion.theta + time * velocity.theta};
+}
+
+double kinetic_energy(const Inertia& inertia, const DiscMotion& v) {
+  return 0.5 * (inertia.mass * dot(v.u, v.u) + inertia.moment * v.theta * v.theta);
+}
+
 }  // namespace
 
 Simulation::Implementation::Implementation(const Scene& scene_in, const SimulationOptions& options_in)
@@ -151,7 +160,7 @@ void Simulation::Implementation::list_contacts() {
   first = std::move(slots.first);
   neighbour = std::move(slots.neighbour);
   const bool dashpots = kind.resistance == LoopKind::Resistance::dashpot;
-  const int doubles = lanes::slot_doubles(kind);
+  const int doubles = kind.slot_doubles();
   geometry.assign(slots.contact.size() * static_cast<std::size_t>(doubles), 0.0);
   for (std::size_t k = 0; k < slots.contact.size(); ++k) {
     const std::int32_t signed_contact = slots.contact[k];
@@ -201,9 +210,9 @@ void Simulation::Implementation::keep_inertia() {
     for (std::size_t place = 0; place < disc_at.size(); ++place) {
       const std::int32_t disc = disc_at[place];
       if (disc < 0) continue;
-      inverse_inertia[place / lane_count * 2 * lane_count + place % lane_count] = 1 / scene.inertia[disc].mass;
-      inverse_inertia[place / lane_count * 2 * lane_count + lane_count + place % lane_count] =
-          1 / scene.inertia[disc].moment;
+      double* const at = inverse_inertia.data() + place / lane_count * 2 * lane_count + place % lane_count;
+      at[0] = 1 / scene.inertia[disc].mass;
+      at[lane_count] = 1 / scene.inertia[disc].moment;
     }
     data.inverse_inertia = inverse_inertia.data();
   }
@@ -231,7 +240,7 @@ void Simulation::Implementation::start() {
     for (std::int32_t strip = 0; strip < bodies.layout().strips(); ++strip) do_strip(strip, back, 0, 0, 0);
     const std::vector<DiscMotion> now = bodies.discs_of(bodies.motion[0]), v = bodies.disc_velocities(bodies.velocity);
     std::vector<DiscMotion> previous(now.size());
-    for (std::size_t d = 0; d < now.size(); ++d) previous[d] = {now[d].u - h * v[d].u, now[d].theta - h * v[d].theta};
+    for (std::size_t d = 0; d < now.size(); ++d) previous[d] = after(now[d], -h, v[d]);
     bodies.put(previous, bodies.motion[1]);
     driven.prescribe(bodies.motion[1].data(), -h);
     // A prescribed motion overrules the velocity given.
@@ -344,11 +353,7 @@ Simulation::Implementation::Trial Simulation::Implementation::try_stage(const St
                  taken[task]);
   });
   Trial trial{.velocities = bodies.disc_velocities(velocity), .dissipation = {}, .work = acting.work()};
-  for (const Dissipation& of_strip : taken) {
-    trial.dissipation.mass += of_strip.mass;
-    trial.dissipation.contact += of_strip.contact;
-    trial.dissipation.local += of_strip.local;
-  }
+  for (const Dissipation& of_strip : taken) trial.dissipation += of_strip;
   return trial;
 }
 
@@ -373,9 +378,7 @@ std::vector<DiscMotion> Simulation::Implementation::motions() const {
   const double ahead = scheme_of(options.integrator).first_drift * options.time_step;
   if (ahead == 0) return result;
   const std::vector<DiscMotion> v = bodies.disc_velocities(bodies.velocity);
-  for (std::size_t d = 0; d < v.size(); ++d) {
-    result[d] = {result[d].u - ahead * v[d].u, result[d].theta - ahead * v[d].theta};
-  }
+  for (std::size_t d = 0; d < v.size(); ++d) result[d] = after(result[d], -ahead, v[d]);
   return result;
 }
 
@@ -387,8 +390,7 @@ double Simulation::Implementation::elastic_energy(const std::vector<DiscMotion>&
     if (kind.motion == LoopKind::Motion::finite) {
       energy += bond_energy(bond_of(scene.assembly, contact, scene.springs[c], scene.springs.bending(c)), i, j);
     } else {
-      const ContactDeformation d = deformation(frame_of(scene.assembly, c), i, j);
-      energy += 0.5 * (scene.springs[c].kN * d.normal * d.normal + scene.springs[c].kT * d.tangential * d.tangential);
+      energy += linear_spring_energy(scene.springs[c], deformation(frame_of(scene.assembly, c), i, j));
       if (kind.bending) energy += bending_energy(scene.springs.bending(c), i.theta, j.theta);
     }
   }
@@ -408,7 +410,7 @@ void Simulation::Implementation::add_half_kick(const std::vector<DiscMotion>& no
     const Inertia& inertia = scene.inertia[d];
     const DiscMotion &v = half.velocities[d], &u = before[d];
     if (!pushes.forces.empty()) forces[d].force += pushes.forces[d];
-    ledger.kinetic += 0.5 * (inertia.mass * dot(v.u, v.u) + inertia.moment * v.theta * v.theta);
+    ledger.kinetic += kinetic_energy(inertia, v);
     ledger.sway += h / 4 * (dot(forces[d].force, v.u - u.u) + forces[d].moment * (v.theta - u.theta));
     ledger.damped_mass += options.damping.mass * h / 4 *
                           (inertia.mass * dot(v.u, u.u + v.u) + inertia.moment * v.theta * (u.theta + v.theta));
@@ -441,10 +443,7 @@ EnergyLedger Simulation::Implementation::raw_ledger() const {
     return result;
   }
   const std::vector<DiscMotion> v = bodies.disc_velocities(bodies.velocity);
-  for (std::size_t d = 0; d < v.size(); ++d) {
-    const Inertia& inertia = scene.inertia[d];
-    result.kinetic += 0.5 * (inertia.mass * dot(v[d].u, v[d].u) + inertia.moment * v[d].theta * v[d].theta);
-  }
+  for (std::size_t d = 0; d < v.size(); ++d) result.kinetic += kinetic_energy(scene.inertia[d], v[d]);
   return result;
 }
 
@@ -502,7 +501,7 @@ std::vector<BodyContact> bonded_contacts(const Scene& scene, LoopKind::Motion mo
     result.push_back({.i = static_cast<std::int32_t>(disc),
                       .j = ~static_cast<std::int32_t>(w),
                       .arm = -scene.assembly.radii[disc] * wall.normal,
-                      .force = -wall.kN * gap * wall.normal,
+                      .force = force_of(wall, gap),
                       .normal_force = wall.kN * gap});
   }
   return result;
@@ -525,7 +524,7 @@ std::vector<WallState> Simulation::walls() const {
   const std::vector<DiscMotion> motions = s.motions();
   for (const auto& [w, disc, gap] : wall_contacts(s.scene, motions, now)) {
     const Wall& wall = s.scene.walls[w];
-    const Vec2 centre = s.scene.assembly.centres[disc] + motions[disc].u, on_wall = wall.kN * gap * wall.normal;
+    const Vec2 centre = s.scene.assembly.centres[disc] + motions[disc].u, on_wall = -force_of(wall, gap);
     walls[w].force += on_wall;
     walls[w].moment += cross(centre - s.scene.assembly.radii[disc] * wall.normal - walls[w].place, on_wall);
   }

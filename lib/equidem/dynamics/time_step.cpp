@@ -175,14 +175,8 @@ double growth_rate(const Vibration& vibration, double omega) {
 }
 
 void check(const TimeStepOptions& wanted) {
-  if (!(wanted.fraction > 0) || wanted.fraction > 1) {
-    bad_input(fmt::format("the fraction of the critical step is {}", wanted.fraction),
-              "a run takes a part of it, and past it motions grow", "Give a fraction in (0, 1], such as 0.8");
-  }
-  if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
-    bad_input(fmt::format("the time step is {} s", *wanted.step), "time could not go on",
-              "Give a step > 0, or \"auto\"");
-  }
+  check_range(Range::above_zero_to(1), wanted.fraction, "fraction of the critical step");
+  if (wanted.step) check_positive(*wanted.step, "time step", "s");
 }
 
 /// Mass-proportional damping scales a velocity by exp(-alpha h) in a step, in leapfrog by (1 - alpha h/2)/(1 + alpha
@@ -243,22 +237,19 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   const double guaranteed = critical_step(vibration, bound, bound_omega);
   const double first_step = wanted.step ? *wanted.step : wanted.fraction * guaranteed;
   bool use_bound = wanted.rule == TimeStepRule::bound && (!wanted.step || wanted.step_of_rule);
-  if (!use_bound && first_step <= guaranteed && wanted.duration > 0 &&
-      wanted.duration / first_step < steps_worth_lanczos) {
+  const auto let_bound_serve = [&](const std::string& why) {
     use_bound = true;
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(fmt::format(
-        "The guaranteed bound serves for the critical step: the run takes about {}, fewer than finding the exact "
-        "one is worth.",
-        counted(std::llround(std::ceil(wanted.duration / first_step)), "step")));
-  }
-  if (!use_bound && first_step <= guaranteed && scene.assembly.size() > most_discs_of_lanczos) {
-    use_bound = true;
-    if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(
-        fmt::format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
-                    "sought.",
-                    most_discs_of_lanczos));
+    result.notes.push_back("The guaranteed bound serves for the critical step: " + why);
+  };
+  if (!use_bound && first_step <= guaranteed) {
+    const double steps = wanted.duration / first_step;
+    if (wanted.duration > 0 && steps < steps_worth_lanczos) {
+      let_bound_serve(fmt::format("the run takes about {}, fewer than finding the exact one is worth.",
+                                  counted(std::llround(std::ceil(steps)), "step")));
+    } else if (scene.assembly.size() > most_discs_of_lanczos) {
+      let_bound_serve(fmt::format("with more than {} discs the exact one is not sought.", most_discs_of_lanczos));
+    }
   }
   result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.exact(scene.springs));
   result.critical = use_bound              ? guaranteed
