@@ -163,11 +163,8 @@ double covered_area(const GrainPacking& packing, const Rectangle& region) {
 }  // namespace
 
 void check_region(const PackingBox& box, const Rectangle& region) {
-  const Vec2 size = box.size, sides = region.high - region.low;
-  if (!(sides.x > 0 && sides.y > 0)) {
-    bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
-              "Give its lower left corner first");
-  }
+  check_area(region, "region measured");
+  const Vec2 size = box.size;
   const bool inside = region.low.x >= 0 && region.low.y >= 0 && region.high.x <= size.x && region.high.y <= size.y;
   if (box.periodic() && !inside) {
     bad_input("the region measured reaches out of the periodic box",
