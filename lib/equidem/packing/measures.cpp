@@ -213,38 +213,6 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> re
 
 namespace {
 
-/// Forces on i are the negatives of those on j; neither normal nor tangential force changes where i and j change
-/// places.
-ContactForce force_on_first(const GrainContact& contact) {
-  return {-contact.normal_force, -contact.tangential_force};
-}
-
-/// The settled contact of the same bodies, of clumps the nearest; null where there is none.
-class SettledContacts {
- public:
-  explicit SettledContacts(const std::vector<GrainContact>& contacts) {
-    for (const GrainContact& contact : contacts) {
-      const bool swapped = contact.j >= 0 && contact.j < contact.i;
-      by_bodies_[swapped ? std::pair(contact.j, contact.i) : std::pair(contact.i, contact.j)].push_back(
-          {&contact, swapped ? contact.arm_j : contact.arm_i});
-    }
-  }
-
-  [[nodiscard]] const GrainContact* find(const PackingContact& wanted) const {
-    const auto found = by_bodies_.find({wanted.i, wanted.j});
-    if (found == by_bodies_.end()) return nullptr;
-    const auto distance = [&](const Placed& placed) { return norm(placed.arm - wanted.arm_i); };
-    return std::ranges::min_element(found->second, {}, distance)->contact;
-  }
-
- private:
-  struct Placed {
-    const GrainContact* contact;
-    Vec2 arm;
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Placed>> by_bodies_;
-};
-
 /// Bodies that fell carry the forces with which they came to rest; bodies that jammed -kN times the overlap, N/m, for
 /// forces of equal springs balance there. Other packings carry none, for their overlaps balance nothing.
 /// \param contacts of contacts_of(packing)
@@ -253,14 +221,31 @@ class SettledContacts {
 std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std::vector<PackingContact>& contacts,
                                          const std::optional<SpringConstants>& springs) {
   std::vector<ContactForce> forces;
-  if (!packing.contacts.empty()) {
-    const SettledContacts settled(packing.contacts);
-    for (const PackingContact& contact : contacts) {
-      const GrainContact* const found = contact.overlap > 0 ? settled.find(contact) : nullptr;
-      forces.push_back(found == nullptr ? ContactForce{} : force_on_first(*found));
-    }
-  } else if (packing.jammed && springs) {
+  if (packing.contacts.empty()) {
+    if (!packing.jammed || !springs) return forces;
     for (const PackingContact& contact : contacts) forces.push_back({-springs->kN * std::max(contact.overlap, 0.0), 0});
+    return forces;
+  }
+  struct Settled {
+    ContactForce force;  // neither component changes where i and j change places
+    Vec2 arm;            // of the first body
+  };
+  std::multimap<std::pair<std::int32_t, std::int32_t>, Settled> settled;
+  for (const GrainContact& contact : packing.contacts) {
+    const ContactForce force = {-contact.normal_force, -contact.tangential_force};
+    if (contact.j >= 0 && contact.j < contact.i) {
+      settled.insert({{contact.j, contact.i}, {force, contact.arm_j}});
+    } else {
+      settled.insert({{contact.i, contact.j}, {force, contact.arm_i}});
+    }
+  }
+  for (const PackingContact& contact : contacts) {
+    // Clumps may touch in several places: the nearest counts.
+    const auto [first, last] = settled.equal_range({contact.i, contact.j});
+    const auto distance = [&](const auto& entry) { return norm(entry.second.arm - contact.arm_i); };
+    const auto found =
+        std::min_element(first, last, [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    forces.push_back(contact.overlap > 0 && found != last ? found->second.force : ContactForce{});
   }
   return forces;
 }
