@@ -45,7 +45,8 @@ struct EnumNames<PackingBox::Sides> {
 /// The walls of a box: floor, left, right and, where the top is not open, the lid; none of a periodic box.
 std::vector<Wall> walls_of(const PackingBox& box);
 
-/// A method is one function of the folder methods, and its lines here and in the list below.
+/// A method is one function fill_by_NAME, of the folder methods or settling.cpp, and its lines here and in the list
+/// below.
 enum class PackingMethod { rejection, local_moves, insertion, growth, falling };
 
 struct PackingOptions {
