@@ -11,15 +11,6 @@
 namespace equidem {
 namespace {
 
-const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& name, const char* what) {
-  const DiscGroup& discs = group(assembly, name);
-  if (discs.discs.empty()) {
-    bad_input(fmt::format("a {} acts on the group '{}', which is empty", what, name), "it would do nothing",
-              "Choose a group with discs or mend its definition");
-  }
-  return discs;
-}
-
 /// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share
 /// theirs.
 class ValuesAt {
@@ -78,7 +69,12 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
   }
   for (const TimedSupport& support : scene.supports) {
     const std::int32_t motions[] = {add(support.ux), add(support.uy), add(support.rotation)};
-    for (const std::int32_t disc : group_with_discs(scene.assembly, support.group, "support").discs) {
+    const DiscGroup& held = group(scene.assembly, support.group);
+    if (held.discs.empty()) {
+      bad_input(fmt::format("the support acts on the group '{}', which is empty", support.group),
+                "it would hold nothing", "Choose a group with discs or mend its definition");
+    }
+    for (const std::int32_t disc : held.discs) {
       Disc& driven = disc_of(disc);
       for (int c = 0; c < unknowns_; ++c)
         if (motions[c] >= 0) driven.held[c] = motions[c];
@@ -113,27 +109,16 @@ std::int32_t DrivenDiscs::add(const std::optional<Schedule>& schedule) {
 }
 
 void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const {
+  DegreesOfFreedom components;
+  components.per_disc = unknowns_;
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    const Load& load = scene.loads[k].load;
     check(scene.loads[k].factor);
-    const DiscGroup& discs = group_with_discs(scene.assembly, load.group, "load");
-    if (!std::isfinite(load.force.x + load.force.y + load.moment)) {
-      bad_input(fmt::format("the load on '{}' is not finite", load.group), "a load must be a number", "Give a number");
-    }
-    if (load.moment != 0 && unknowns_ != 3) {
-      bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
-                "Remove the moment, or let rotation = \"free\" with tangential springs");
-    }
-    if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
-      bad_input(fmt::format("a traction acts on the group '{}'", load.group),
-                "it is no side of the assembly and has no length",
-                "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
-    }
-    const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
-    for (std::size_t d = 0; d < discs.discs.size(); ++d) {
-      const double weight = load.kind == LoadKind::traction ? discs.tributary_lengths[d] : share;
-      loads[discs.discs[d]].push_back(
-          {{weight * load.force.x, weight * load.force.y, share * load.moment}, static_cast<std::int32_t>(k)});
+    const Load& load = scene.loads[k].load;
+    const std::vector<double> forces = assemble_loads(scene.assembly, components, {load});
+    for (const std::int32_t disc : group(scene.assembly, load.group).discs) {
+      DiscLoad& on_disc = loads[disc].emplace_back();
+      on_disc.schedule = static_cast<std::int32_t>(k);
+      for (int c = 0; c < unknowns_; ++c) on_disc.force[c] = forces[static_cast<std::size_t>(disc) * unknowns_ + c];
     }
   }
 }

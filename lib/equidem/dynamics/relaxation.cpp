@@ -43,7 +43,7 @@ class StillScene {
         unknowns_(unknowns_at(scene, effects_, options.time)),
         contacts_(unloaded(scene, options.time),
                   {.motion = options.motion, .rotation = options.rotation, .time_step = 1}) {
-    find_loads(options);
+    find_loads();
     find_masses();
   }
 
@@ -81,13 +81,9 @@ class StillScene {
   }
 
  private:
-  static std::vector<Inertia> unit_inertia(const Scene& scene) {
-    return std::vector<Inertia>(scene.assembly.size(), {1, 1});
-  }
-
   /// Contacts, and walls where they stand at a time.
   static Scene unloaded(const Scene& scene, double time) {
-    Scene still(scene.assembly, scene.springs, unit_inertia(scene));
+    Scene still(scene.assembly, scene.springs, std::vector<Inertia>(scene.assembly.size(), {1, 1}));
     still.walls = scene.walls;
     for (Wall& wall : still.walls)
       wall.move_x = {.value = wall.move_x.at(time)}, wall.move_y = {.value = wall.move_y.at(time)};
@@ -105,15 +101,19 @@ class StillScene {
     return f;
   }
 
-  void find_loads(const RelaxationOptions& options) {
-    Scene alone(scene_.assembly, scene_.springs, unit_inertia(scene_));
-    alone.loads = scene_.loads;
-    for (TimedLoad& load : alone.loads) load.factor = {.value = load.factor.at(options.time)};
-    const Simulation loaded(alone, {.rotation = options.rotation, .time_step = 1});
-    std::vector<DiscForce> forces = loaded.unbalanced_forces(std::vector<DiscMotion>(scene_.assembly.size()));
-    for (std::size_t d = 0; scene_.weighs() && d < forces.size(); ++d)
-      forces[d].force += scene_.inertia[d].mass * scene_.gravity;
-    loads_ = components(forces);
+  void find_loads() {
+    loads_.assign(unknowns_.held.size(), 0.0);
+    for (const TimedLoad& load : scene_.loads) {
+      check(load.factor);
+      add(loads_, load.factor.at(time_), assemble_loads(scene_.assembly, unknowns_, {load.load}));
+    }
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    for (std::size_t d = 0; scene_.weighs() && d < scene_.assembly.size(); ++d) {
+      loads_[b * d] += scene_.inertia[d].mass * scene_.gravity.x;
+      loads_[b * d + 1] += scene_.inertia[d].mass * scene_.gravity.y;
+    }
+    for (std::size_t k = 0; k < loads_.size(); ++k)
+      if (unknowns_.held[k] != DegreesOfFreedom::free) loads_[k] = 0;
   }
 
   void find_masses() {

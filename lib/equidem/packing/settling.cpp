@@ -98,12 +98,7 @@ double settling_step(const GrainScene& scene, const SettlingOptions& options) {
 
 std::vector<Wall> walls_of_box(double width) {
   const auto wall = [](const char* name, Vec2 point, Vec2 normal) {
-    Wall made;
-    made.name = name;
-    made.point = point;
-    made.normal = normal;
-    made.kind = 1;
-    return made;
+    return Wall{.name = name, .point = point, .normal = normal, .kind = 1};
   };
   return {wall("floor", {0, 0}, {0, 1}), wall("left", {0, 0}, {1, 0}), wall("right", {width, 0}, {-1, 0})};
 }
