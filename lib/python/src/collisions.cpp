@@ -71,14 +71,10 @@ class Law {
  public:
   Law(const std::string& name, double stiffness, double restitution)
       : law_(enum_from<NormalLaw>(name)), stiffness_(stiffness) {
-    dissipation_ = visit_law(law_, [&]<class Given>(std::type_identity<Given>) {
-      if constexpr (Given::facts.kind == LawKind::simultaneous) {
-        return 0.0;
-      } else {
-        const double c = Given::facts.dissipation(restitution, ContactEnd::at_zero_overlap);
-        return Given::facts.kind == LawKind::map ? c : c * std::sqrt(stiffness);
-      }
-    });
+    const LawDescription& law = describe(law_);
+    if (law.kind == LawKind::simultaneous) return;
+    const double c = law.dissipation(restitution, ContactEnd::at_zero_overlap);
+    dissipation_ = law.kind == LawKind::map ? c : c * std::sqrt(stiffness);
   }
 
   /// (change, shift) \param first whether the contact begins
