@@ -41,7 +41,6 @@ class DrivenDiscs {
   void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
              Dissipation& dissipation);
 
-  [[nodiscard]] bool any() const { return !discs_.empty(); }
   [[nodiscard]] std::size_t bytes() const {
     return discs_.size() * (sizeof(Disc) + sizeof(Place)) + loads_.size() * sizeof(DiscLoad);
   }

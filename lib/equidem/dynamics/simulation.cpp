@@ -419,9 +419,6 @@ void Simulation::advance(std::int64_t steps) {
 std::int64_t Simulation::step() const {
   return implementation_->steps;
 }
-const LoopKind& Simulation::loop() const {
-  return implementation_->kind;
-}
 const Effects& Simulation::effects() const {
   return implementation_->effects;
 }

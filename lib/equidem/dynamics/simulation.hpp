@@ -125,8 +125,6 @@ class Simulation final : public AnySimulation {
   /// Resultant of contacts, loads, walls and gravity at the present time on every disc displaced by `motions`, without
   /// damping; 0 where the motion is prescribed.
   [[nodiscard]] std::vector<DiscForce> unbalanced_forces(const std::vector<DiscMotion>& motions) const;
-  /// The loop in use.
-  [[nodiscard]] const LoopKind& loop() const;
   /// The first disc whose motion or velocity is not finite; -1: none.
   [[nodiscard]] std::int64_t first_runaway() const;
 
