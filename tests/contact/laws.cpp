@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 
 #include "support/catch.hpp"
 #include "support/contact_steps.hpp"
@@ -20,7 +20,7 @@ template <class Test>
 void for_each_force_law(const Test& test) {
   for (const LawDescription& law : normal_laws()) {
     visit_law(law.law, [&]<class Law>(std::type_identity<Law> type) {
-      if constexpr (Law::kind == LawKind::force) test(type);
+      if constexpr (Law::facts.kind == LawKind::force) test(type);
     });
   }
 }
@@ -31,11 +31,11 @@ TEST_CASE("the_force_of_a_spring_is_the_derivative_of_its_energy") {
   for_each_force_law([]<class Law>(std::type_identity<Law>) {
     for (const double depth : {1e-6, 0.01, 1.0, 30.0}) {
       const double k = 7e4, h = 1e-4 * depth;
-      const double slope = (Law::energy(k, depth + h) - Law::energy(k, depth - h)) / (2 * h);
-      CAPTURE(Law::name, depth, slope, Law::spring(k, depth));
+      const double slope = (Law::facts.energy(k, depth + h) - Law::facts.energy(k, depth - h)) / (2 * h);
+      CAPTURE(Law::facts.name, depth, slope, Law::spring(k, depth));
       CHECK(slope == Approx(Law::spring(k, depth)).epsilon(1e-7));
-      CHECK(Law::spring(k, depth) == Approx(k * depth * Law::length_factor(depth)).epsilon(1e-14));
-      CHECK(Law::spring(k, depth) == Approx(k * std::pow(depth, Law::spring_power)).epsilon(1e-14));
+      CHECK(Law::spring(k, depth) == Approx(k * depth * Law::facts.length_factor(depth)).epsilon(1e-14));
+      CHECK(Law::spring(k, depth) == Approx(k * std::pow(depth, Law::facts.spring_power)).epsilon(1e-14));
     }
   });
 }
@@ -51,7 +51,7 @@ TEST_CASE("an_elastic_impact_turns_the_energy_of_motion_into_that_of_the_spring_
     CHECK(stiffness == Approx(k).epsilon(1e-12));
   }
   for_each_force_law([&]<class Law>(std::type_identity<Law>) {
-    const ElasticImpact impact = Law::elastic_impact(k, m, v);
+    const ElasticImpact impact = Law::facts.elastic_impact(k, m, v);
     const int steps = 20000;
     const double dt = impact.duration / steps;
     double depth = 0, closing = v;
@@ -60,7 +60,7 @@ TEST_CASE("an_elastic_impact_turns_the_energy_of_motion_into_that_of_the_spring_
       closing -= dt / m * Law::spring(k, std::max(depth, 0.0));
       depth += 0.5 * dt * closing;
     }
-    CAPTURE(Law::name, depth / impact.overlap, closing / v);
+    CAPTURE(Law::facts.name, depth / impact.overlap, closing / v);
     CHECK(std::abs(depth) < 1e-6 * impact.overlap);
     CHECK(closing == Approx(-v).epsilon(1e-6));
   });
@@ -68,17 +68,17 @@ TEST_CASE("an_elastic_impact_turns_the_energy_of_motion_into_that_of_the_spring_
 
 TEST_CASE("a_law_with_a_dashpot_gives_the_restitution_asked_for") {
   for_each_force_law([]<class Law>(std::type_identity<Law>) {
-    if (!Law::has_dashpot) return;
+    if (!Law::facts.has_dashpot) return;
     for (const double e : {0.2, 0.7, 0.95}) {
       for (const ContactEnd end : {ContactEnd::at_zero_overlap, ContactEnd::at_zero_force}) {
-        const double dt = 1e-4, a = dt * dt, c = Law::dissipation(e, end) * dt;
+        const double dt = 1e-4, a = dt * dt, c = Law::facts.dissipation(e, end) * dt;
         double depth = 1e-12, closing = dt;
         while (depth > 0) {
           const ContactStep step = force_step<Law>(depth, closing, a, c, end == ContactEnd::at_zero_overlap);
           closing += step.change;
           depth += closing;
         }
-        CAPTURE(Law::name, e, to_string(end), -closing / dt);
+        CAPTURE(Law::facts.name, e, to_string(end), -closing / dt);
         CHECK(-closing / dt == Approx(e).margin(1e-3));
       }
     }

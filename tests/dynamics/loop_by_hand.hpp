@@ -23,7 +23,7 @@ class LoopByHand {
   LoopByHand(const Assembly& assembly, const ContactSprings& springs, const Inertia& inertia, const LoopKind& kind,
              SpringConstants dashpots = {}, double bending_dashpot = 0)
       : kind_(kind), layout_(lay_out(assembly)), slots_(list_slots(assembly, layout_)), step_(step_function(kind)) {
-    const int doubles = lanes::slot_doubles(kind);
+    const int doubles = kind.slot_doubles();
     geometry_.assign(slots_.contact.size() * static_cast<std::size_t>(doubles), 0.0);
     for (std::size_t k = 0; k < slots_.contact.size(); ++k) {
       const std::int32_t signed_contact = slots_.contact[k];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/random.hpp"
 #include "equidem/core/simd.hpp"
 
@@ -25,7 +25,7 @@ void compare_with_one_by_one() {
     eight::store(Lanes(Law::spring(eight::load<Lanes>(k.data()), depths)), spring.data());
     eight::store(Lanes(Law::dashpot(eight::load<Lanes>(c.data()), depths)), dashpot.data());
     for (std::size_t lane = 0; lane < 8; ++lane) {
-      CAPTURE(Law::name, k[lane], c[lane], depth[lane], sizeof(Lanes));
+      CAPTURE(Law::facts.name, k[lane], c[lane], depth[lane], sizeof(Lanes));
       CHECK(spring[lane] == Law::spring(k[lane], depth[lane]));
       CHECK(dashpot[lane] == Law::dashpot(c[lane], depth[lane]));
     }
@@ -37,7 +37,7 @@ void compare_with_one_by_one() {
 TEST_CASE("a_law_gives_eight_contacts_at_a_time_what_it_gives_one") {
   for (const LawDescription& law : normal_laws()) {
     visit_law(law.law, []<class Law>(std::type_identity<Law>) {
-      if constexpr (Law::kind == LawKind::force) {
+      if constexpr (Law::facts.kind == LawKind::force) {
         compare_with_one_by_one<Law, eight::Eight>();
         compare_with_one_by_one<Law, eight::Twice<eight::Four>>();
         compare_with_one_by_one<Law, eight::Twice<eight::Twice<eight::Two>>>();

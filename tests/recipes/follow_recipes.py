@@ -30,7 +30,7 @@ RECIPES = {
     },
     "A packing method": {
         "file": ("lib/equidem/packing/methods/grid.cpp", "grid.cpp"),
-        "list": "lib/equidem/packing/methods.hpp",
+        "list": "lib/equidem/packing/packing.hpp",
         "lines": [(r"FillBox fill_by_rejection,", "FillBox fill_by_grid, fill_by_rejection,"),
                   (r"(enum class PackingMethod \{[^}]*falling)", r"\1, grid"),
                   (r"(\.bytes_of_body = 1200\},\n)",

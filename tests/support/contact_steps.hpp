@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 
 namespace equidem::test {
 
@@ -14,10 +14,10 @@ namespace equidem::test {
 inline ContactStep step_of(NormalLaw law, double depth, double closing, double a, double restitution, ContactEnd end,
                            bool first) {
   return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> ContactStep {
-    if constexpr (Law::kind == LawKind::force) {
-      const double c = Law::dissipation(restitution, end) * std::sqrt(a);
+    if constexpr (Law::facts.kind == LawKind::force) {
+      const double c = Law::facts.dissipation(restitution, end) * std::sqrt(a);
       return force_step<Law>(depth, closing, a, c, end == ContactEnd::at_zero_overlap);
-    } else if constexpr (Law::kind == LawKind::map) {
+    } else if constexpr (Law::facts.kind == LawKind::map) {
       return Law::step(depth, closing, a, restitution, first);
     } else {
       throw std::logic_error("this law solves all contacts together");

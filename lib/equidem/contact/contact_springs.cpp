@@ -30,43 +30,34 @@ std::array<double, 4> harmonics_at(const Assembly& assembly, std::size_t contact
 
 /// Factors of the springs of the case at each contact.
 std::vector<double> weights(const Assembly& assembly, SpringWeighting weighting) {
+  using enum SpringWeighting;
   const std::size_t count = assembly.contacts.size();
-  std::vector<double> weight(count);
-  if (weighting == SpringWeighting::local_contact_density) {
-    const std::vector<double> psi = local_contact_density(assembly);
-    for (std::size_t c = 0; c < count; ++c) {
-      if (!std::isfinite(psi[c])) {
-        bad_input(fmt::format("both discs have three contacts in one direction at {}", name_of(assembly, c)),
-                  "the weighting \"local_contact_density\" would give it kN = 0",
-                  "Remove contacts that are given twice, or use another weighting");
-      }
-      weight[c] = 1 / psi[c];
-    }
-    return weight;
-  }
-  if (weighting == SpringWeighting::contact_density) {
-    const std::vector<double> psi = contact_density(assembly);
-    for (std::size_t c = 0; c < count; ++c) {
-      if (!(psi[c] > 0)) {
-        bad_input(fmt::format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
-                  "its second and fourth harmonics do not describe so anisotropic an assembly",
-                  "Use the weighting \"uniform\"");
-      }
-      weight[c] = 1 / psi[c];
-    }
-    return weight;
-  }
-  if (assembly.facet_lengths.size() != count) {
+  if (weighting == voronoi && assembly.facet_lengths.size() != count) {
     bad_input("the weighting \"voronoi\" has no cell edges to weight with",
               "only assemblies made by triangulation have the edges that the cells of two discs share",
               "Use an assembly of kind \"delaunay\", or another weighting");
   }
+  std::vector<double> psi;
+  if (weighting == local_contact_density) psi = equidem::local_contact_density(assembly);
+  if (weighting == contact_density) psi = equidem::contact_density(assembly);
+  std::vector<double> weight(count);
   for (std::size_t c = 0; c < count; ++c) {
-    weight[c] = assembly.facet_lengths[c] / norm(assembly.branch(assembly.contacts[c]));
-    if (!(weight[c] > 0)) {
+    if (weighting == voronoi) {
+      weight[c] = assembly.facet_lengths[c] / norm(assembly.branch(assembly.contacts[c]));
+      if (weight[c] > 0) continue;
       bad_input(fmt::format("the cells share no edge at {}", name_of(assembly, c)),
                 "the weighting \"voronoi\" would give it kN = 0", "Move one of the discs, or use another weighting");
     }
+    weight[c] = 1 / psi[c];
+    if (psi[c] > 0 && weight[c] > 0) continue;
+    if (weighting == contact_density) {
+      bad_input(fmt::format("the contact density is {:.6g} contacts per radian at {}", psi[c], name_of(assembly, c)),
+                "its second and fourth harmonics do not describe so anisotropic an assembly",
+                "Use the weighting \"uniform\"");
+    }
+    bad_input(fmt::format("both discs have three contacts in one direction at {}", name_of(assembly, c)),
+              "the weighting \"local_contact_density\" would give it kN = 0",
+              "Remove contacts that are given twice, or use another weighting");
   }
   return weight;
 }
@@ -243,11 +234,8 @@ void check(const ContactSprings& springs, const BendingOptions& options) {
   if (options.kM && options.bond_width) {
     bad_input("kM and bond_width are both given", "each says how stiff contacts are in bending", "Remove one of them");
   }
-  const double value = options.kM.value_or(options.bond_width.value_or(0));
-  if (!(value >= 0) || !std::isfinite(value)) {
-    bad_input(fmt::format("{} = {}", options.kM ? "kM" : "bond_width", value), "contacts cannot resist bending with it",
-              "Give a number of 0 or more");
-  }
+  check_range(Range::not_negative(), options.kM.value_or(0), "bending spring kM of the contacts", "N");
+  check_range(Range::not_negative(), options.bond_width.value_or(0), "bond_width of the contacts");
   if (!springs.any_negative()) return;
   bad_input("some kT is negative, and contacts resist bending",
             "with kT < 0 statics eliminates rotations, which resist nothing else, before it asks for stability",

@@ -6,18 +6,10 @@
 
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/scene_check.hpp"
 
 namespace equidem {
 namespace {
-
-const DiscGroup& group_with_discs(const Assembly& assembly, const std::string& name, const char* what) {
-  const DiscGroup& discs = group(assembly, name);
-  if (discs.discs.empty()) {
-    bad_input(fmt::format("a {} acts on the group '{}', which is empty", what, name), "it would do nothing",
-              "Choose a group with discs or mend its definition");
-  }
-  return discs;
-}
 
 /// The values of schedules at one time. The last one asked for is kept: discs that follow one another often share
 /// theirs.
@@ -35,6 +27,16 @@ class ValuesAt {
   double time_, value_ = 0;
   std::int32_t last_ = -1;
 };
+
+/// Cundall's damping of an acceleration, and back: damping leaves the sign of the resultant.
+double with_damping(double free, double v, double share) {
+  const double taken = share * std::abs(free);
+  return free - (v > 0 ? taken : v < 0 ? -taken : 0.0);
+}
+double without_damping(double a, double v, double share) {
+  if (v == 0) return a;
+  return a / (1 - ((a > 0) == (v > 0) ? share : -share));
+}
 
 }  // namespace
 
@@ -67,7 +69,12 @@ DrivenDiscs::DrivenDiscs(const Scene& scene, const DiscLayout& layout, const Loo
   }
   for (const TimedSupport& support : scene.supports) {
     const std::int32_t motions[] = {add(support.ux), add(support.uy), add(support.rotation)};
-    for (const std::int32_t disc : group_with_discs(scene.assembly, support.group, "support").discs) {
+    const DiscGroup& held = group(scene.assembly, support.group);
+    if (held.discs.empty()) {
+      bad_input(fmt::format("the support acts on the group '{}', which is empty", support.group),
+                "it would hold nothing", "Choose a group with discs or mend its definition");
+    }
+    for (const std::int32_t disc : held.discs) {
       Disc& driven = disc_of(disc);
       for (int c = 0; c < unknowns_; ++c)
         if (motions[c] >= 0) driven.held[c] = motions[c];
@@ -102,27 +109,16 @@ std::int32_t DrivenDiscs::add(const std::optional<Schedule>& schedule) {
 }
 
 void DrivenDiscs::add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const {
+  DegreesOfFreedom components;
+  components.per_disc = unknowns_;
   for (std::size_t k = 0; k < scene.loads.size(); ++k) {
-    const Load& load = scene.loads[k].load;
     check(scene.loads[k].factor);
-    const DiscGroup& discs = group_with_discs(scene.assembly, load.group, "load");
-    if (!std::isfinite(load.force.x + load.force.y + load.moment)) {
-      bad_input(fmt::format("the load on '{}' is not finite", load.group), "a load must be a number", "Give a number");
-    }
-    if (load.moment != 0 && unknowns_ != 3) {
-      bad_input(fmt::format("a moment acts on the group '{}'", load.group), "rotations are no unknowns of this scene",
-                "Remove the moment, or let rotation = \"free\" with tangential springs");
-    }
-    if (load.kind == LoadKind::traction && discs.tributary_lengths.empty()) {
-      bad_input(fmt::format("a traction acts on the group '{}'", load.group),
-                "it is no side of the assembly and has no length",
-                "Use kind = \"per_disc\" or \"total\", or one of the groups left, right, bottom, top");
-    }
-    const double share = load.kind == LoadKind::total ? 1.0 / static_cast<double>(discs.discs.size()) : 1.0;
-    for (std::size_t d = 0; d < discs.discs.size(); ++d) {
-      const double weight = load.kind == LoadKind::traction ? discs.tributary_lengths[d] : share;
-      loads[discs.discs[d]].push_back(
-          {{weight * load.force.x, weight * load.force.y, share * load.moment}, static_cast<std::int32_t>(k)});
+    const Load& load = scene.loads[k].load;
+    const std::vector<double> forces = assemble_loads(scene.assembly, components, {load});
+    for (const std::int32_t disc : group(scene.assembly, load.group).discs) {
+      DiscLoad& on_disc = loads[disc].emplace_back();
+      on_disc.schedule = static_cast<std::int32_t>(k);
+      for (int c = 0; c < unknowns_; ++c) on_disc.force[c] = forces[static_cast<std::size_t>(disc) * unknowns_ + c];
     }
   }
 }
@@ -139,8 +135,7 @@ std::span<const DrivenDiscs::WallMotion> DrivenDiscs::move_walls(std::int32_t st
 
 bool DrivenDiscs::touches_wall(const Place& disc, Vec2 u, std::span<const WallMotion> motions) const {
   for (std::size_t k = 0; k < walls_.size(); ++k) {
-    const double gap = dot(walls_[k].normal, disc.centre + u - walls_[k].point) - motions[k].moved - disc.radius;
-    if (!(gap >= 0)) return true;
+    if (!(gap_to(walls_[k], motions[k].moved, disc.centre + u, disc.radius) >= 0)) return true;
   }
   return false;
 }
@@ -149,9 +144,9 @@ DrivenDiscs::Push DrivenDiscs::push_of_walls(const Disc& disc, Vec2 u, std::span
   Push push;
   for (std::size_t k = 0; k < walls_.size(); ++k) {
     const Wall& wall = walls_[k];
-    const double gap = dot(wall.normal, disc.centre + u - wall.point) - motions[k].moved - disc.radius;
+    const double gap = gap_to(wall, motions[k].moved, disc.centre + u, disc.radius);
     if (gap >= 0) continue;
-    push.force -= wall.kN * gap * wall.normal;
+    push.force += force_of(wall, gap);
     push.work -= wall.kN * gap * motions[k].way;
   }
   return push;
@@ -240,18 +235,6 @@ void DrivenDiscs::after(std::int32_t strip, const LoopData& data, const Stage& s
   }
 }
 
-/// Cundall's damping of an acceleration, and back: damping leaves the sign of the resultant.
-double DrivenDiscs::with_damping(double free, double v, double share) const {
-  if (!local_) return free;
-  const double taken = share * std::abs(free);
-  return free - (v > 0 ? taken : v < 0 ? -taken : 0.0);
-}
-
-double DrivenDiscs::without_damping(double a, double v, double share) const {
-  if (!local_ || v == 0) return a;
-  return a / (1 - ((a > 0) == (v > 0) ? share : -share));
-}
-
 void DrivenDiscs::prescribe(double* motion, double time) const {
   for (const Disc& disc : discs_) {
     for (int c = 0; c < unknowns_; ++c) {
@@ -264,11 +247,7 @@ void DrivenDiscs::prescribe(double* motion, double time) const {
 
 DrivingWork DrivenDiscs::work() const {
   DrivingWork sum;
-  for (const DrivingWork& of_strip : work_) {
-    sum.loads += of_strip.loads;
-    sum.supports += of_strip.supports;
-    sum.walls += of_strip.walls;
-  }
+  for (const DrivingWork& of_strip : work_) sum += of_strip;
   return sum;
 }
 

@@ -17,12 +17,19 @@ namespace equidem {
 /// Work done on the discs since the start, N.
 struct DrivingWork {
   double loads = 0, supports = 0, walls = 0;
+
+  DrivingWork& operator+=(const DrivingWork& other) {
+    loads += other.loads;
+    supports += other.supports;
+    walls += other.walls;
+    return *this;
+  }
 };
 
 /// Supports, loads and walls that act on single discs, stored by strip. Other discs cost nothing.
 class DrivenDiscs {
  public:
-  /// \param scene checked (loop_choice.hpp)
+  /// \param scene checked (layout.hpp)
   /// \throws Error (bad_input) on a group that does not exist or is empty, a load that is not finite
   DrivenDiscs(const Scene& scene, const DiscLayout& layout, const LoopKind& kind);
 
@@ -34,7 +41,6 @@ class DrivenDiscs {
   void after(std::int32_t strip, const LoopData& data, const Stage& stage, int parity, double time, double time_after,
              Dissipation& dissipation);
 
-  [[nodiscard]] bool any() const { return !discs_.empty(); }
   [[nodiscard]] std::size_t bytes() const {
     return discs_.size() * (sizeof(Disc) + sizeof(Place)) + loads_.size() * sizeof(DiscLoad);
   }
@@ -69,8 +75,6 @@ class DrivenDiscs {
   };
   std::int32_t add(const std::optional<Schedule>& schedule);
   void add_loads(const Scene& scene, std::vector<std::vector<DiscLoad>>& loads) const;
-  [[nodiscard]] double with_damping(double free, double v, double share) const;
-  [[nodiscard]] double without_damping(double a, double v, double share) const;
   /// Displacement of a wall, and the displacement over which it does work, m.
   struct WallMotion {
     double moved = 0, way = 0;

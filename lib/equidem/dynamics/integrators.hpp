@@ -1,19 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// An integrator as a sequence of stages, with its order and its limit of stability.
-///
-/// An integrator is a constant of type IntegrationScheme, and its name in the list of Integrator.
-///
-/// Central differences: v(t + h/2) = v(t - h/2) + h a(t), u(t + h) = u(t) + h v(t + h/2).
-///
-/// Sukegawa (2010), eqs. (3.14) to (3.17) as printed: v' = v + h a, x' = x + (v + v')/2 h.
-///
-/// Velocity Verlet: the motion of leapfrog, with velocities at full steps.
-///
-/// The position-extended Forest-Ruth-like scheme of Omelyan, Mryglod & Folk (2002): symplectic, order 4. Drifts xi,
-/// chi, 1 - 2(chi + xi), chi, xi around kicks (1 - 2 lambda)/2, lambda, lambda, (1 - 2 lambda)/2.
-///
-/// The integrators of bonded bodies.
+/// The integrators of bonded bodies: each is a sequence of stages with its order and its limit of stability, a constant
+/// of type IntegrationScheme and its name in the list of Integrator.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +30,6 @@ enum class MassDamping {
 
 struct IntegrationScheme {
   int order = 2;                 ///< where forces depend on positions, and for mass-proportional damping
-  int force_evaluations = 1;     ///< per step
   bool half_step_start = false;  ///< initial half kick before the first step
   bool takes_dashpots = true;    ///< forces may depend on velocities
   StabilityLimit limit = StabilityLimit::undamped;
@@ -58,11 +45,10 @@ struct IntegrationScheme {
 
 namespace integrators {
 
+/// Central differences: v(t + h/2) = v(t - h/2) + h a(t), u(t + h) = u(t) + h v(t + h/2).
 /// Mass-proportional damping is central and does not change the limit omega h = 2; a contact dashpot (zeta > 0, from
 /// relative velocities) is evaluated half a step behind: 2 (sqrt(1 + zeta²) - zeta).
 inline constexpr IntegrationScheme leapfrog{
-    .order = 2,
-    .force_evaluations = 1,
     .half_step_start = true,
     .limit = StabilityLimit::central_differences,
     .stability_limit = [](double zeta) { return 2 * (std::sqrt(1 + zeta * zeta) - zeta); },
@@ -74,10 +60,10 @@ inline constexpr IntegrationScheme leapfrog{
         },
 };
 
+/// Sukegawa (2010), eqs. (3.14) to (3.17) as printed: v' = v + h a, x' = x + (v + v')/2 h.
 /// Order 1; unstable without damping: omega h < min(4 zeta, 1/zeta), zeta of all damping.
 inline constexpr IntegrationScheme thesis{
     .order = 1,
-    .force_evaluations = 1,
     .limit = StabilityLimit::thesis,
     .mass_damping = MassDamping::one_sided,
     .stability_limit = [](double zeta) { return zeta > 0 ? std::min(4 * zeta, 1 / zeta) : 0.0; },
@@ -88,15 +74,11 @@ inline constexpr IntegrationScheme thesis{
         },
 };
 
-inline constexpr IntegrationScheme velocity_verlet{
-    .order = leapfrog.order,
-    .force_evaluations = leapfrog.force_evaluations,
-    .half_step_start = true,
-    .limit = leapfrog.limit,
-    .stability_limit = leapfrog.stability_limit,
-    .stages = leapfrog.stages,
-};
+/// Velocity Verlet: the motion of leapfrog, with velocities at full steps.
+inline constexpr IntegrationScheme velocity_verlet = leapfrog;
 
+/// The position-extended Forest-Ruth-like scheme of Omelyan, Mryglod & Folk (2002): symplectic, order 4. Drifts xi,
+/// chi, 1 - 2(chi + xi), chi, xi around kicks (1 - 2 lambda)/2, lambda, lambda, (1 - 2 lambda)/2.
 namespace omelyan {
 
 inline constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054, chi = -0.06626458266981849;
@@ -146,7 +128,6 @@ inline std::vector<Stage> stages(double h, double alpha) {
 /// two successive ones are merged.
 inline constexpr IntegrationScheme fourth_order{
     .order = 4,
-    .force_evaluations = 4,
     .takes_dashpots = false,
     .mass_damping = MassDamping::exact,
     .stability_limit =

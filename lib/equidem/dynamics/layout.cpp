@@ -129,12 +129,6 @@ ContactSlots list_slots(const Assembly& assembly, const DiscLayout& layout) {
   return slots;
 }
 
-namespace {
-
-constexpr int width = DiscLayout::lanes;
-
-}  // namespace
-
 BodyArrays::BodyArrays(DiscLayout layout, const LoopKind& kind)
     : layout_(std::move(layout)), unknowns_(kind.unknowns()), width_(kind.width()) {
   const std::size_t places = layout_.disc_at.size();
@@ -154,42 +148,32 @@ void BodyArrays::connect(LoopData& data) {
   data.dashpot = dashpot.empty() ? nullptr : dashpot.data();
 }
 
-std::vector<DiscMotion> BodyArrays::discs_of(const LaneVector<double>& motions) const {
-  std::vector<DiscMotion> result(layout_.place_of.size());
-  for (std::size_t d = 0; d < result.size(); ++d) {
-    const double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
-    result[d] = {{at[0], at[1]}, width_ == 4 ? at[2] : 0.0};
-  }
-  return result;
+std::size_t BodyArrays::first_of(std::size_t disc, std::size_t stride) const {
+  constexpr std::size_t lanes = DiscLayout::lanes;
+  const auto place = static_cast<std::size_t>(layout_.place_of[disc]);
+  return stride == 1 ? place * width_ : place / lanes * lanes * unknowns_ + place % lanes;
 }
 
-void BodyArrays::put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const {
+std::vector<DiscMotion> BodyArrays::read(const LaneVector<double>& array, std::size_t stride) const {
+  std::vector<DiscMotion> discs(layout_.place_of.size());
   for (std::size_t d = 0; d < discs.size(); ++d) {
-    double* at = motions.data() + static_cast<std::size_t>(layout_.place_of[d]) * width_;
-    at[0] = discs[d].u.x;
-    at[1] = discs[d].u.y;
-    if (width_ == 4) at[2] = discs[d].theta;
+    const double* at = array.data() + first_of(d, stride);
+    discs[d] = {{at[0], at[stride]}, unknowns_ == 3 ? at[2 * stride] : 0.0};
   }
+  return discs;
 }
 
-std::vector<DiscMotion> BodyArrays::disc_velocities(const LaneVector<double>& velocities) const {
-  std::vector<DiscMotion> result(layout_.place_of.size());
-  for (std::size_t d = 0; d < result.size(); ++d) {
-    const auto place = static_cast<std::size_t>(layout_.place_of[d]);
-    const double* at = velocities.data() + place / width * width * unknowns_ + place % width;
-    result[d] = {{at[0], at[width]}, unknowns_ == 3 ? at[2 * width] : 0.0};
+void BodyArrays::write(const std::vector<DiscMotion>& discs, std::size_t stride, LaneVector<double>& array) const {
+  for (std::size_t d = 0; d < discs.size(); ++d) {
+    double* at = array.data() + first_of(d, stride);
+    at[0] = discs[d].u.x;
+    at[stride] = discs[d].u.y;
+    if (unknowns_ == 3) at[2 * stride] = discs[d].theta;
   }
-  return result;
 }
 
 void BodyArrays::put_velocities(const std::vector<DiscMotion>& discs) {
-  for (std::size_t d = 0; d < discs.size(); ++d) {
-    const auto place = static_cast<std::size_t>(layout_.place_of[d]);
-    double* at = velocity.data() + place / width * width * unknowns_ + place % width;
-    at[0] = discs[d].u.x;
-    at[width] = discs[d].u.y;
-    if (unknowns_ == 3) at[2 * width] = discs[d].theta;
-  }
+  write(discs, DiscLayout::lanes, velocity);
   for (auto& one : velocity_at) {
     if (!one.empty()) put(discs, one);
   }
@@ -197,8 +181,8 @@ void BodyArrays::put_velocities(const std::vector<DiscMotion>& discs) {
 
 void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double lever_other, SpringConstants k,
                    double kM, double* slot, int lane) {
-  const auto write = [&](std::initializer_list<double> numbers) {
-    double* to = slot + lane;
+  double* to = slot + lane;
+  const auto write = [&to](std::initializer_list<double> numbers) {
     for (const double number : numbers) {
       *to = number;
       to += DiscLayout::lanes;
@@ -209,15 +193,12 @@ void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double l
     const double levers = lever_own + lever_other;
     write({branch.x, branch.y, square});
     if (kind.equal_contacts) return;
-    slot += 3 * DiscLayout::lanes;
     write({levers / norm(branch), levers > 0 ? lever_own / levers : 0.5, k.kN, k.kT});
-    slot += 4 * DiscLayout::lanes;
   } else if (kind.equal_contacts) {
     write({branch.x, branch.y, 1 / square});
   } else {
     const Vec2 n = branch / norm(branch);
     write({n.x, n.y, lever_own, lever_other, k.kN, k.kT});
-    slot += 6 * DiscLayout::lanes;
   }
   if (kind.bending) write({kM});
 }
@@ -225,30 +206,22 @@ void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double l
 namespace {
 
 void check_inertia(const Scene& scene) {
-  for (std::size_t d = 0; d < scene.inertia.size(); ++d) {
-    const Inertia& inertia = scene.inertia[d];
-    if (inertia.mass > 0 && inertia.moment > 0 && std::isfinite(inertia.mass + inertia.moment)) continue;
-    bad_input(fmt::format("disc {} has the mass {} and the moment of inertia {}", d, inertia.mass, inertia.moment),
-              "a force would move it without limit", "Give a density > 0");
-  }
+  constexpr Bound<Inertia> bounds[] = {{"mass", &Inertia::mass, Range::positive()},
+                                       {"moment of inertia", &Inertia::moment, Range::positive()}};
+  for (std::size_t d = 0; d < scene.inertia.size(); ++d)
+    check_bounds(scene.inertia[d], bounds, [d] { return fmt::format(" of disc {}", d); });
 }
 
 void check_damping(const SimulationOptions& options) {
   const Damping& damping = options.damping;
-  const std::pair<const char*, double> values[] = {{"mass", damping.mass},
-                                                   {"stiffness", damping.stiffness},
-                                                   {"contact", damping.contact},
-                                                   {"local", damping.local},
-                                                   {"viscoelastic normal", damping.normal_time},
-                                                   {"viscoelastic tangential", damping.tangential_time}};
-  for (const auto& [name, value] : values) {
-    if (value >= 0 && std::isfinite(value)) continue;
-    bad_input(fmt::format("{} damping is {}", name, value), "negative damping would feed the motion", "Give 0 or more");
-  }
-  if (damping.local >= 1) {
-    bad_input(fmt::format("local damping is {}", damping.local), "at 1 and more nothing would start to move",
-              "Give a share below 1, such as 0.7");
-  }
+  constexpr Bound<Damping> bounds[] = {
+      {"mass", &Damping::mass, Range::not_negative(), "1/s"},
+      {"stiffness", &Damping::stiffness, Range::not_negative(), "s"},
+      {"contact", &Damping::contact, Range::not_negative()},
+      {"local", &Damping::local, {.low = 0, .high = 1, .high_open = true}},
+      {"viscoelastic normal", &Damping::normal_time, Range::not_negative(), "s"},
+      {"viscoelastic tangential", &Damping::tangential_time, Range::not_negative(), "s"}};
+  check_bounds(damping, bounds, [] { return " damping"; });
   const bool dashpots = damping.dashpots(), viscoelastic = damping.normal_time > 0 || damping.tangential_time > 0;
   const bool kinds[] = {damping.stiffness > 0, damping.contact > 0, damping.local > 0, viscoelastic};
   if (std::ranges::count(kinds, true) > 1) {
@@ -271,6 +244,12 @@ bool in_the_middle(const Assembly& assembly, const Contact& contact) {
 
 }  // namespace
 
+void check_count(const Scene& scene, std::size_t discs, const char* which, const char* remedy) {
+  if (discs == scene.assembly.size()) return;
+  bad_input(fmt::format("there are {} {}", counted(static_cast<std::int64_t>(discs), "disc"), which),
+            fmt::format("the assembly has {}", scene.assembly.size()), remedy);
+}
+
 void check_contacts(const Assembly& assembly) {
   if (assembly.contact_arms.empty()) return;
   bad_input(
@@ -280,13 +259,8 @@ void check_contacts(const Assembly& assembly) {
 }
 
 void check(const Scene& scene, const SimulationOptions& options) {
-  if (!(options.time_step > 0) || !std::isfinite(options.time_step)) {
-    bad_input(fmt::format("the time step is {} s", options.time_step), "time could not go on", "Give a step > 0");
-  }
-  if (scene.inertia.size() != scene.assembly.size()) {
-    bad_input(fmt::format("{} have a mass", counted(static_cast<std::int64_t>(scene.inertia.size()), "disc")),
-              fmt::format("the assembly has {}", scene.assembly.size()), "Give the inertia of every disc");
-  }
+  check_positive(options.time_step, "time step", "s");
+  check_count(scene, scene.inertia.size(), "with a mass", "Give the inertia of every disc");
   check_contacts(scene.assembly);
   check_inertia(scene);
   check_damping(options);

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Memory layout of discs and contacts in the loops.
-///
-/// Motions and velocities of discs in the layout of the loop.
-///
-/// Contact data in a slot of the loop.
-///
-/// Choice of the loop for a scene, made once before the first step.
+/// Choice of the loop for a scene, made once before the first step, and the memory layout of discs and contacts in it.
 #pragma once
 
 #include <cstdint>
@@ -64,40 +58,38 @@ class BodyArrays {
   LaneVector<double> dashpot;         ///< dashpots only: groups x unknowns x lanes
 
   [[nodiscard]] const DiscLayout& layout() const { return layout_; }
-  [[nodiscard]] std::vector<DiscMotion> discs_of(const LaneVector<double>& motions) const;
-  void put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const;
-  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const LaneVector<double>& velocities) const;
+  [[nodiscard]] std::vector<DiscMotion> discs_of(const LaneVector<double>& motions) const { return read(motions, 1); }
+  void put(const std::vector<DiscMotion>& discs, LaneVector<double>& motions) const { write(discs, 1, motions); }
+  [[nodiscard]] std::vector<DiscMotion> disc_velocities(const LaneVector<double>& velocities) const {
+    return read(velocities, DiscLayout::lanes);
+  }
   /// Set `velocity` and, with dashpots, both `velocity_at`.
   void put_velocities(const std::vector<DiscMotion>& discs);
   /// Set the pointers of a loop to these arrays.
   void connect(LoopData& data);
 
  private:
+  /// Number of the first component of a disc; the next ones follow at the stride: 1 in motions, lanes in velocities.
+  [[nodiscard]] std::size_t first_of(std::size_t disc, std::size_t stride) const;
+  [[nodiscard]] std::vector<DiscMotion> read(const LaneVector<double>& array, std::size_t stride) const;
+  void write(const std::vector<DiscMotion>& discs, std::size_t stride, LaneVector<double>& array) const;
+
   DiscLayout layout_;
   int unknowns_, width_;
 };
-
-namespace lanes {
-
-/// Doubles of one slot and lane: LoopData::geometry.
-constexpr int slot_doubles(const LoopKind& kind) {
-  const int springs = kind.equal_contacts ? 3 : kind.motion == LoopKind::Motion::finite ? 7 : 6, bending = kind.bending;
-  const bool dashpots = kind.resistance == LoopKind::Resistance::dashpot && !kind.equal_contacts;
-  return springs + bending + (dashpots ? 2 + bending : 0);
-}
-
-}  // namespace lanes
 
 /// Write the contact of one lane into its slot, in the order that LoopData::geometry states; constants of
 /// dashpots are not changed. A lane of zeros means no contact. \param branch from the disc of this lane to its
 /// neighbour, at rest, m \param lever_own, lever_other of the disc and of its neighbour, m
 /// \param k of this contact, Pa; equal contacts use those of LoopData
 /// \param kM of this contact, N, where kind.bending
-/// \param slot slot_doubles(kind) x 4 doubles
+/// \param slot kind.slot_doubles() x 4 doubles
 /// \param lane 0 .. 3
 void fill_geometry(const LoopKind& kind, Vec2 branch, double lever_own, double lever_other, SpringConstants k,
                    double kM, double* slot, int lane);
 
+/// \throws Error (bad_input) where something is given of another number of discs than the assembly has
+void check_count(const Scene& scene, std::size_t discs, const char* which, const char* remedy);
 /// \throws Error (bad_input) if contacts lie off the lines of centres, which no loop supports
 void check_contacts(const Assembly& assembly);
 

@@ -11,6 +11,7 @@
 #include "equidem/core/statistics.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
+#include "equidem/dynamics/layout.hpp"
 #include "equidem/dynamics/scene_check.hpp"
 #include "equidem/linear/contact_graph.hpp"
 #include "equidem/linear/stiffness_matrix.hpp"
@@ -42,7 +43,7 @@ class StillScene {
         unknowns_(unknowns_at(scene, effects_, options.time)),
         contacts_(unloaded(scene, options.time),
                   {.motion = options.motion, .rotation = options.rotation, .time_step = 1}) {
-    find_loads(options);
+    find_loads();
     find_masses();
   }
 
@@ -80,13 +81,9 @@ class StillScene {
   }
 
  private:
-  static std::vector<Inertia> unit_inertia(const Scene& scene) {
-    return std::vector<Inertia>(scene.assembly.size(), {1, 1});
-  }
-
   /// Contacts, and walls where they stand at a time.
   static Scene unloaded(const Scene& scene, double time) {
-    Scene still(scene.assembly, scene.springs, unit_inertia(scene));
+    Scene still(scene.assembly, scene.springs, std::vector<Inertia>(scene.assembly.size(), {1, 1}));
     still.walls = scene.walls;
     for (Wall& wall : still.walls)
       wall.move_x = {.value = wall.move_x.at(time)}, wall.move_y = {.value = wall.move_y.at(time)};
@@ -104,15 +101,19 @@ class StillScene {
     return f;
   }
 
-  void find_loads(const RelaxationOptions& options) {
-    Scene alone(scene_.assembly, scene_.springs, unit_inertia(scene_));
-    alone.loads = scene_.loads;
-    for (TimedLoad& load : alone.loads) load.factor = {.value = load.factor.at(options.time)};
-    const Simulation loaded(alone, {.rotation = options.rotation, .time_step = 1});
-    std::vector<DiscForce> forces = loaded.unbalanced_forces(std::vector<DiscMotion>(scene_.assembly.size()));
-    for (std::size_t d = 0; scene_.weighs() && d < forces.size(); ++d)
-      forces[d].force += scene_.inertia[d].mass * scene_.gravity;
-    loads_ = components(forces);
+  void find_loads() {
+    loads_.assign(unknowns_.held.size(), 0.0);
+    for (const TimedLoad& load : scene_.loads) {
+      check(load.factor);
+      add(loads_, load.factor.at(time_), assemble_loads(scene_.assembly, unknowns_, {load.load}));
+    }
+    const auto b = static_cast<std::size_t>(unknowns_.per_disc);
+    for (std::size_t d = 0; scene_.weighs() && d < scene_.assembly.size(); ++d) {
+      loads_[b * d] += scene_.inertia[d].mass * scene_.gravity.x;
+      loads_[b * d + 1] += scene_.inertia[d].mass * scene_.gravity.y;
+    }
+    for (std::size_t k = 0; k < loads_.size(); ++k)
+      if (unknowns_.held[k] != DegreesOfFreedom::free) loads_[k] = 0;
   }
 
   void find_masses() {
@@ -302,20 +303,12 @@ double relative_unbalanced_force(const Scene& scene, LoopKind::Motion motion, co
 }
 
 static void check(const Scene& scene, const RelaxationOptions& options) {
-  if (!(options.tolerance > 0)) {
-    bad_input(fmt::format("the relative unbalanced force wanted is {}", options.tolerance), "rounding leaves some",
-              "Give a number > 0, such as 1e-10");
-  }
-  if (options.max_steps <= 0)
-    bad_input(fmt::format("at most {} steps are allowed", options.max_steps), "rest takes some", "Give a number > 0");
-  if (!options.start.empty() && options.start.size() != scene.assembly.size()) {
-    bad_input(fmt::format("the start has {}", counted(static_cast<long long>(options.start.size()), "disc")),
-              fmt::format("the assembly has {}", scene.assembly.size()), "Start from a state of the same assembly");
-  }
-  if (scene.weighs() && scene.inertia.size() != scene.assembly.size()) {
-    bad_input(fmt::format("{} have a mass", counted(static_cast<long long>(scene.inertia.size()), "disc")),
-              fmt::format("gravity acts on all {}", scene.assembly.size()), "Give the inertia of every disc");
-  }
+  check_positive(options.tolerance, "relative unbalanced force wanted");
+  check_positive(static_cast<double>(options.max_steps), "largest number of steps");
+  if (!options.start.empty())
+    check_count(scene, options.start.size(), "in the start", "Start from a state of the same assembly");
+  if (scene.weighs())
+    check_count(scene, scene.inertia.size(), "with a mass, and gravity acts", "Give the inertia of every disc");
 }
 
 Relaxation relax(const Scene& scene, const RelaxationOptions& options) {

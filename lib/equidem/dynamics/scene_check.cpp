@@ -30,7 +30,26 @@ class SceneCheck {
  public:
   SceneCheck(const Scene& scene, const PlaceInScene& where) : scene_(scene), where_(where) {}
 
-  /// Two supports may prescribe the same motion of a disc.
+  void velocities(bool rotation) const {
+    std::map<std::int32_t, const InitialVelocity*> given;  // disc -> velocity
+    for (std::size_t k = 0; k < scene_.velocities.size(); ++k) {
+      const InitialVelocity& velocity = scene_.velocities[k];
+      for (const std::int32_t disc : discs_of(velocity)) {
+        const auto [earlier, is_new] = given.emplace(disc, &velocity);
+        if (is_new) continue;
+        fail(fmt::format("velocity.{}.group", k), fmt::format("disc {} has two velocities at the start", disc),
+             fmt::format("it is in '{}' and in '{}'", earlier->second->group, velocity.group),
+             "Choose groups that share no disc");
+      }
+      if (velocity.spin == 0 || rotation) continue;
+      fail(fmt::format("velocity.{}.spin", k),
+           fmt::format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocity.group),
+           scene_.springs.any_tangential() ? "they are restrained" : "kT = 0 everywhere: the spin would change nothing",
+           "Remove the spin");
+    }
+  }
+
+  /// Two supports may prescribe the same motion of a disc; no velocity is given where one prescribes the motion.
   void supports() const {
     for (const Component& component : components) {
       std::map<std::int32_t, const TimedSupport*> prescribed;  // disc -> support
@@ -48,30 +67,19 @@ class SceneCheck {
                "Prescribe each component of a disc once");
         }
       }
-    }
-  }
-
-  void velocities(bool rotation) const {
-    std::map<std::int32_t, const InitialVelocity*> given;  // disc -> velocity
-    for (std::size_t k = 0; k < scene_.velocities.size(); ++k) {
-      for (const std::int32_t disc : discs_of(scene_.velocities[k])) {
-        const auto [earlier, is_new] = given.emplace(disc, &scene_.velocities[k]);
-        if (is_new) continue;
-        fail(fmt::format("velocity.{}.group", k), fmt::format("disc {} has two velocities at the start", disc),
-             fmt::format("it is in '{}' and in '{}'", earlier->second->group, scene_.velocities[k].group),
-             "Choose groups that share no disc");
+      for (std::size_t k = 0; k < scene_.velocities.size(); ++k) {
+        const InitialVelocity& velocity = scene_.velocities[k];
+        if (component.velocity(velocity) == 0) continue;
+        for (const std::int32_t disc : discs_of(velocity)) {
+          const auto held = prescribed.find(disc);
+          if (held == prescribed.end()) continue;
+          fail(fmt::format("velocity.{}.{}", k, component.velocity_key),
+               fmt::format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", disc,
+                           velocity.group, component.name),
+               fmt::format("the support of '{}' says how it moves", held->second->group),
+               "Choose a group without held discs, or release them");
+        }
       }
-    }
-    for (std::size_t k = 0; k < scene_.velocities.size(); ++k) {
-      const InitialVelocity& velocity = scene_.velocities[k];
-      if (velocity.spin != 0 && !rotation)
-        fail(fmt::format("velocity.{}.spin", k),
-             fmt::format("'{}' has a spin at the start, and rotations are no unknowns of this scene", velocity.group),
-             scene_.springs.any_tangential() ? "they are restrained"
-                                             : "kT = 0 everywhere: the spin would change nothing",
-             "Remove the spin");
-      for (const Component& component : components)
-        if (component.velocity(velocity) != 0) not_prescribed(k, component);
     }
   }
 
@@ -96,25 +104,6 @@ class SceneCheck {
     bad_input_at(place_of(path), problem, why, remedy);
   }
 
-  /// No support prescribes a component of the discs with the velocity k.
-  void not_prescribed(std::size_t k, const Component& component) const {
-    const InitialVelocity& velocity = scene_.velocities[k];
-    std::vector<std::int32_t> moving = discs_of(velocity);
-    std::ranges::sort(moving);
-    for (const TimedSupport& support : scene_.supports) {
-      if (!(support.*component.motion)) continue;
-      const auto& held = discs_of(support);
-      const auto both =
-          std::ranges::find_if(held, [&](std::int32_t disc) { return std::ranges::binary_search(moving, disc); });
-      if (both == held.end()) continue;
-      fail(fmt::format("velocity.{}.{}", k, component.velocity_key),
-           fmt::format("disc {} of '{}' has a velocity at the start, and its {} is prescribed", *both, velocity.group,
-                       component.name),
-           fmt::format("the support of '{}' says how it moves", support.group),
-           "Choose a group without held discs, or release them");
-    }
-  }
-
   const Scene& scene_;
   const PlaceInScene& where_;
 };
@@ -123,8 +112,8 @@ class SceneCheck {
 
 void check(const Scene& scene, Rotation rotation, const PlaceInScene& where) {
   const SceneCheck checks(scene, where);
-  checks.supports();
   checks.velocities(derive_effects(scene.assembly, scene.springs, rotation).rotation);
+  checks.supports();
   checks.walls();
 }
 
@@ -157,10 +146,7 @@ void check_alone(const Wall& wall, const Assembly& assembly) {
               "Give it a displacement, or load the discs");
   }
   check(wall);
-  if (!(wall.kN > 0) || !std::isfinite(wall.kN)) {
-    bad_input(fmt::format("wall '{}' has kN = {} Pa", wall.name, wall.kN), "its spring must be > 0 and finite",
-              "Give a positive one");
-  }
+  check_positive(wall.kN, fmt::format("kN of wall '{}'", wall.name), "Pa");
 }
 
 /// Times at which a displacement turns or ends.
@@ -219,8 +205,7 @@ std::vector<DiscAtWall> wall_contacts(const Scene& scene, const std::vector<Disc
     const Wall& wall = scene.walls[w];
     const double moved = wall.displacement_along_normal(time);
     for (std::size_t d = 0; d < motions.size(); ++d) {
-      const Vec2 centre = scene.assembly.centres[d] + motions[d].u;
-      const double gap = dot(wall.normal, centre - wall.point) - moved - scene.assembly.radii[d];
+      const double gap = gap_to(wall, moved, scene.assembly.centres[d] + motions[d].u, scene.assembly.radii[d]);
       if (!(gap >= 0)) contacts.push_back({.wall = w, .disc = d, .gap = gap});
     }
   }
@@ -232,7 +217,7 @@ WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motion
   if (!scene.walls.empty()) result.forces.resize(motions.size());
   for (const auto& [w, disc, gap] : wall_contacts(scene, motions, time)) {
     const Wall& wall = scene.walls[w];
-    result.forces[disc] -= wall.kN * gap * wall.normal;
+    result.forces[disc] += force_of(wall, gap);
     result.energy += 0.5 * wall.kN * gap * gap;
   }
   return result;

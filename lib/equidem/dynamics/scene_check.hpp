@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Check of a scene of bonded discs for contradictions.
-///
-/// The unknowns of a scene in statics.
-///
-/// Forces and energy of walls, and checks of their positions.
+/// Walls of bonded discs: gaps, forces and energy; the unknowns of a scene in statics; check of a scene for
+/// contradictions.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +17,20 @@
 
 namespace equidem {
 
+/// Gap between a disc and a wall that has moved along its normal, m; negative: overlap.
+inline double gap_to(const Wall& wall, double moved, Vec2 centre, double radius) {
+  return dot(wall.normal, centre - wall.point) - moved - radius;
+}
+
+/// Force of the spring of a wall on a disc, N/m: -kN gap n.
+inline Vec2 force_of(const Wall& wall, double gap) {
+  return -wall.kN * gap * wall.normal;
+}
+
 /// A disc that a wall pushes.
 struct DiscAtWall {
   std::size_t wall = 0, disc = 0;
-  double gap = 0;  ///< m, negative; the force on the disc is -kN gap along the normal of the wall
+  double gap = 0;  ///< m, negative
 };
 std::vector<DiscAtWall> wall_contacts(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
 
@@ -33,7 +40,7 @@ struct WallPushes {
   double energy = 0;         ///< N
 };
 
-/// Forces of all walls on all discs displaced by `motions`: -kN gap n where the gap is negative.
+/// Forces of all walls on all discs displaced by `motions`.
 WallPushes wall_pushes(const Scene& scene, const std::vector<DiscMotion>& motions, double time);
 
 /// Check wall k by itself, against the other walls, and against the initial positions of the discs.

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/contact_springs.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
@@ -126,8 +125,6 @@ class Simulation final : public AnySimulation {
   /// Resultant of contacts, loads, walls and gravity at the present time on every disc displaced by `motions`, without
   /// damping; 0 where the motion is prescribed.
   [[nodiscard]] std::vector<DiscForce> unbalanced_forces(const std::vector<DiscMotion>& motions) const;
-  /// The loop in use.
-  [[nodiscard]] const LoopKind& loop() const;
   /// The first disc whose motion or velocity is not finite; -1: none.
   [[nodiscard]] std::int64_t first_runaway() const;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "equidem/contact/effects.hpp"
@@ -21,9 +20,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double steps_worth_lanczos = 2000;
 /// Beyond, the highest modes lie so close together that Lanczos takes minutes.
 constexpr std::size_t most_discs_of_lanczos = 100000;
-
-/// Largest omega² of M^-1 K for given springs.
-using SquaredFrequency = std::function<double(const ContactSprings&)>;
 
 /// Data of a scene for the stability limit.
 struct Vibration {
@@ -72,25 +68,24 @@ struct Vibration {
     return ContactSprings(std::move(sum)).with_bending(std::move(bending));
   }
 
-  [[nodiscard]] double exact(const ContactSprings& springs) const {
+  /// Largest omega² of M^-1 K for given springs, exactly or a bound of it.
+  [[nodiscard]] double squared(const ContactSprings& springs, bool exact) const {
+    if (!exact) return element_bound(scene.assembly, springs, scene.inertia, effects.rotation) + walls;
     if (unknowns.unknowns == 0 || scene.assembly.contacts.empty()) return walls;
     const ExtremeEigenvalue highest =
         extreme_squared_frequency(scene.assembly, springs, unknowns, scene.inertia, SpectrumEnd::largest);
     return std::max(0.0, highest.value + highest.residual) + walls;
-  }
-  [[nodiscard]] double bound(const ContactSprings& springs) const {
-    return element_bound(scene.assembly, springs, scene.inertia, effects.rotation) + walls;
   }
 };
 
 /// 4 M - 2 h C - h² K = 4 M - h² K(k + 2 c/h): h = 2/omega(h), solved by secants on a logarithmic scale, where the
 /// slope of the difference lies between -1 and -1/2. Local damping, which excludes dashpots, makes forces against the
 /// velocity larger by its share, and at the limit every force is one.
-double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+double critical_of_leapfrog(const Vibration& vibration, bool exact, double omega) {
   const double h = 2 / (omega * std::sqrt(1 + vibration.options.damping.local));
   if (!vibration.dashpots() || omega == 0) return h;
   const auto excess = [&](double step) {
-    return std::log(2 / (std::sqrt(squared(vibration.with_dashpots(1, 2 / step))) * step));
+    return std::log(2 / (std::sqrt(vibration.squared(vibration.with_dashpots(1, 2 / step), exact)) * step));
   };
   double x = std::log(h), f = excess(h), slope = -1;
   for (int round = 0; round < 20 && std::abs(f) > 1e-11; ++round) {
@@ -104,7 +99,7 @@ double critical_of_leapfrog(const Vibration& vibration, const SquaredFrequency& 
 
 /// v' = v - h M^-1 (C v + K u), u' = u + h (v + v')/2 requires h K < 2 C and h C < 2 M. The first holds where it does
 /// at every contact, mass-proportional damping alpha M >= alpha/omega² K helping.
-double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+double critical_of_thesis(const Vibration& vibration, bool exact, double omega) {
   const double alpha = vibration.options.damping.mass;
   double slowest = vibration.scene.assembly.contacts.empty() ? 0 : infinite, fastest = 0;  // c/k, lambda of M^-1 C
   if (vibration.dashpots()) {
@@ -115,7 +110,7 @@ double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& sq
       const double kM = vibration.scene.springs.bending(c);
       if (kM > 0 && vibration.effects.bending) slowest = std::min(slowest, vibration.bending_dashpot(c) / kM);
     }
-    fastest = squared(vibration.with_dashpots(0, 1));
+    fastest = vibration.squared(vibration.with_dashpots(0, 1), exact);
   } else {
     slowest = 0;
   }
@@ -123,17 +118,11 @@ double critical_of_thesis(const Vibration& vibration, const SquaredFrequency& sq
   return std::min(2 * slowest + 2 * alpha / (omega * omega), 2 / (alpha + fastest));
 }
 
-double critical_step(const Vibration& vibration, const SquaredFrequency& squared, double omega) {
+double critical_step(const Vibration& vibration, bool exact, double omega) {
   const IntegrationScheme& scheme = scheme_of(vibration.options.integrator);
-  switch (scheme.limit) {
-    case StabilityLimit::central_differences:
-      return critical_of_leapfrog(vibration, squared, omega);
-    case StabilityLimit::thesis:
-      return critical_of_thesis(vibration, squared, omega);
-    case StabilityLimit::undamped:
-      return scheme.stability_limit(0) / omega;
-  }
-  return 0;
+  if (scheme.limit == StabilityLimit::central_differences) return critical_of_leapfrog(vibration, exact, omega);
+  if (scheme.limit == StabilityLimit::thesis) return critical_of_thesis(vibration, exact, omega);
+  return scheme.stability_limit(0) / omega;
 }
 
 /// The lowest omega² of discs that spin alone, an upper bound of the lowest of all.
@@ -175,14 +164,8 @@ double growth_rate(const Vibration& vibration, double omega) {
 }
 
 void check(const TimeStepOptions& wanted) {
-  if (!(wanted.fraction > 0) || wanted.fraction > 1) {
-    bad_input(fmt::format("the fraction of the critical step is {}", wanted.fraction),
-              "a run takes a part of it, and past it motions grow", "Give a fraction in (0, 1], such as 0.8");
-  }
-  if (wanted.step && (!(*wanted.step > 0) || !std::isfinite(*wanted.step))) {
-    bad_input(fmt::format("the time step is {} s", *wanted.step), "time could not go on",
-              "Give a step > 0, or \"auto\"");
-  }
+  check_range(Range::above_zero_to(1), wanted.fraction, "fraction of the critical step");
+  if (wanted.step) check_positive(*wanted.step, "time step", "s");
 }
 
 /// Mass-proportional damping scales a velocity by exp(-alpha h) in a step, in leapfrog by (1 - alpha h/2)/(1 + alpha
@@ -234,35 +217,30 @@ TimeStep choose_time_step(const Scene& scene, const SimulationOptions& options, 
   check_contacts(scene.assembly);
   check_magnitudes(scene.assembly, scene.springs, scene.inertia);
   const Vibration vibration(scene, options);
-  const auto bound = [&](const ContactSprings& springs) { return vibration.bound(springs); };
-  const auto exact = [&](const ContactSprings& springs) { return vibration.exact(springs); };
   TimeStep result;
   result.rule = wanted.step ? "given" : to_string(wanted.rule);
 
-  const double bound_omega = std::sqrt(vibration.bound(scene.springs));
-  const double guaranteed = critical_step(vibration, bound, bound_omega);
+  const double bound_omega = std::sqrt(vibration.squared(scene.springs, false));
+  const double guaranteed = critical_step(vibration, false, bound_omega);
   const double first_step = wanted.step ? *wanted.step : wanted.fraction * guaranteed;
   bool use_bound = wanted.rule == TimeStepRule::bound && (!wanted.step || wanted.step_of_rule);
-  if (!use_bound && first_step <= guaranteed && wanted.duration > 0 &&
-      wanted.duration / first_step < steps_worth_lanczos) {
+  const auto let_bound_serve = [&](const std::string& why) {
     use_bound = true;
     if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(fmt::format(
-        "The guaranteed bound serves for the critical step: the run takes about {}, fewer than finding the exact "
-        "one is worth.",
-        counted(std::llround(std::ceil(wanted.duration / first_step)), "step")));
+    result.notes.push_back("The guaranteed bound serves for the critical step: " + why);
+  };
+  if (!use_bound && first_step <= guaranteed) {
+    const double steps = wanted.duration / first_step;
+    if (wanted.duration > 0 && steps < steps_worth_lanczos) {
+      let_bound_serve(fmt::format("the run takes about {}, fewer than finding the exact one is worth.",
+                                  counted(std::llround(std::ceil(steps)), "step")));
+    } else if (scene.assembly.size() > most_discs_of_lanczos) {
+      let_bound_serve(fmt::format("with more than {} discs the exact one is not sought.", most_discs_of_lanczos));
+    }
   }
-  if (!use_bound && first_step <= guaranteed && scene.assembly.size() > most_discs_of_lanczos) {
-    use_bound = true;
-    if (!wanted.step && wanted.rule == TimeStepRule::lanczos) result.rule = "bound";
-    result.notes.push_back(
-        fmt::format("The guaranteed bound serves for the critical step: with more than {} discs the exact one is not "
-                    "sought.",
-                    most_discs_of_lanczos));
-  }
-  result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.exact(scene.springs));
+  result.omega_max = use_bound ? bound_omega : std::sqrt(vibration.squared(scene.springs, true));
   result.critical = use_bound              ? guaranteed
-                    : result.omega_max > 0 ? critical_step(vibration, exact, result.omega_max)
+                    : result.omega_max > 0 ? critical_step(vibration, true, result.omega_max)
                                            : infinite;
   result.exact = !use_bound && scene.walls.empty() &&
                  !(scheme_of(options.integrator).limit == StabilityLimit::thesis &&

@@ -35,8 +35,8 @@ void RunawayWatch::look(const Simulation& run, const EnergyLedger& energy) {
     stop(run, disc, fmt::format("the motion of disc {} is no finite number any more", disc));
   }
   // Loads and gravity first take energy and then give it back: what counts is the most that was there.
-  given_ = std::max({given_, energy.initial + std::abs(energy.work_of_loads) + std::abs(energy.work_of_supports) +
-                                 std::abs(energy.work_of_walls) + std::abs(energy.potential)});
+  given_ = std::max(given_, energy.initial + std::abs(energy.work_of_loads) + std::abs(energy.work_of_supports) +
+                                std::abs(energy.work_of_walls) + std::abs(energy.potential));
   const double held = std::abs(energy.kinetic) + std::abs(energy.elastic());
   if (!std::isfinite(held) || held > limits_.growth * given_) {
     const std::int64_t disc = fastest_disc(scene_, run.velocities());
@@ -64,8 +64,7 @@ void RunawayWatch::check_bonds(const Simulation& run) const {
                           contact.i, contact.j, left),
         where(run, contact.i),
         "Lower velocities, loads or prescribed motions, or stiffen the springs; a shorter step helps where it is close "
-        "to "
-        "the critical one");
+        "to the critical one");
   }
 }
 
@@ -78,28 +77,22 @@ std::string RunawayWatch::where(const Simulation& run, std::int64_t disc) const 
 }
 
 void RunawayWatch::stop(const Simulation& run, std::int64_t disc, const std::string& problem) const {
-  const std::string place = where(run, disc);
+  std::string why = where(run, disc), remedy;
   const double ratio = limits_.critical_step > 0 ? options_.time_step / limits_.critical_step : 0;
   if (limits_.growth_rate > 0) {
-    computation_failed(
-        problem,
-        fmt::format("{}; some kT is negative and motions grow at the rate {:.4g} 1/s", place, limits_.growth_rate),
-        "Solve the stiffness matrix instead: kT < 0 is stable in statics only");
+    why += fmt::format("; some kT is negative and motions grow at the rate {:.4g} 1/s", limits_.growth_rate);
+    remedy = "Solve the stiffness matrix instead: kT < 0 is stable in statics only";
+  } else if (ratio > 1) {
+    why += fmt::format("; the time step is {:.4g} times the critical one", ratio);
+    remedy = fmt::format("Take a step below {:.4g} s", limits_.critical_step);
+  } else {
+    if (ratio > 0) why += fmt::format("; the time step is {:.4g} of the critical one of the reference state", ratio);
+    remedy = options_.motion == LoopKind::Motion::finite
+                 ? "Contacts that are pulled or turned far are stiffer than at the start: halve the step, or apply "
+                   "loads and prescribed motions more slowly"
+                 : "Check the time step against the critical one, and loads and prescribed motions for jumps";
   }
-  if (ratio > 1) {
-    computation_failed(problem, fmt::format("{}; the time step is {:.4g} times the critical one", place, ratio),
-                       fmt::format("Take a step below {:.4g} s", limits_.critical_step));
-  }
-  const std::string known =
-      ratio > 0 ? fmt::format("; the time step is {:.4g} of the critical one of the reference state", ratio)
-                : std::string();
-  if (options_.motion == LoopKind::Motion::finite) {
-    computation_failed(problem, place + known,
-                       "Contacts that are pulled or turned far are stiffer than at the start: halve the step, or apply "
-                       "loads and prescribed motions more slowly");
-  }
-  computation_failed(problem, place + known,
-                     "Check the time step against the critical one, and loads and prescribed motions for jumps");
+  computation_failed(problem, why, remedy);
 }
 
 }  // namespace equidem

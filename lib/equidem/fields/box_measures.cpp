@@ -17,37 +17,26 @@ namespace equidem {
 
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
 /// Raises the columns that a convex body spans.
-class Raised {
- public:
-  Raised(SurfaceProfile& profile, double right) : profile_(profile), right_(right) {}
-
-  /// \param ellipse its upper boundary over x: concave, highest at its top, lower to both sides
-  void by(const Ellipse& ellipse, Vec2 centre) {
-    // y(x) = (c x + sqrt(det (w² - x²)))/w², w the reach along x, from Q = R diag(a², b²) R^T = [w² c; c ..].
-    const double p = ellipse.axis.x, q = ellipse.axis.y, aa = ellipse.a * ellipse.a, bb = ellipse.b * ellipse.b;
-    const double w2 = aa * p * p + bb * q * q, c = (aa - bb) * p * q, w = std::sqrt(w2);
-    const double top = c / std::sqrt(aa * q * q + bb * p * p);  // x of the highest point
-    const auto count = static_cast<double>(profile_.heights.size());
-    const auto column = [&](double x) {
-      return static_cast<std::size_t>(std::clamp((x - profile_.left) / profile_.width, 0.0, count - 1));
-    };
-    if (centre.x + w <= profile_.left || centre.x - w >= right_) return;
-    for (std::size_t k = column(centre.x - w); k <= column(centre.x + w); ++k) {
-      const double from = profile_.left + profile_.width * static_cast<double>(k) - centre.x;
-      const double x = std::clamp(std::clamp(top, from, from + profile_.width), -w, w);
-      const double height = centre.y + (c * x + ellipse.a * ellipse.b * std::sqrt(std::max(0.0, w2 - x * x))) / w2;
-      double& highest = profile_.heights[k];
-      if (!(highest >= height)) highest = height;
-    }
+/// \param ellipse its upper boundary over x: concave, highest at its top, lower to both sides
+void raise(SurfaceProfile& profile, double right, const Ellipse& ellipse, Vec2 centre) {
+  // y(x) = (c x + sqrt(det (w² - x²)))/w², w the reach along x, from Q = R diag(a², b²) R^T = [w² c; c ..].
+  const double p = ellipse.axis.x, q = ellipse.axis.y, aa = ellipse.a * ellipse.a, bb = ellipse.b * ellipse.b;
+  const double w2 = aa * p * p + bb * q * q, c = (aa - bb) * p * q, w = std::sqrt(w2);
+  const double top = c / std::sqrt(aa * q * q + bb * p * p);  // x of the highest point
+  const auto count = static_cast<double>(profile.heights.size());
+  if (centre.x + w <= profile.left || centre.x - w >= right) return;
+  const auto column = [&](double x) {
+    return static_cast<std::size_t>(std::clamp((x - profile.left) / profile.width, 0.0, count - 1));
+  };
+  for (std::size_t k = column(centre.x - w); k <= column(centre.x + w); ++k) {
+    const double from = profile.left + profile.width * static_cast<double>(k) - centre.x;
+    const double x = std::clamp(std::clamp(top, from, from + profile.width), -w, w);
+    const double height = centre.y + (c * x + ellipse.a * ellipse.b * std::sqrt(std::max(0.0, w2 - x * x))) / w2;
+    double& highest = profile.heights[k];
+    if (!(highest >= height)) highest = height;
   }
-
- private:
-  SurfaceProfile& profile_;
-  double right_;
-};
+}
 
 }  // namespace
 
@@ -55,40 +44,38 @@ SurfaceProfile surface_of(std::span<const Grain> grains, std::span<const Clump> 
                           std::size_t columns, std::span<const char> heap) {
   assert(columns >= 1 && left < right && (heap.empty() || heap.size() == grains.size()));
   SurfaceProfile profile{.left = left, .width = (right - left) / static_cast<double>(columns), .heights = {}};
-  profile.heights.assign(columns, not_a_number);
-  Raised raised(profile, right);
+  profile.heights.assign(columns, not_measured);
   for (std::size_t g = 0; g < grains.size(); ++g) {
     if (!heap.empty() && !heap[g]) continue;
     const Outline outline = outline_of(grains[g], clumps);
     for (std::size_t p = 0; p < outline.parts(); ++p)
-      raised.by(outline.part(p), grains[g].position + outline.offset(p));
+      raise(profile, right, outline.part(p), grains[g].position + outline.offset(p));
   }
   return profile;
 }
 
 SurfaceShape shape_of(const SurfaceProfile& profile) {
-  double n = 0, x_mean = 0, y_mean = 0;
+  double n = 0;
+  Vec2 mean;
   const auto for_columns = [&](const auto& body) {
     for (std::size_t k = 0; k < profile.heights.size(); ++k)
-      if (!std::isnan(profile.heights[k])) body(profile.place(k), profile.heights[k]);
+      if (!std::isnan(profile.heights[k])) body(Vec2{profile.place(k), profile.heights[k]});
   };
-  for_columns([&](double x, double y) {
+  for_columns([&](Vec2 place) {
     n += 1;
-    x_mean += x;
-    y_mean += y;
+    mean += place;
   });
-  if (n == 0) return {not_a_number, not_a_number, not_a_number};
-  x_mean /= n;
-  y_mean /= n;
+  if (n == 0) return {not_measured, not_measured, not_measured};
+  mean = {mean.x / n, mean.y / n};
   double xx = 0, xy = 0;
-  for_columns([&](double x, double y) {
-    xx += (x - x_mean) * (x - x_mean);
-    xy += (x - x_mean) * (y - y_mean);
+  for_columns([&](Vec2 place) {
+    xx += (place.x - mean.x) * (place.x - mean.x);
+    xy += (place.x - mean.x) * (place.y - mean.y);
   });
-  SurfaceShape shape{.height = y_mean, .slope = xx > 0 ? xy / xx : 0};
+  SurfaceShape shape{.height = mean.y, .slope = xx > 0 ? xy / xx : 0};
   double squares = 0;
-  for_columns([&](double x, double y) {
-    const double off = y - y_mean - shape.slope * (x - x_mean);
+  for_columns([&](Vec2 place) {
+    const double off = place.y - mean.y - shape.slope * (place.x - mean.x);
     squares += off * off;
   });
   shape.roughness = std::sqrt(squares / n);
@@ -149,11 +136,11 @@ GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, doub
   GrainBox box{.inside = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}}};
   Vec2 middle;
   for (const Grain& grain : grains) {
-    box.inside.low = {std::min(box.inside.low.x, grain.position.x - grain.radius),
-                      std::min(box.inside.low.y, grain.position.y - grain.radius)};
-    box.inside.high = {std::max(box.inside.high.x, grain.position.x + grain.radius),
-                       std::max(box.inside.high.y, grain.position.y + grain.radius)};
-    middle += grain.position / static_cast<double>(grains.size());
+    const Vec2 x = grain.position;
+    box.inside.low = {std::min(box.inside.low.x, x.x - grain.radius), std::min(box.inside.low.y, x.y - grain.radius)};
+    box.inside.high = {std::max(box.inside.high.x, x.x + grain.radius),
+                       std::max(box.inside.high.y, x.y + grain.radius)};
+    middle += x / static_cast<double>(grains.size());
   }
   Rectangle walled{{-INFINITY, -INFINITY}, {INFINITY, INFINITY}};
   for (const Wall& wall : walls) {
@@ -165,13 +152,9 @@ GrainBox box_of(std::span<const Wall> walls, std::span<const Grain> grains, doub
     if (normal.y != 0 && place.y >= middle.y) walled.high.y = std::min(walled.high.y, place.y);
   }
   box.lid = std::isfinite(walled.high.y);
-  const auto put = [](double& side, double wall) {
-    if (std::isfinite(wall)) side = wall;
-  };
-  put(box.inside.low.x, walled.low.x);
-  put(box.inside.low.y, walled.low.y);
-  put(box.inside.high.x, walled.high.x);
-  put(box.inside.high.y, walled.high.y);
+  const auto wall_or = [](double wall, double side) { return std::isfinite(wall) ? wall : side; };
+  box.inside.low = {wall_or(walled.low.x, box.inside.low.x), wall_or(walled.low.y, box.inside.low.y)};
+  box.inside.high = {wall_or(walled.high.x, box.inside.high.x), wall_or(walled.high.y, box.inside.high.y)};
   return box;
 }
 
@@ -210,6 +193,13 @@ SolidMeasures solid_measures(double covered, const Rectangle& region) {
   measures.porosity = 1 - measures.solid_fraction;
   measures.void_ratio = measures.porosity / measures.solid_fraction;
   return measures;
+}
+
+void check_area(const Rectangle& region, const char* name) {
+  const Vec2 sides = region.high - region.low;
+  if (sides.x > 0 && sides.y > 0) return;
+  bad_input(fmt::format("the {} is {} m wide and {} m high", name, sides.x, sides.y), "it has no area",
+            "Give its lower left corner first");
 }
 
 void check(const MeasureOptions& options, Body body) {
@@ -354,12 +344,9 @@ Rectangle CoarseGrid::cell(std::size_t k) const {
 }
 
 CoarseGrid grid_over(const Rectangle& region, double width) {
+  check_area(region, "region of the fields");
+  check_positive(width, "width of the cells of the fields", "m");
   const Vec2 sides = region.high - region.low;
-  if (!(sides.x > 0 && sides.y > 0))
-    bad_input(fmt::format("the region of the fields is {} m wide and {} m high", sides.x, sides.y), "it has no area",
-              "Give its lower left corner first");
-  if (!(width > 0))
-    bad_input(fmt::format("the cells of the fields are {} m wide", width), "they need a positive width", "Give one");
   constexpr double most = 1e6;
   if (!(sides.x / width * (sides.y / width) <= most))
     bad_input(fmt::format("cells of {} m in a region of {:.4g} m by {:.4g} m", width, sides.x, sides.y),
@@ -370,12 +357,11 @@ CoarseGrid grid_over(const Rectangle& region, double width) {
 
 CoarseFields coarse_fields(std::span<const Grain> grains, std::span<const Clump> clumps,
                            std::span<const BodyContact> contacts, const CoarseGrid& grid) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   CoarseFields fields{.grid = grid,
                       .stress = std::vector<Tensor2>(grid.size()),
                       .solid_fraction = std::vector<double>(grid.size(), 0.0),
-                      .coordination = std::vector<double>(grid.size(), unknown),
-                      .velocity = std::vector<Vec2>(grid.size(), {unknown, unknown})};
+                      .coordination = std::vector<double>(grid.size(), not_measured),
+                      .velocity = std::vector<Vec2>(grid.size(), {not_measured, not_measured})};
   if (grid.size() == 0) return fields;
   const Vec2 size = grid.cell_size();
   const double area = size.x * size.y;

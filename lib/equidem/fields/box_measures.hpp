@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The surface of bodies in a box.
-///
-/// Density of the bodies in a box, away from its walls and from their surface.
-///
-/// Histories of bodies in a box while they move: void ratio and surface.
-///
-/// Stress, velocity, density and contacts of bodies as fields on a coarse grid.
-///
-/// Mean stress of a rectangle.
+/// What is read off bodies in a box while they move: surface, density away from walls and surface, stress of a
+/// rectangle, fields of stress, velocity, density and contacts on a coarse grid.
 #pragma once
 
 #include <cstddef>
@@ -19,15 +12,21 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/vector.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/shaking.hpp"
+#include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
+
+/// Stands for a quantity that has no value at a moment.
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// \throws Error (bad_input) on a region without area, "the NAME is 0 m wide"
+void check_area(const Rectangle& region, const char* name);
 
 /// A rectangle in equal cells, row by row from below; none where there is nothing to measure.
 struct CoarseGrid {
@@ -142,9 +141,6 @@ struct MeasureOptions {
 /// \throws Error (bad_input), its place the name of the option: spheres, whose volumes no area of the plane tells; a
 ///         region without an area
 void check(const MeasureOptions& options, Body body);
-
-/// Stands for a quantity that has no value at a moment.
-inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 /// Places go with the shaking box.
 struct MeasuredMoment {

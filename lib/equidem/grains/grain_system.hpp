@@ -21,7 +21,7 @@
 #include "equidem/grains/scene/grain_scene.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/wall_joints.hpp"
-#include "equidem/motion/servo.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 
@@ -41,12 +41,12 @@ struct ContactConstants {
   double reduced_mass = 0;        ///< kg
   double stiffness = 0;           ///< normal, N/m, hertz: N/m^(3/2)
   double a = 0;                   ///< dimensionless stiffness
-  double dissipation = 0;         ///< Law::dissipation
+  double dissipation = 0;         ///< LawFacts::dissipation
   double least = 0;               ///< least normal impulse: 0, or minus infinity if contacts may attract
   double tangential_damping = 0;  ///< 2 zeta_T sqrt(kT): the dashpot over the root of the tangential mass
   Sliding sliding;                ///< of discs that just touch, as large as the bodies
 
-  /// Coefficient of the normal dashpot under a force law: Law::dissipation sqrt(k m).
+  /// Coefficient of the normal dashpot under a force law: LawFacts::dissipation sqrt(k m).
   [[nodiscard]] double dashpot() const { return dissipation * std::sqrt(stiffness * reduced_mass); }
 };
 
@@ -212,7 +212,7 @@ struct GrainSystem {
   GrainScene scene;  ///< walls and grains sorted by position
   GrainOptions options;
   double length = 0;                 ///< d_c
-  std::vector<double> dissipations;  ///< Law::dissipation of scene.pairs
+  std::vector<double> dissipations;  ///< LawFacts::dissipation of scene.pairs
   bool friction = false;
   double smallest_radius = 0;  ///< smallest radius of the inscribed circles of all parts, m
 
@@ -272,7 +272,7 @@ struct GrainSystem {
 /// \param order that the grains take instead, as GrainBodies::grain_of; empty: by position
 void order_by_place(GrainSystem& system, const GrainScene& scene, const std::vector<std::size_t>& order);
 
-/// Compute Law::dissipation for every pair of kinds.
+/// Compute LawFacts::dissipation for every pair of kinds.
 void find_dissipations(GrainSystem& system);
 
 /// \param j a body, an image of one, or a wall ~j

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Servo control of walls (motion/servo.hpp) between the steps of colliding bodies.
+/// Servo control of walls (motion/wall.hpp) between the steps of colliding bodies.
 #pragma once
 
 #include <vector>

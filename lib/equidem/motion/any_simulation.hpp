@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Walls and gravity: the part of a scene that bonded and colliding bodies share.
-///
-/// A periodic cell of a simulation at its time.
-///
-/// Common interface of all simulations in time; run loops, files and reports use only this.
+/// Common interface of all simulations in time; run loops, files and reports use only this, and the values that it
+/// returns: contacts with their forces, walls, the periodic cell.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -15,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/contact/body_contact.hpp"
+#include "equidem/assembly/assembly.hpp"
 #include "equidem/contact/effects.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/vector.hpp"
@@ -33,6 +31,33 @@ struct AnyScene {
   [[nodiscard]] bool weighs() const { return gravity != Vec2{}; }
 };
 
+/// A contact of two bodies, or of a body and a wall. Forces are per metre of depth, but for spheres: N/m or N.
+struct BodyContact {
+  std::int32_t i = 0;
+  std::int32_t j = 0;           ///< negative: wall ~j
+  Vec2 arm;                     ///< from the centre of i to the contact point, m
+  Vec2 shift = {};              ///< i touches the image of j at the place of j + shift, m; {}: no period between them
+  Vec2 force = {};              ///< on i; its negative acts on j
+  double normal_force = 0;      ///< on i along the normal n from i: tension positive
+  double tangential_force = 0;  ///< on i along s = (-n_y, n_x)
+  double bending_moment = 0;    ///< N, of bonds with bending springs, on i; its negative acts on j
+};
+
+/// A contact of an assembly by its number, at the places of before the motion.
+inline BodyContact bonded_contact(const Assembly& assembly, std::size_t contact, const ContactForce& force) {
+  const Contact& c = assembly.contacts[contact];
+  const ContactFrame frame = frame_of(assembly, contact);
+  const Vec2 period = assembly.period.value_or(Vec2{});
+  return {.i = c.i,
+          .j = c.j,
+          .arm = arm_of_i(frame),
+          .shift = {c.shift_x * period.x, c.shift_y * period.y},
+          .force = force_on_i(frame, force),
+          .normal_force = force.normal,
+          .tangential_force = force.tangential};
+}
+
+/// The periodic cell of a simulation at its time.
 struct CellState {
   double width = 0, height = 0;  ///< m
   double shift = 0;              ///< of the images above against the cell along x, m; within half a width either way

@@ -5,12 +5,14 @@
 #include "equidem/core/text.hpp"
 
 namespace equidem {
+namespace {
+constexpr const char* of_the_same_case = "Continue with the case that the state was saved from";
+}  // namespace
 
 const SavedArray& SavedState::array(std::string_view name) const {
   const auto found = std::ranges::find(arrays, name, &SavedArray::name);
   if (found != arrays.end()) return *found;
-  bad_input(fmt::format("the saved state has no array '{}'", name), "this simulation saves one",
-            "Continue with the case that the state was saved from");
+  bad_input(fmt::format("the saved state has no array '{}'", name), "this simulation saves one", of_the_same_case);
 }
 
 std::vector<double>& SavedState::operator[](std::string_view name) {
@@ -19,21 +21,18 @@ std::vector<double>& SavedState::operator[](std::string_view name) {
 
 void refuse_saved_number(std::string_view array, double number) {
   bad_input(fmt::format("the array '{}' of the saved state has {} where no such number can be", array, number),
-            "it is of another case, or damaged", "Continue with the case that the state was saved from");
+            "it is of another case, or damaged", of_the_same_case);
 }
 
 void check_rows(const SavedArray& array, std::size_t columns) {
   if (array.columns == columns && array.values.size() % columns == 0) return;
   bad_input(fmt::format("the array '{}' of the saved state has {} numbers in rows of {}", array.name,
                         array.values.size(), array.columns),
-            fmt::format("{} belong into a row", columns), "Continue with the case that the state was saved from");
+            fmt::format("{} belong into a row", columns), of_the_same_case);
 }
 
 std::vector<double> numbers_of(std::span<const DiscMotion> motions) {
-  std::vector<double> numbers;
-  numbers.reserve(3 * motions.size());
-  for (const DiscMotion& motion : motions) numbers.insert(numbers.end(), {motion.u.x, motion.u.y, motion.theta});
-  return numbers;
+  return saved_rows({}, std::vector<DiscMotion>(motions.begin(), motions.end()), motion_numbers).values;
 }
 
 std::vector<DiscMotion> motions_of(std::span<const double> numbers) {

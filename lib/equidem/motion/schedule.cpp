@@ -37,12 +37,6 @@ double in_cycles(const Schedule& cycles, double time) {
   return 2 * cycles.value * (root * root);
 }
 
-void check_finite(double value, const char* name) {
-  if (!std::isfinite(value))
-    bad_input(fmt::format("a schedule has {} = {}", name, value), "only finite numbers have a meaning",
-              "Give a number");
-}
-
 void check_table(const Schedule& table) {
   if (table.times.empty() || table.times.size() != table.values.size()) {
     bad_input(fmt::format("a table has {} and {}", counted(static_cast<long long>(table.times.size()), "time"),
@@ -50,8 +44,8 @@ void check_table(const Schedule& table) {
               "each time needs its value", "Give as many of one as of the other, at least one");
   }
   for (std::size_t k = 0; k < table.times.size(); ++k) {
-    check_finite(table.times[k], "time");
-    check_finite(table.values[k], "value");
+    check_range({}, table.times[k], "time of a schedule", "s");
+    check_range({}, table.values[k], "value of a schedule");
     if (k > 0 && !(table.times[k] > table.times[k - 1])) {
       bad_input(fmt::format("the time {} s comes after {} s", table.times[k], table.times[k - 1]),
                 "times ascend, and a value cannot jump", "Order the points and leave out repeated times");
@@ -86,18 +80,15 @@ double Schedule::at(double time) const {
 
 void check(const Schedule& schedule) {
   if (schedule.kind == Schedule::Kind::table) return check_table(schedule);
-  check_finite(schedule.value, "value");
+  check_range({}, schedule.value, "value of a schedule");
   if (!schedule.changes()) return;
-  check_finite(schedule.start, "start");
+  check_range({}, schedule.start, "start of a schedule", "s");
   const bool cycles = schedule.kind == Schedule::Kind::cycles;
   if (schedule.kind == Schedule::Kind::sine || cycles) {
-    check_finite(schedule.frequency, "frequency");
-    if (!(schedule.frequency > 0))
-      bad_input(fmt::format("a sine has the frequency {} Hz", schedule.frequency), "it must be > 0",
-                "Give a positive one");
+    check_positive(schedule.frequency, "frequency of a schedule", "Hz");
     if (!cycles) return;
   }
-  check_finite(schedule.end, "end");
+  check_range({}, schedule.end, "end of a schedule", "s");
   if (cycles) return check_cycles(schedule);
   if (!(schedule.end > schedule.start)) {
     bad_input(fmt::format("the ramp ends at {} s and starts at {} s", schedule.end, schedule.start),
@@ -150,8 +141,11 @@ Schedule delayed(Schedule schedule, double time) {
 void read_points(const std::filesystem::path& path, Schedule& table, std::string_view column) {
   const std::vector<std::string> of_time = {"time", "t"}, of_value = {std::string(column)};
   TableFile file(path, {of_time, of_value});
-  if (file.width() == 0)
+  const auto check_points = [&](std::size_t points) {
+    if (points > 0) return;
     bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+  };
+  check_points(file.width());
   std::size_t first = 0, second = 1;
   if (!file.names().empty()) {
     const std::string why = "a schedule has times and values";
@@ -171,8 +165,7 @@ void read_points(const std::filesystem::path& path, Schedule& table, std::string
     table.times.push_back(time);
     table.values.push_back(value);
   }
-  if (table.times.empty())
-    bad_input(fmt::format("'{}' has no points", path.string()), "a table needs at least one", "Add rows like 0.5,1.0");
+  check_points(table.times.size());
 }
 
 }  // namespace equidem

@@ -14,31 +14,89 @@ namespace {
 /// A vector shorter than this has no direction: its square is no number.
 constexpr double shortest = 1e-150;
 
-bool is_finite(const Vec2& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y);
+/// Also refuses what is no number.
+bool is_unit(const Vec2& direction) {
+  return std::abs(dot(direction, direction) - 1) <= 1e-12;
 }
 
 [[noreturn]] void refuse(const Wall& wall, const std::string& what, std::string why, std::string remedy) {
   bad_input(fmt::format("wall '{}' {}", wall.name, what), std::move(why), std::move(remedy));
 }
 
-void check_line(const Wall& wall) {
-  // Written so that it also refuses what is no number.
-  if (std::abs(dot(wall.normal, wall.normal) - 1) <= 1e-12) return;
-  refuse(wall, fmt::format("has the normal ({}, {}), which is no unit vector", wall.normal.x, wall.normal.y),
-         "distances are measured with it", "Divide it by its length");
+void check_place(const Wall& wall, const char* does, const Vec2& place) {
+  if (std::isfinite(place.x) && std::isfinite(place.y)) return;
+  refuse(wall, fmt::format("{} at ({}, {}) m", does, place.x, place.y), "it stands nowhere", "Give finite numbers");
 }
 
-void check_segment(const Wall& wall) {
-  if (!is_finite(wall.end)) {
-    refuse(wall, fmt::format("ends at ({}, {}) m", wall.end.x, wall.end.y), "it stands nowhere", "Give finite numbers");
+double lowest_value(const Schedule& schedule) {
+  switch (schedule.kind) {
+    case Schedule::Kind::constant:
+    case Schedule::Kind::ramp:
+      return schedule.value;
+    case Schedule::Kind::sine:
+      return -std::abs(schedule.value);
+    case Schedule::Kind::cycles:
+      return std::min(0.0, schedule.value);
+    case Schedule::Kind::table:
+      break;
   }
-  if (norm(wall.end - wall.point) >= shortest) return;
-  refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y),
-         "a segment without length has no sides", "Move one of its ends");
+  return *std::min_element(schedule.values.begin(), schedule.values.end());
 }
 
 }  // namespace
+
+void check(const Servo& servo, const std::string& name) {
+  const std::string owner = fmt::format(" of the servo of wall '{}'", name);
+  check(servo.wanted);
+  if (const double lowest = lowest_value(servo.wanted); !(lowest >= 0)) {
+    bad_input(fmt::format("the servo of wall '{}' wants {:.6g}", name, lowest),
+              "a wall pushes bodies and does not pull them", "Give a force or stress of 0 or more at all times");
+  }
+  if (!is_unit(servo.direction)) {
+    bad_input(fmt::format("the servo of wall '{}' pushes along ({}, {})", name, servo.direction.x, servo.direction.y),
+              "that is no unit vector", "Divide it by its length");
+  }
+  if (servo.max_speed) check_positive(*servo.max_speed, "max_speed" + owner, "m/s");
+  check_range(Range::above_zero_to(1), servo.relaxation, "relaxation" + owner);
+  if (servo.is_stress) check_range(Range::not_negative(), servo.length, "length" + owner, "m");
+}
+
+double ControlState::asked_rate(double relaxation, double spring, double dashpot) const {
+  const double going_on = spring * mean_rate + dashpot * rate;
+  return (relaxation * (wanted - present) + going_on) / (spring + dashpot);
+}
+
+void ControlState::count(bool acts, double share) {
+  largest_wanted = std::max(largest_wanted, std::abs(wanted));
+  const double beyond = wanted < 0 ? wanted - present : present - wanted;
+  if (acts && !reached) {
+    if (side == 0) side = beyond < 0 ? -1 : 1;
+    if (std::abs(beyond) <= 0.01 * std::abs(wanted) || beyond * side < 0) reached = arrived = true;
+  }
+  if (!reached || largest_wanted == 0) return;
+  const double error = beyond / largest_wanted;
+  excess = steps > 0 && share < 1 ? excess + share * (error - excess) : error;
+  overshoot = std::max(overshoot, excess);
+  peak = std::max(peak, error);
+  errors += std::abs(error);
+  ++steps;
+}
+
+void ControlState::count_anew() {
+  largest_wanted = excess = overshoot = peak = errors = 0;
+  steps = 0;
+  reached = false;
+  side = 0;
+}
+
+ControlReport ControlState::report() const {
+  return {.reached = reached,
+          .wanted = wanted,
+          .present = present,
+          .overshoot = largest_wanted > 0 ? overshoot : NAN,
+          .peak = largest_wanted > 0 ? peak : NAN,
+          .mean_error = steps > 0 ? errors / static_cast<double>(steps) : NAN};
+}
 
 void move_along(Wall& wall, Vec2 direction, const Schedule& displacement) {
   if (direction.x != 0) wall.move_x = scaled(displacement, direction.x);
@@ -52,17 +110,16 @@ std::vector<std::string> names_of(std::span<const Wall> walls) {
 }
 
 void check(const Wall& wall) {
-  if (!is_finite(wall.point)) {
-    refuse(wall, fmt::format("stands at ({}, {}) m", wall.point.x, wall.point.y), "it stands nowhere",
-           "Give finite numbers");
-  }
-  switch (wall.shape) {
-    case Wall::Shape::line:
-      check_line(wall);
-      break;
-    case Wall::Shape::segment:
-      check_segment(wall);
-      break;
+  check_place(wall, "stands", wall.point);
+  if (wall.shape == Wall::Shape::segment) {
+    check_place(wall, "ends", wall.end);
+    if (norm(wall.end - wall.point) < shortest) {
+      refuse(wall, fmt::format("begins and ends at ({}, {}) m", wall.end.x, wall.end.y),
+             "a segment without length has no sides", "Move one of its ends");
+    }
+  } else if (!is_unit(wall.normal)) {
+    refuse(wall, fmt::format("has the normal ({}, {}), which is no unit vector", wall.normal.x, wall.normal.y),
+           "distances are measured with it", "Divide it by its length");
   }
   check(wall.move_x);
   check(wall.move_y);

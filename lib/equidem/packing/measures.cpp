@@ -32,27 +32,6 @@ double radius_of(const GrainPacking& packing, std::int32_t grain) {
 
 }  // namespace
 
-std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed) {
-  std::vector<std::size_t> left;
-  std::vector<std::int32_t> loose;
-  for (std::size_t k = 0; k < partners.size(); ++k) {
-    left.push_back(partners[k].size());
-    if (left[k] < needed) loose.push_back(static_cast<std::int32_t>(k));
-  }
-  std::vector<char> out(partners.size(), 0);
-  while (!loose.empty()) {
-    const auto k = static_cast<std::size_t>(loose.back());
-    loose.pop_back();
-    if (out[k]) continue;
-    out[k] = 1;
-    for (const std::int32_t other : partners[k]) {
-      const auto j = static_cast<std::size_t>(other);
-      if (other >= 0 && !out[j] && --left[j] < needed) loose.push_back(other);
-    }
-  }
-  return out;
-}
-
 std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_tolerance) {
   std::vector<PackingContact> contacts;
   std::vector<Outline> outlines;
@@ -114,6 +93,60 @@ Rectangle measured_region(const GrainPacking& packing) {
 
 namespace {
 
+/// 1 for the bodies that are left out where those with fewer than `needed` contacts are removed, one after another.
+std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed) {
+  std::vector<std::size_t> left;
+  std::vector<std::int32_t> loose;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    left.push_back(partners[k].size());
+    if (left[k] < needed) loose.push_back(static_cast<std::int32_t>(k));
+  }
+  std::vector<char> out(partners.size(), 0);
+  while (!loose.empty()) {
+    const auto k = static_cast<std::size_t>(loose.back());
+    loose.pop_back();
+    if (out[k]) continue;
+    out[k] = 1;
+    for (const std::int32_t other : partners[k]) {
+      const auto j = static_cast<std::size_t>(other);
+      if (other >= 0 && !out[j] && --left[j] < needed) loose.push_back(other);
+    }
+  }
+  return out;
+}
+
+/// Centre of mass of a body of the packing, m.
+Vec2 centre_of(const GrainPacking& packing, std::size_t body) {
+  if (packing.bonds.empty()) return packing.grains[body].position;
+  return 0.5 * (packing.grains[2 * body].position + packing.grains[2 * body + 1].position);
+}
+
+/// From the centre of its body to that of a grain.
+Vec2 place_in_body(const GrainPacking& packing, std::size_t grain) {
+  if (packing.bonds.empty()) return {};
+  return packing.grains[grain].position - centre_of(packing, packing.body_of(grain));
+}
+
+/// Contacts of bodies from those of grains: i and j name bodies, arms begin at their centres.
+void name_bodies(const GrainPacking& packing, std::vector<PackingContact>& contacts) {
+  for (PackingContact& contact : contacts) {
+    const auto i = static_cast<std::size_t>(contact.i);
+    contact.arm_i += place_in_body(packing, i);
+    contact.i = static_cast<std::int32_t>(packing.body_of(i));
+    if (contact.j >= 0) contact.j = static_cast<std::int32_t>(packing.body_of(static_cast<std::size_t>(contact.j)));
+  }
+}
+
+/// Of each body, one for each contact between bodies; negative: a wall.
+std::vector<std::vector<std::int32_t>> partners_in(const std::vector<PackingContact>& contacts, std::size_t bodies) {
+  std::vector<std::vector<std::int32_t>> partners(bodies);
+  for (const PackingContact& c : contacts) {
+    partners[c.i].push_back(c.j);
+    if (c.j >= 0) partners[c.j].push_back(c.i);
+  }
+  return partners;
+}
+
 /// Area of the bodies, m²; in a periodic box also of the images that reach in across its sides.
 double covered_area(const GrainPacking& packing, const Rectangle& region) {
   const int images = packing.box.periodic() ? 1 : 0;
@@ -130,11 +163,8 @@ double covered_area(const GrainPacking& packing, const Rectangle& region) {
 }  // namespace
 
 void check_region(const PackingBox& box, const Rectangle& region) {
-  const Vec2 size = box.size, sides = region.high - region.low;
-  if (!(sides.x > 0 && sides.y > 0)) {
-    bad_input(fmt::format("the region measured is {} m wide and {} m high", sides.x, sides.y), "it has no area",
-              "Give its lower left corner first");
-  }
+  check_area(region, "region measured");
+  const Vec2 size = box.size;
   const bool inside = region.low.x >= 0 && region.low.y >= 0 && region.high.x <= size.x && region.high.y <= size.y;
   if (box.periodic() && !inside) {
     bad_input("the region measured reaches out of the periodic box",
@@ -157,22 +187,14 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> re
   }
   static_cast<SolidMeasures&>(result) = solid_measures(covered, result.region);
 
-  std::vector<std::vector<std::int32_t>> partners(packing.size());
-  for (const PackingContact& contact : contacts_of(packing)) {
-    const std::size_t i = packing.body_of(static_cast<std::size_t>(contact.i));
-    double smaller = packing.radii[i];
-    if (contact.j >= 0) {
-      const std::size_t j = packing.body_of(static_cast<std::size_t>(contact.j));
-      partners[i].push_back(static_cast<std::int32_t>(j));
-      partners[j].push_back(static_cast<std::int32_t>(i));
-      smaller = std::min(smaller, packing.radii[j]);
-      ++result.contacts;
-    } else {
-      partners[i].push_back(contact.j);
-      ++result.wall_contacts;
-    }
+  std::vector<PackingContact> contacts = contacts_of(packing);
+  name_bodies(packing, contacts);
+  for (const PackingContact& contact : contacts) {
+    const double smaller = std::min(packing.radii[contact.i], packing.radii[contact.j >= 0 ? contact.j : contact.i]);
     result.largest_overlap = std::max(result.largest_overlap, contact.overlap / smaller);
+    ++(contact.j >= 0 ? result.contacts : result.wall_contacts);
   }
+  const std::vector<std::vector<std::int32_t>> partners = partners_in(contacts, packing.size());
   // Two contacts carry a body that lies under its weight; without weight and friction three are needed.
   const std::vector<char> rattles = rattlers_of(partners, packing.box.sides == PackingBox::Sides::open_top ? 2 : 3);
   result.rattlers = std::count(rattles.begin(), rattles.end(), 1);
@@ -191,56 +213,42 @@ PackingMeasures measure(const GrainPacking& packing, std::optional<Rectangle> re
 
 namespace {
 
-/// Forces on i are the negatives of those on j; neither normal nor tangential force changes where i and j change
-/// places.
-ContactForce force_on_first(const GrainContact& contact) {
-  return {-contact.normal_force, -contact.tangential_force};
-}
-
-/// The settled contact of the same bodies, of clumps the nearest; null where there is none.
-class SettledContacts {
- public:
-  explicit SettledContacts(const std::vector<GrainContact>& contacts) {
-    for (const GrainContact& contact : contacts) {
-      const bool swapped = contact.j >= 0 && contact.j < contact.i;
-      by_bodies_[swapped ? std::pair(contact.j, contact.i) : std::pair(contact.i, contact.j)].push_back(
-          {&contact, swapped ? contact.arm_j : contact.arm_i});
-    }
-  }
-
-  [[nodiscard]] const GrainContact* find(const PackingContact& wanted) const {
-    const auto found = by_bodies_.find({wanted.i, wanted.j});
-    if (found == by_bodies_.end()) return nullptr;
-    const auto distance = [&](const Placed& placed) { return norm(placed.arm - wanted.arm_i); };
-    return std::ranges::min_element(found->second, {}, distance)->contact;
-  }
-
- private:
-  struct Placed {
-    const GrainContact* contact;
-    Vec2 arm;
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<Placed>> by_bodies_;
-};
-
-}  // namespace
-
+/// Bodies that fell carry the forces with which they came to rest; bodies that jammed -kN times the overlap, N/m, for
+/// forces of equal springs balance there. Other packings carry none, for their overlaps balance nothing.
+/// \param contacts of contacts_of(packing)
+/// \param springs of every contact; none: of jammed bodies no forces are known
+/// \return one for each contact, on its i (tension positive), or empty
 std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std::vector<PackingContact>& contacts,
                                          const std::optional<SpringConstants>& springs) {
   std::vector<ContactForce> forces;
-  if (!packing.contacts.empty()) {
-    const SettledContacts settled(packing.contacts);
-    for (const PackingContact& contact : contacts) {
-      const GrainContact* const found = contact.overlap > 0 ? settled.find(contact) : nullptr;
-      forces.push_back(found == nullptr ? ContactForce{} : force_on_first(*found));
-    }
-  } else if (packing.jammed && springs) {
+  if (packing.contacts.empty()) {
+    if (!packing.jammed || !springs) return forces;
     for (const PackingContact& contact : contacts) forces.push_back({-springs->kN * std::max(contact.overlap, 0.0), 0});
+    return forces;
+  }
+  struct Settled {
+    ContactForce force;  // neither component changes where i and j change places
+    Vec2 arm;            // of the first body
+  };
+  std::multimap<std::pair<std::int32_t, std::int32_t>, Settled> settled;
+  for (const GrainContact& contact : packing.contacts) {
+    const ContactForce force = {-contact.normal_force, -contact.tangential_force};
+    if (contact.j >= 0 && contact.j < contact.i) {
+      settled.insert({{contact.j, contact.i}, {force, contact.arm_j}});
+    } else {
+      settled.insert({{contact.i, contact.j}, {force, contact.arm_i}});
+    }
+  }
+  for (const PackingContact& contact : contacts) {
+    // Clumps may touch in several places: the nearest counts.
+    const auto [first, last] = settled.equal_range({contact.i, contact.j});
+    const auto distance = [&](const auto& entry) { return norm(entry.second.arm - contact.arm_i); };
+    const auto found =
+        std::min_element(first, last, [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    forces.push_back(contact.overlap > 0 && found != last ? found->second.force : ContactForce{});
   }
   return forces;
 }
-
-namespace {
 
 /// The centre behind a wall of the body that mirrors one at the wall.
 Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
@@ -254,18 +262,6 @@ Vec2 mirrored(Vec2 centre, int wall, Vec2 box) {
     default:
       return {centre.x, 2 * box.y - centre.y};
   }
-}
-
-/// Centre of mass of a body of the packing, m.
-Vec2 centre_of(const GrainPacking& packing, std::size_t body) {
-  if (packing.bonds.empty()) return packing.grains[body].position;
-  return 0.5 * (packing.grains[2 * body].position + packing.grains[2 * body + 1].position);
-}
-
-/// From the centre of its body to that of a grain.
-Vec2 place_in_body(const GrainPacking& packing, std::size_t grain) {
-  if (packing.bonds.empty()) return {};
-  return packing.grains[grain].position - centre_of(packing, packing.body_of(grain));
 }
 
 BodySection section_of(const GrainPacking& packing, std::size_t body) {
@@ -304,28 +300,6 @@ Rectangle outline_of_all(const GrainPacking& packing) {
   return box;
 }
 
-/// Contacts of bodies instead of grains: i and j name bodies, arms begin at their centres.
-struct BodyContacts {
-  std::vector<PackingContact> places;
-  std::vector<ContactForce> forces;  ///< of each place; empty: none are known
-
-  [[nodiscard]] const ContactForce* force(std::size_t contact) const {
-    return forces.empty() ? nullptr : &forces[contact];
-  }
-};
-
-BodyContacts contacts_of_bodies(const GrainPacking& packing, const NetworkOptions& options) {
-  BodyContacts contacts{.places = contacts_of(packing, options.gap_tolerance), .forces = {}};
-  contacts.forces = carried_forces(packing, contacts.places, options.springs);
-  for (PackingContact& contact : contacts.places) {
-    const auto i = static_cast<std::size_t>(contact.i);
-    contact.arm_i += place_in_body(packing, i);
-    contact.i = static_cast<std::int32_t>(packing.body_of(i));
-    if (contact.j >= 0) contact.j = static_cast<std::int32_t>(packing.body_of(static_cast<std::size_t>(contact.j)));
-  }
-  return contacts;
-}
-
 /// \param found between bodies of the assembly
 /// \param force that it carries at rest; null: not known
 /// \param has_walls whether some contacts of the assembly are with walls, which are flat
@@ -359,73 +333,58 @@ void add_contact(PackingShape::Kind shape, const PackingContact& found, const Co
   assembly.contact_kT.push_back(springs->kT);
 }
 
-/// 1 for the bodies with two contacts or more, counted without the bodies that have fewer.
-std::vector<char> held_by_two(const std::vector<PackingContact>& contacts, std::size_t bodies) {
-  std::vector<std::vector<std::int32_t>> partners(bodies);
-  for (const PackingContact& c : contacts) {
-    partners[c.i].push_back(c.j);
-    if (c.j >= 0) partners[c.j].push_back(c.i);
-  }
-  std::vector<char> held = rattlers_of(partners, 2);
-  for (char& value : held) value = value ? 0 : 1;
-  return held;
-}
-
-}  // namespace
-
-Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) {
-  Assembly assembly;
-  assembly.kind = "packing";
-  assembly.gap_tolerance = options.gap_tolerance;
-  for (std::size_t k = 0; k < packing.size(); ++k) add_body(packing, k, centre_of(packing, k), assembly);
-  if (packing.box.periodic()) {
-    assembly.period = packing.box.size;
-  } else {
-    assembly.box = outline_of_all(packing);
-  }
-  const BodyContacts contacts = contacts_of_bodies(packing, options);
-  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
-    if (contacts.places[c].j < 0) continue;
-    add_contact(packing.shape, contacts.places[c], contacts.force(c), false, options.springs, assembly);
-  }
-  return assembly;
-}
-
-HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
-  const BodyContacts contacts = contacts_of_bodies(packing, options);
-  const std::vector<char> held = held_by_two(contacts.places, packing.size());
+/// \param walls whether contacts with walls count, as held_network_of says, and bodies that could roll are left out
+HeldNetwork network(const GrainPacking& packing, const NetworkOptions& options, bool walls) {
+  std::vector<PackingContact> contacts = contacts_of(packing, options.gap_tolerance);
+  const std::vector<ContactForce> forces = carried_forces(packing, contacts, options.springs);
+  name_bodies(packing, contacts);
+  std::vector<char> left_out(packing.size(), 0);
+  if (walls) left_out = rattlers_of(partners_in(contacts, packing.size()), 2);
   HeldNetwork result;
   Assembly& assembly = result.assembly;
   assembly.kind = "packing";
+  if (packing.box.periodic()) assembly.period = packing.box.size;
   std::vector<std::int32_t> number(packing.size(), -1);
   for (std::size_t k = 0; k < packing.size(); ++k) {
-    if (!held[k]) continue;
+    if (left_out[k]) continue;
     number[k] = static_cast<std::int32_t>(assembly.size());
     add_body(packing, k, centre_of(packing, k), assembly);
     result.bodies.push_back(static_cast<std::int32_t>(k));
   }
-  DiscGroup walls;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>
-      mirrors;  // of a body at a wall, which it may touch twice
-  for (std::size_t c = 0; c < contacts.places.size(); ++c) {
-    PackingContact found = contacts.places[c];
+  DiscGroup at_walls;
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> mirrors;  // of a body at a wall: it may touch it twice
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    PackingContact found = contacts[c];
     const auto i = static_cast<std::size_t>(found.i);
-    if (!held[i] || (found.j >= 0 && !held[found.j])) continue;
+    if (left_out[i] || (found.j >= 0 ? left_out[found.j] != 0 : !walls)) continue;
     if (found.j >= 0) {
       found.j = number[found.j];
     } else {
       const auto [mirror, is_new] = mirrors.try_emplace({found.i, found.j}, static_cast<std::int32_t>(assembly.size()));
       if (is_new) {
-        walls.discs.push_back(mirror->second);
+        at_walls.discs.push_back(mirror->second);
         add_body(packing, i, mirrored(centre_of(packing, i), ~found.j, packing.box.size), assembly);
       }
       found.j = mirror->second;
     }
     found.i = number[i];
-    add_contact(packing.shape, found, contacts.force(c), true, options.springs, assembly);
+    add_contact(packing.shape, found, forces.empty() ? nullptr : &forces[c], walls, options.springs, assembly);
   }
-  if (!walls.discs.empty()) assembly.groups["walls"] = walls;
+  if (!at_walls.discs.empty()) assembly.groups["walls"] = at_walls;
   return result;
+}
+
+}  // namespace
+
+Assembly network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  Assembly assembly = network(packing, options, false).assembly;
+  assembly.gap_tolerance = options.gap_tolerance;
+  if (!packing.box.periodic()) assembly.box = outline_of_all(packing);
+  return assembly;
+}
+
+HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options) {
+  return network(packing, options, true);
 }
 
 }  // namespace equidem

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Density and contacts of a packing.
+/// Density and contacts of a packing, the forces that they carry at rest, and the packing as a network of contacts with
+/// springs: what statics takes.
 ///
-/// A packing as a network of contacts with springs: what statics takes.
-///
-/// Bodies are those of the packing, numbered alike. Discs touch on the lines of their centres, with levers in
-/// proportion to the radii. Of ellipses and clumps each contact has its normal and its point (ContactArms), each body
-/// its section (BodySection) and the radius of the disc of equal area; clumps may touch in several places, with a
+/// Bodies of a network are those of the packing, numbered alike. Discs touch on the lines of their centres, with levers
+/// in proportion to the radii. Of ellipses and clumps each contact has its normal and its point (ContactArms), each
+/// body its section (BodySection) and the radius of the disc of equal area; clumps may touch in several places, with a
 /// spring in each. A pair tied by dashpots counts as one rigid body: at rest dashpots resist nothing, and without them
 /// the pair would fall apart, while over any time in which bodies move little they hold it. Springs are those given;
-/// the forces at rest, where the packing carries some (network.hpp), go with the contacts.
-///
-/// The forces that the contacts of a packing carry at rest.
+/// the forces at rest, where the packing carries some, go with the contacts.
 #pragma once
 
 #include <cstdint>
@@ -49,17 +46,13 @@ std::vector<PackingContact> contacts_of(const GrainPacking& packing, double gap_
 /// Contacts between bodies that gap tolerances would find (assembly/touching.hpp).
 std::vector<BondCount> bond_counts(const GrainPacking& packing);
 
-/// 1 for the bodies that are left out where those with fewer than `needed` contacts are removed, one after another.
-/// \param partners of each body, one for each contact; negative: a wall
-std::vector<char> rattlers_of(const std::vector<std::vector<std::int32_t>>& partners, std::size_t needed);
-
 struct PackingMeasures : SolidMeasures {
   Rectangle region;  ///< in which solids are measured
   std::int64_t contacts = 0, wall_contacts = 0;
   double coordination = 0;                   ///< contacts of a body, those with walls included
   double coordination_without_rattlers = 0;  ///< the same of the rest
-  std::int64_t rattlers =
-      0;  ///< bodies with fewer than three contacts, under their weight two: not held, one after the other
+  /// Bodies with fewer than three contacts, under their weight two: not held, one after the other.
+  std::int64_t rattlers = 0;
   double largest_overlap = 0;  ///< over the smaller radius (of the body: PackingShape)
 };
 
@@ -89,13 +82,5 @@ struct HeldNetwork {
   std::vector<std::int32_t> bodies;  ///< of the packing: the first of the assembly
 };
 HeldNetwork held_network_of(const GrainPacking& packing, const NetworkOptions& options);
-
-/// Bodies that fell carry the forces with which they came to rest; bodies that jammed -kN times the overlap, N/m, for
-/// forces of equal springs balance there. Other packings carry none, for their overlaps balance nothing.
-/// \param contacts of contacts_of(packing)
-/// \param springs of every contact; none: of jammed bodies no forces are known
-/// \return one for each contact, on its i (tension positive), or empty
-std::vector<ContactForce> carried_forces(const GrainPacking& packing, const std::vector<PackingContact>& contacts,
-                                         const std::optional<SpringConstants>& springs);
 
 }  // namespace equidem

@@ -45,36 +45,21 @@ struct UnitBody {
     return {a * radius, b * radius, is_disc() ? Vec2{1, 0} : axis_of_turns(turns), discs, radius};
   }
 };
-/// The lever of a unit body from its longest arm (UnitBody::lever). While bodies are pushed apart, moments are divided
-/// by it: its lower bound of a tenth of the reach keeps the small moments on nearly round bodies from turning them far,
-/// and so from coming to rest; bodies that are round up to rounding do not turn.
-double lever_of(double arm, double reach);
-
-/// Discs tied rigidly, in any place and unit, scaled to an area.
-/// \throws Error (bad_input) on discs that have no area
-UnitBody body_of_discs(std::vector<Clump::Disc> discs, double area);
-
-// A shape is one file of the folder shapes that defines one of these functions, and its lines in PackingShape::Kind and
-// the list below.
-using MakeUnitBody = UnitBody(const PackingShape& shape);
-MakeUnitBody unit_disc, unit_ellipse, unit_pair, unit_clump;
-
 struct PackingShapeEntry {
   PackingShape::Kind value;
   const char* name;
   const char* noun;  ///< for reports; plural with s
-  MakeUnitBody* unit_body;
 };
 
 template <>
 struct EnumNames<PackingShape::Kind> {
   using Kind = PackingShape::Kind;
   static constexpr const char* what = "shape to pack";
-  static constexpr PackingShapeEntry list[] = {{Kind::disc, "disc", "disc", unit_disc},
-                                               {Kind::ellipse, "ellipse", "ellipse", unit_ellipse},
-                                               {Kind::bonded_pair, "bonded_pair", "pair", unit_pair},
-                                               {Kind::rigid_pair, "rigid_pair", "pair", unit_pair},
-                                               {Kind::clump, "clump", "clump", unit_clump}};
+  static constexpr PackingShapeEntry list[] = {{Kind::disc, "disc", "disc"},
+                                               {Kind::ellipse, "ellipse", "ellipse"},
+                                               {Kind::bonded_pair, "bonded_pair", "pair"},
+                                               {Kind::rigid_pair, "rigid_pair", "pair"},
+                                               {Kind::clump, "clump", "clump"}};
 };
 
 inline std::string noun_of(PackingShape::Kind kind) {
@@ -82,9 +67,7 @@ inline std::string noun_of(PackingShape::Kind kind) {
 }
 
 /// \throws Error (bad_input) on an aspect below 1 or above 1000, a clump without discs or with discs that have no area
-inline UnitBody unit_body_of(const PackingShape& shape) {
-  return entry_of(shape.kind).unit_body(shape);
-}
+UnitBody unit_body_of(const PackingShape& shape);
 
 /// The area of all bodies, m².
 double area_of(const PackingShape& shape, std::span<const double> radii);

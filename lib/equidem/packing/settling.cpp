@@ -5,12 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "equidem/core/random.hpp"
 #include "equidem/core/stopwatch.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/scene/grain_shapes.hpp"
 #include "equidem/grains/scene/pair_options.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/material/spring_relations.hpp"
+#include "equidem/packing/packing.hpp"
 
 namespace equidem {
 namespace {
@@ -96,12 +98,7 @@ double settling_step(const GrainScene& scene, const SettlingOptions& options) {
 
 std::vector<Wall> walls_of_box(double width) {
   const auto wall = [](const char* name, Vec2 point, Vec2 normal) {
-    Wall made;
-    made.name = name;
-    made.point = point;
-    made.normal = normal;
-    made.kind = 1;
-    return made;
+    return Wall{.name = name, .point = point, .normal = normal, .kind = 1};
   };
   return {wall("floor", {0, 0}, {0, 1}), wall("left", {0, 0}, {1, 0}), wall("right", {width, 0}, {-1, 0})};
 }
@@ -124,7 +121,12 @@ GrainScene scene_of_box(double width, const SettlingOptions& options) {
   return scene;
 }
 
-SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
+namespace {
+
+/// The grains of a scene of a box move under gravity until all are at rest, or until that fails: where no rest comes in
+/// `longest`, as GrainSimulation, or interrupted. Bonds get their dashpots.
+/// \throws Error (bad_input) on options out of range
+void settle(GrainScene scene, const SettlingOptions& options, GrainPacking& packing) {
   check(options);
   const double step = settling_step(scene, options);
   tie(scene, options.bond_share, step);
@@ -144,17 +146,17 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
   const double steps = std::ceil(options.longest / step);
   const double expected = std::ceil(time_to_rest(scene, options) / step);
   Progress progress(fmt::format("settling, about {:.2g} steps", expected));
-  const auto settled = [&](const Unbalance& unbalance, std::optional<Error> failure) {
-    return SettledBodies{.grains = simulation.grains(),
-                         .contacts = simulation.contacts(),
-                         .bonds = scene.bonds,
-                         .report = {.unbalanced = unbalance.mean,
-                                    .largest_unbalanced = unbalance.largest,
-                                    .time_step = step,
-                                    .time = simulation.time(),
-                                    .steps = simulation.step(),
-                                    .ledger = simulation.energy()},
-                         .failure = std::move(failure)};
+  const auto keep = [&](const Unbalance& unbalance) {
+    packing.work += simulation.step();
+    packing.grains = simulation.grains();
+    packing.contacts = simulation.contacts();
+    packing.bonds = scene.bonds;
+    packing.settling = {.unbalanced = unbalance.mean,
+                        .largest_unbalanced = unbalance.largest,
+                        .time_step = step,
+                        .time = simulation.time(),
+                        .steps = simulation.step(),
+                        .ledger = simulation.energy()};
   };
   double peak = 0;
   std::optional<Error> failure;
@@ -170,7 +172,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     peak = std::max(peak, kinetic);
     if (kinetic <= resting_drop * weight_radius) {
       const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
-      if (unbalance.mean <= options.rest) return settled(unbalance, {});
+      if (unbalance.mean <= options.rest) return keep(unbalance);
     }
     if (kinetic < lying_drop * weight_radius && kinetic < 0.5 * peak) {
       simulation.stop_all();
@@ -178,6 +180,7 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
     }
   }
   const Unbalance unbalance = unbalance_of(simulation, scene.bonds, scene.gravity);
+  keep(unbalance);
   if (!failure)
     failure.emplace(ErrorKind::computation_failed,
                     fmt::format("after {:.4g} s the bodies are not at rest", simulation.time()),
@@ -185,7 +188,53 @@ SettledBodies settle(GrainScene scene, const SettlingOptions& options) {
                                 unbalance.mean, options.rest),
                     scene.bonds.empty() ? "Give them longer, more friction or damping, or take a shorter step"
                                         : "Let the bonds creep less (a larger bond_share), or give them longer");
-  return settled(unbalance, std::move(failure));
+  keep_failure(packing, [&] { throw *failure; });
+}
+
+/// Staggered rows, wide enough for the circle round the largest body; each shifted at random within its room.
+std::vector<Vec2> staggered_grid(std::span<const double> radii, double width, Random& random) {
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  constexpr double room = 1.1;
+  const double wanted = 2 * room * largest;
+  const auto columns = std::max<std::size_t>(1, static_cast<std::size_t>((width - wanted / 2) / wanted));
+  // Rows are shifted by half a spacing to and fro.
+  const bool stagger = width >= 1.5 * wanted;
+  const double spacing = width / (static_cast<double>(columns) + (stagger ? 0.5 : 0));
+  std::vector<Vec2> places;
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    const std::size_t row = k / columns, column = k % columns;
+    const double shift = stagger && row % 2 == 1 ? 1.0 : 0.5;
+    const double slack = wanted / 2 - radii[k];
+    const double dx = random.uniform(-slack, slack);
+    places.push_back({(static_cast<double>(column) + shift) * spacing + dx,
+                      (static_cast<double>(row) + 0.5) * wanted + random.uniform(-slack, slack)});
+  }
+  return places;
+}
+
+Bodies bodies_above(const PackingOptions& options, const UnitBody& shape) {
+  Random random(options.seed);
+  std::vector<double> reaches;
+  for (const double radius : options.radii) reaches.push_back(shape.reach * radius);
+  Bodies bodies{staggered_grid(reaches, options.box.size.x, random), options.radii, {}};
+  if (!options.shape.is_disc())
+    for (std::size_t k = 0; k < bodies.size(); ++k) bodies.turns.push_back(random.uniform());
+  return bodies;
+}
+
+}  // namespace
+
+void fill_by_falling(const PackingOptions& options, GrainPacking& packing) {
+  make_grains(options.shape, bodies_above(options, unit_body_of(options.shape)), options.settling.density, packing);
+  GrainScene scene = scene_of_box(options.box.size.x, options.settling);
+  scene.grains = packing.grains;
+  scene.clumps = packing.clumps;
+  scene.bonds = packing.bonds;
+  settle(std::move(scene), options.settling, packing);
+  double top = 0;
+  for (const Grain& grain : packing.grains)
+    top = std::max(top, grain.position.y + reach_along(outline_of(grain, packing.clumps), {0, 1}));
+  packing.box.size.y = top;
 }
 
 }  // namespace equidem

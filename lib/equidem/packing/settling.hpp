@@ -4,10 +4,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "equidem/core/error.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/material/spring_relations.hpp"
 
@@ -39,15 +37,6 @@ struct SettlingReport {
   EnergyLedger ledger = {};
 };
 
-/// Bodies at rest, or where `failure` says why they are not.
-struct SettledBodies {
-  std::vector<Grain> grains;
-  std::vector<GrainContact> contacts;
-  std::vector<GrainBond> bonds;  ///< with their dashpots
-  SettlingReport report;
-  std::optional<Error> failure;
-};
-
 /// The walls of the box: 0 floor, 1 left, 2 right.
 std::vector<Wall> walls_of_box(double width);
 
@@ -59,13 +48,8 @@ GrainScene scene_of_box(double width, const SettlingOptions& options);
 /// lever of its forces. Several contacts of a body lower it.
 double contact_step_limit(const GrainScene& scene, const SettlingOptions& options);
 
-/// The step of settle(), s: that of the options, or a quarter of the limit of one contact, since several at a body
-/// lower it, and dashpots in proportion to their number.
+/// The step in which bodies fall, s: that of the options, or a quarter of the limit of one contact, since several at a
+/// body lower it, and dashpots in proportion to their number.
 double settling_step(const GrainScene& scene, const SettlingOptions& options);
-
-/// The grains of a scene of a box move under gravity until all are at rest, or until that fails: where no rest comes in
-/// `longest`, as GrainSimulation, or interrupted. Bonds get their dashpots.
-/// \throws Error (bad_input) on options out of range
-SettledBodies settle(GrainScene scene, const SettlingOptions& options);
 
 }  // namespace equidem

@@ -9,7 +9,6 @@
 #include "equidem/core/error.hpp"
 #include "equidem/core/table_file.hpp"
 #include "equidem/core/text.hpp"
-#include "equidem/packing/methods.hpp"
 
 namespace equidem {
 namespace {

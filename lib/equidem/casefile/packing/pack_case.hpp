@@ -16,7 +16,6 @@
 #include "equidem/casefile/engine/toml.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/packing/measures.hpp"
-#include "equidem/packing/methods.hpp"
 #include "equidem/packing/packing.hpp"
 #include "equidem/packing/size_distribution.hpp"
 

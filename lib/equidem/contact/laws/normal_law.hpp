@@ -1,58 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The laws of normal contact by name, with all functions used outside the loops over contacts.
+/// The laws of normal contact by name. tests/laws compiles the files that call visit_law anew, for a longer list.
 #pragma once
 
+#include <cstdlib>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "equidem/contact/laws/list.hpp"
+#include "equidem/contact/laws/laws.hpp"
 #include "equidem/core/names.hpp"
 
 namespace equidem {
 
 #define EQUIDEM_ENUMERATOR(listed, Law) listed,
-/// One for each line of laws/list.hpp.
+/// One for each line of the list in laws/laws.hpp.
 enum class NormalLaw { EQUIDEM_LAWS(EQUIDEM_ENUMERATOR) };
 #undef EQUIDEM_ENUMERATOR
 
 /// Names of the laws, in the order of the list; made in one file, so that a program can link a longer list.
 std::vector<NamedValue<NormalLaw>> named_laws();
+
 template <>
 struct EnumNames<NormalLaw> {
   static constexpr const char* what = "law of collision";
   static inline const std::vector<NamedValue<NormalLaw>> list = named_laws();
 };
 
-/// The members of a law's struct (laws/law.hpp). Functions that only some kinds have are null for the others.
-struct LawDescription {
+struct LawDescription : LawFacts {
   NormalLaw law = {};
-  const char *name = "", *letter = "", *source = "", *summary = "";
-  LawKind kind = LawKind::force;
-  bool has_dashpot = false;
-  ContactEnd usual_end = ContactEnd::at_zero_force;
-  double spring_power = 1;
-  const char* stiffness_unit = "";
-  bool hertz_spring = false;
-  double steps_per_contact = 0;
-  double (*length_factor)(double length) = nullptr;
-  double (*energy)(double k, double d) = nullptr;
-  ElasticImpact (*elastic_impact)(double k, double m, double v) = nullptr;
-  double (*stiffness_from_overlap)(double overlap, double speed, double m, double damping_ratio) = nullptr;
-  double (*dissipation)(double restitution, ContactEnd end) = nullptr;
-  double (*damping_ratio)(double restitution, ContactEnd end) = nullptr;
-  double (*stable_step)(double damping_ratio) = nullptr;
-  void (*check_range)(double a, double restitution) = nullptr;
-  double (*dashpot)(double c, double d) = nullptr;                                                    ///< force
-  ExactPair (*prepare)(double m, double k, double dissipation, ContactEnd end, double dt) = nullptr;  ///< simultaneous
+  double (*dashpot)(double c, double d) = nullptr;  ///< of a force law
 };
 
 /// All laws, in the order of the list.
 std::span<const LawDescription> normal_laws();
 const LawDescription& describe(NormalLaw law);
-
 std::string to_string(NormalLaw law);
+
 inline LawKind kind_of(NormalLaw law) {
   return describe(law).kind;
 }
@@ -65,7 +50,21 @@ inline bool is_map(NormalLaw law) {
 inline bool is_simultaneous(NormalLaw law) {
   return kind_of(law) == LawKind::simultaneous;
 }
+
 /// "linear_dashpot or hertz_dashpot": the laws of a kind.
 std::string names_of_laws(LawKind kind);
+
+/// Calls visitor(std::type_identity<Law>()) with the struct of a law.
+template <class Visitor>
+auto visit_law(NormalLaw law, const Visitor& visitor) {
+  switch (law) {
+#define EQUIDEM_VISIT(listed, Law) \
+  case NormalLaw::listed:          \
+    return visitor(std::type_identity<laws::Law>());
+    EQUIDEM_LAWS(EQUIDEM_VISIT)
+#undef EQUIDEM_VISIT
+  }
+  std::abort();
+}
 
 }  // namespace equidem

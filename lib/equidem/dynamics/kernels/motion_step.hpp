@@ -15,7 +15,6 @@
 
 #include "equidem/core/simd.hpp"
 #include "equidem/dynamics/kernels/step_kernel.hpp"
-#include "equidem/dynamics/layout.hpp"
 
 namespace equidem::lanes {
 
@@ -267,7 +266,7 @@ EQUIDEM_ALWAYS_INLINE void small_motion_step(const LoopData& data_in, const Stag
   const LoopData data = data_in;
   const Stage stage = stage_in;
   constexpr bool dashpot = kind.resistance == LoopKind::Resistance::dashpot;
-  constexpr int width = kind.springs == LoopKind::Springs::rotation ? 4 : 2, slot = slot_doubles(kind) * 4;
+  constexpr int width = kind.springs == LoopKind::Springs::rotation ? 4 : 2, slot = kind.slot_doubles() * 4;
   const double* motion = data.motion[parity];
   DissipationLanes dissipation;
   for (std::int32_t group = begin; group < end; ++group) {
@@ -479,7 +478,7 @@ struct GroupBonds {
   }
 
   [[nodiscard]] EQUIDEM_ALWAYS_INLINE const double* geometry(std::int32_t slot) const {
-    return data.geometry + static_cast<std::ptrdiff_t>(slot) * slot_doubles(kind) * 4;
+    return data.geometry + static_cast<std::ptrdiff_t>(slot) * kind.slot_doubles() * 4;
   }
   [[nodiscard]] EQUIDEM_ALWAYS_INLINE const std::int32_t* places(std::int32_t slot) const {
     return data.neighbour + static_cast<std::ptrdiff_t>(slot) * 4;

@@ -31,6 +31,12 @@ struct LoopKind {
   [[nodiscard]] constexpr int unknowns() const { return springs == Springs::rotation ? 3 : 2; }
   /// Doubles of a disc in the array of motions: (x, y) or (x, y, theta, 0).
   [[nodiscard]] constexpr int width() const { return springs == Springs::rotation ? 4 : 2; }
+  /// Doubles of one slot and lane: LoopData::geometry.
+  [[nodiscard]] constexpr int slot_doubles() const {
+    const int of_springs = (equal_contacts ? 3 : motion == Motion::finite ? 7 : 6) + int{bending};
+    return of_springs + (resistance == Resistance::dashpot && !equal_contacts ? 2 + int{bending} : 0);
+  }
+
   bool operator==(const LoopKind&) const = default;
 };
 
@@ -69,6 +75,13 @@ struct Stage {
 /// Energy dissipated by dampers, N; counted only by loops with damping.
 struct Dissipation {
   double mass = 0, contact = 0, local = 0;
+
+  Dissipation& operator+=(const Dissipation& other) {
+    mass += other.mass;
+    contact += other.contact;
+    local += other.local;
+    return *this;
+  }
 };
 
 /// Advance groups [begin, end) by one stage, from motion[parity] to motion[1 - parity].

@@ -17,7 +17,7 @@
 #include "equidem/core/vector.hpp"
 #include "equidem/geometry/neighbours.hpp"
 #include "equidem/motion/any_simulation.hpp"
-#include "equidem/motion/servo.hpp"
+#include "equidem/motion/wall.hpp"
 
 namespace equidem {
 

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/finite_bond.hpp"
 #include "equidem/grains/cell/periodic_motion.hpp"
 #include "equidem/grains/grain_simulation.hpp"
 #include "equidem/grains/neighbours/body_blocks.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/motion/any_simulation.hpp"
 
 namespace equidem {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/error.hpp"
 #include "equidem/core/text.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
@@ -368,7 +368,7 @@ void flow(GrainSystem& system) {
 
 FlowFunction flow_function(NormalLaw law) {
   return visit_law(law, []<class Law>(std::type_identity<Law>) -> FlowFunction {
-    if constexpr (Law::kind == LawKind::simultaneous) {
+    if constexpr (Law::facts.kind == LawKind::simultaneous) {
       return flow<Law>;
     } else {
       return nullptr;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/grains/contacts/contact_geometry.hpp"
 
 namespace equidem {
@@ -119,7 +119,7 @@ void collide(GrainSystem& system, BlockSums& sums) {
 
 CandidateLoop candidate_loop(NormalLaw law, bool friction) {
   return visit_law(law, [&]<class Law>(std::type_identity<Law>) -> CandidateLoop {
-    if constexpr (Law::kind == LawKind::map) {
+    if constexpr (Law::facts.kind == LawKind::map) {
       return friction ? collide<Law, true> : collide<Law, false>;
     } else {
       return nullptr;

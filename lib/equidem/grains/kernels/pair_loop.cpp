@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/respond.hpp"
@@ -248,7 +248,7 @@ NearPairs::Loop choose_pair_loop(const GrainSystem& system) {
 
 NearPairs::Loop near_pair_loop(const GrainSystem& system) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearPairs::Loop {
-    if constexpr (Law::kind == LawKind::force) {
+    if constexpr (Law::facts.kind == LawKind::force) {
       return system.contacts.near.equal ? choose_pair_loop<Law, true>(system) : choose_pair_loop<Law, false>(system);
     } else {
       return nullptr;

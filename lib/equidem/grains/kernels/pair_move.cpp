@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/contacts/block_step.hpp"
 #include "equidem/grains/grain_system.hpp"
@@ -140,7 +140,7 @@ std::pair<double, double> elastic_of_block(const GrainSystem& system, const Pair
     for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
       const double overlap = group.reach[k] - std::sqrt(x[k] * x[k] + y[k] * y[k]);
       const double stiffness = near.equal ? near.law.stiffness : block.laws[g].stiffness[k];
-      energy[k] = Law::energy(stiffness, overlap > 0 ? overlap : 0);
+      energy[k] = Law::facts.energy(stiffness, overlap > 0 ? overlap : 0);
     }
     for (const double one : energy) normal += one;
     for (std::size_t k = 0; system.friction && k < lanes_of_pairs; ++k) {
@@ -157,7 +157,7 @@ std::pair<double, double> elastic_of_near_pairs(const GrainSystem& system) {
   const std::vector<PairBlock>& blocks = system.contacts.near.blocks;
   if (blocks.empty()) return {};
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> std::pair<double, double> {
-    if constexpr (Law::kind == LawKind::force) {
+    if constexpr (Law::facts.kind == LawKind::force) {
       return system.bodies.blocks.sum([&](std::size_t b) { return elastic_of_block<Law>(system, blocks[b]); });
     } else {
       return {};

@@ -7,7 +7,7 @@
 /// (Sukegawa 2010, (2.27)). An eccentric impact has the smaller mass m', 1/m' = 1/m + (arm_i x n)²/I_i + (arm_j x
 /// n)²/I_j: its duration is shorter by sqrt(m'/m), and zeta' = zeta sqrt(m/m') makes its restitution smaller than
 /// prescribed. The tangential dashpot is 2 zeta_T sqrt(m_T kT) with the tangential mass of the present arms.
-#include "equidem/contact/laws/visit.hpp"
+#include "equidem/contact/laws/normal_law.hpp"
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
 #include "equidem/grains/kernels/part_lanes.hpp"
@@ -381,7 +381,7 @@ NearParts::Loop choose_part_loop(const GrainSystem& system) {
 template <Meets meets>
 NearParts::Loop loop_for(const GrainSystem& system) {
   return visit_law(system.options.law, [&]<class Law>(std::type_identity<Law>) -> NearParts::Loop {
-    if constexpr (Law::kind == LawKind::force) {
+    if constexpr (Law::facts.kind == LawKind::force) {
       return system.options.verlet() ? choose_part_loop<Law, meets, true>(system)
                                      : choose_part_loop<Law, meets, false>(system);
     } else {

@@ -141,7 +141,7 @@ EQUIDEM_ALWAYS_INLINE Lanes normal_loss_at_ends(const Bits<Lanes>& begun, const 
                                                 const Lanes& deep_before, double dt) {
   const Bits<Lanes> given = negative(impulse_before) | negative(Lanes{} - impulse_before);
   const Lanes last = choose(given, 0.5 * mean_closing * (impulse_before - elastic_before),
-                            elastic_before * deep_before / ((1 + Law::spring_power) * dt));
+                            elastic_before * deep_before / ((1 + Law::facts.spring_power) * dt));
   return only(begun, 0.5 * mean_closing * viscous) + only(ended, last);
 }
 

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "equidem/assembly/assembly.hpp"
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/core/checksum.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/grains/scene/grain_scene.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/checkpoint.hpp"
 
 namespace equidem {

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/contact/frame.hpp"
 #include "equidem/material/inertia.hpp"
 #include "equidem/motion/any_simulation.hpp"

@@ -14,9 +14,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "equidem/contact/body_contact.hpp"
 #include "equidem/core/file.hpp"
 #include "equidem/core/vector.hpp"
+#include "equidem/motion/any_simulation.hpp"
 #include "equidem/output/files/body_tables.hpp"
 
 namespace equidem {
@@ -37,7 +37,7 @@ struct ContactLoads {
 
 /// The PolyData of contacts: a line each from the centre of i to that of j, also where that leads through the period,
 /// or to the contact point at a wall. Arrays of lines: i, j (negative: wall -1 - j), contact_point (m), and as `loads`
-/// say force (3-vector, on i), normal_force, tangential_force, bending_moment (body_contact.hpp); of points:
+/// say force (3-vector, on i), normal_force, tangential_force, bending_moment (BodyContact); of points:
 /// displacement, and a radius of zero, so that Glyph draws circles of discs only.
 /// \param contact_of the k-th of `count` contacts, asked for by each array
 /// \param time see PolyData::write

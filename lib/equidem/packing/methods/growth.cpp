@@ -34,11 +34,10 @@ class Growth {
 
   /// As check() refuses bodies that keep their size.
   void refuse_two_images() const {
-    const double width = this->width(), period = std::min(options_.box.size.x, options_.box.size.y);
-    if (!options_.box.periodic() || 2 * width <= period) return;
+    if (2 * width() <= period()) return;
     throw Error(ErrorKind::computation_failed,
                 fmt::format("the largest {} has grown to {:.4g} m, the box is {:.4g} m by {:.4g} m",
-                            noun_of(options_.shape.kind), width, options_.box.size.x, options_.box.size.y),
+                            noun_of(options_.shape.kind), width(), options_.box.size.x, options_.box.size.y),
                 "a period holds two of them side by side, so that none meets two images of another",
                 "Take more of them, or a squarer box", "grains");
   }
@@ -57,12 +56,16 @@ class Growth {
     return 2 * shape_.reach * *std::max_element(bodies_.radii.begin(), bodies_.radii.end());
   }
 
+  /// Infinite where nothing repeats.
+  [[nodiscard]] double period() const {
+    return options_.box.periodic() ? std::min(options_.box.size.x, options_.box.size.y) : INFINITY;
+  }
+
   /// Such a body would overlap its own images, which are no partners.
   void refuse_wider_than_period() const {
-    const double period = std::min(options_.box.size.x, options_.box.size.y);
-    if (!options_.box.periodic() || width() <= period) return;
+    if (width() <= period()) return;
     computation_failed(
-        fmt::format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period),
+        fmt::format("the largest {} grows wider than the period of {:.4g} m", noun_of(options_.shape.kind), period()),
         "it would meet itself across the sides", "Take more of them, or a squarer box");
   }
 

@@ -11,17 +11,32 @@
 namespace equidem::laws {
 
 struct QuadraticSpring {
-  static constexpr const char* name = "quadratic_spring";
-  static constexpr const char* letter = "Q";
-  static constexpr const char* source = "";
-  static constexpr const char* summary = "quadratic spring";
-  static constexpr LawKind kind = LawKind::force;
-  static constexpr bool has_dashpot = false;
-  static constexpr ContactEnd usual_end = ContactEnd::at_zero_force;
-  static constexpr double spring_power = 2;
-  static constexpr const char* stiffness_unit = "N/m^2";
-  static constexpr bool hertz_spring = false;
-  static constexpr double steps_per_contact = 50;
+  static constexpr LawFacts facts = {
+      .name = "quadratic_spring",
+      .letter = "Q",
+      .summary = "quadratic spring",
+      .has_dashpot = false,
+      .spring_power = 2,
+      .stiffness_unit = "N/m^2",
+      .length_factor = [](double length) { return length; },
+      // W = k d³/3
+      .energy = [](double k, double d) { return k * d * d * d / 3; },
+      // Overlap (3 m v²/(2 k))^(1/3); duration 2 overlap/v times the integral of 1/sqrt(1 - x³) over 0..1.
+      .elastic_impact =
+          [](double k, double m, double v) {
+            const double overlap = std::cbrt(1.5 * m * v * v / k);
+            return ElasticImpact{overlap, k * overlap * overlap, 2 * 1.40218210532545426 * overlap / v};
+          },
+      .stiffness_from_overlap =
+          [](double overlap, double speed, double m, double /*damping_ratio*/) {
+            return 1.5 * m * speed * speed / (overlap * overlap * overlap);
+          },
+      .dissipation = [](double restitution, ContactEnd /*end*/) -> double {
+        return restitution == 1 ? 0 : throw std::invalid_argument("quadratic_spring has no dashpot: restitution is 1");
+      },
+      .damping_ratio = [](double /*restitution*/, ContactEnd /*end*/) { return 0.0; },
+      // By the tangent stiffness at the largest overlap.
+      .stable_step = [](double /*damping_ratio*/) { return 2.0; }};
 
   template <class Number>
   [[gnu::always_inline]] static Number spring(const Number& k, const Number& d) {
@@ -31,26 +46,6 @@ struct QuadraticSpring {
   [[gnu::always_inline]] static Number dashpot(const Number& /*c*/, const Number& /*d*/) {
     return Number{};
   }
-
-  static double length_factor(double length) { return length; }
-  /// W = k d³/3
-  static double energy(double k, double d) { return k * d * d * d / 3; }
-  /// Overlap (3 m v²/(2 k))^(1/3); duration 2 overlap/v times the integral of 1/sqrt(1 - x³) over 0..1.
-  static ElasticImpact elastic_impact(double k, double m, double v) {
-    const double overlap = std::cbrt(1.5 * m * v * v / k);
-    return {overlap, k * overlap * overlap, 2 * 1.40218210532545426 * overlap / v};
-  }
-  static double stiffness_from_overlap(double overlap, double speed, double m, double /*damping_ratio*/) {
-    return 1.5 * m * speed * speed / (overlap * overlap * overlap);
-  }
-
-  static double dissipation(double restitution, ContactEnd /*end*/) {
-    return restitution == 1 ? 0 : throw std::invalid_argument("quadratic_spring has no dashpot: restitution is 1");
-  }
-  static double damping_ratio(double /*restitution*/, ContactEnd /*end*/) { return 0; }
-  /// By the tangent stiffness at the largest overlap.
-  static double stable_step(double /*damping_ratio*/) { return 2; }
-  static void check_range(double /*a*/, double /*restitution*/) {}
 };
 
 }  // namespace equidem::laws
