@@ -144,8 +144,7 @@ bool stop_is_asked() {
 }
 
 void stop_if_interrupted() {
-  if (stop_is_asked() && !StopsHeldBack::any())
-    throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+  if (stop_is_asked() && !StopsHeldBack::any()) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
 }
 
 namespace {
