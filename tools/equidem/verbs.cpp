@@ -49,8 +49,7 @@ std::set<std::string> flags_of_verbs() {
     CLI::App command;
     const Run run = verb.declare(command);
     for (const CLI::Option* option : command.get_options())
-      if (option->get_items_expected_max() == 0)
-        names.insert(option->get_lnames().begin(), option->get_lnames().end());
+      if (option->get_items_expected_max() == 0) names.insert(option->get_lnames().begin(), option->get_lnames().end());
   }
   return names;
 }

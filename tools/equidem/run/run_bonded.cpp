@@ -304,7 +304,7 @@ Results BondedRun::events() const {
 std::optional<WaveStiffness> BondedRun::stiffness_of_waves() const {
   constexpr std::size_t most_discs = 200000;  // more take longer to homogenize than most runs
   const Assembly& assembly = problem_.assembly;
-  if (stop_is_asked() || waves_.empty() || !assembly.periodic() || assembly.size() > most_discs || simulation_.effects().restrained)
+  if (waves_.empty() || !assembly.periodic() || assembly.size() > most_discs || simulation_.effects().restrained)
     return std::nullopt;
   double mass = 0;
   for (const Inertia& inertia : scene_.inertia) mass += inertia.mass;

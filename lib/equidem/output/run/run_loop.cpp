@@ -162,8 +162,7 @@ class RunLoop {
     const bool row = history_ && history_->last_step() < step && probing;
     const bool recorded = plan_.recorder != nullptr && plan_.recorder->last_step() < step && probing;
     auto& film = result_.record.film;
-    const bool filmed =
-        plan_.film_frames > 0 && (last || is_filmed(step)) && (film.empty() || film.back().step < step);
+    const bool filmed = plan_.film_frames > 0 && (last || is_filmed(step)) && (film.empty() || film.back().step < step);
     if (!plan_.watch_between && !stage_ends && !sample && !frame && !row && !recorded && !filmed) return;
     const EnergyLedger ledger = simulation_.energy();
     try {
