@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import CASES, PROGRAM, TENSION, ProgramTest, equidem, parse_json
+from program import CASES, PROGRAM, TENSION, ProgramTest, catches_interrupts, equidem, parse_json
 
 CELL = CASES / "random_cell.toml"
 ENSEMBLE = CASES / "ensemble.toml"
@@ -166,6 +166,49 @@ class Parts(ProgramTest):
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn("cannot write", done.stderr)
             self.assertIn(words, done.stdout)
+
+
+class Interrupted(ProgramTest):
+    def interrupted(self, *command, signals):
+        """The command, asked to stop once stderr has told how far it is."""
+        with subprocess.Popen([PROGRAM, *map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+            progress = running.stderr.readline()
+            for number in signals:
+                running.send_signal(number)
+            stdout, stderr = running.communicate(timeout=240)
+        if running.returncode == 0:
+            self.skipTest("it was done before it could be interrupted")
+        return running.returncode, stdout, progress + stderr
+
+    def test_a_packing_that_is_interrupted_is_delivered_as_it_lies_then(self):
+        """Its largest void is found, and its assembly is written, by loops that a signal ends. Two signals at once, as
+        timeout of coreutils sends them, are one request."""
+        for signals in ((signal.SIGINT,), (signal.SIGTERM, signal.SIGTERM)):
+            with self.subTest(signals=signals):
+                out = self.folder / signals[0].name
+                code, stdout, stderr = self.interrupted("pack", PACKING, "--set", "packing.grains=12000", "--set",
+                                                        "packing.box=none", "--set", "output.assembly=hdf5", "--out", out,
+                                                        signals=signals)
+                self.assertEqual(code, 130, stderr)
+                self.assertIn("NOT DONE", stdout)
+                result = parse_json((out / "result.json").read_text())
+                self.assertEqual((result["status"], result["complete"]), ("interrupted", False))
+                for name in ("case.toml", "grains.csv", "assembly.h5", "picture.png", "index.html"):
+                    self.assertTrue((out / name).exists(), name)
+                self.assertNotIn("warnings", result)
+
+    def test_an_export_that_is_interrupted_says_so(self):
+        for words in (("lammps",), ("yade",), ("matrix-market",)):
+            out = self.folder / words[0]
+            command = ("export", TENSION, "--to", *words, "--set", "assembly.columns=300", "--set", "assembly.rows=300", "--out", out)
+            with self.subTest(to=words[0]), subprocess.Popen([PROGRAM, *map(str, command)], stdout=subprocess.PIPE,
+                                                             stderr=subprocess.PIPE, text=True) as running:
+                while not catches_interrupts(running.pid):
+                    time.sleep(0.001)
+                running.send_signal(signal.SIGINT)
+                stderr = running.communicate(timeout=240)[1]
+                self.assertEqual(running.returncode, 130, stderr)
+                self.assertFalse((out / "result.json").exists())
 
 
 class Inputs(ProgramTest):

@@ -378,12 +378,14 @@ void add_memory_check(Results& results, const SolveEstimate& estimate, double me
 }
 
 /// \param resident bytes of the process before it solves
+/// \param drawing further bytes while the state is drawn, when the solver is there no longer
 /// \param memory_limit bytes; 0: what is available
-Results estimate_results(const SolveEstimate& e, double resident, double memory_limit) {
+Results estimate_results(const SolveEstimate& e, double resident, double drawing, double memory_limit) {
   Results results;
   results.line("unknowns").add("unknowns", "", e.unknowns, "", {Shown::count});
   results.line("memory")
-      .add("peak_bytes", "", std::max(peak_resident_memory(), resident + e.peak_bytes), "at the peak", {Shown::bytes})
+      .add("peak_bytes", "", std::max(peak_resident_memory(), resident + std::max(e.peak_bytes, drawing)),
+           "at the peak", {Shown::bytes})
       .add("solver_bytes", "", e.peak_bytes, "of it to solve", {Shown::bytes});
   if (e.factor_nonzeros > 0) {
     results.add("factor_bytes", "", e.factor_bytes, "of that for the factor", {Shown::bytes})
@@ -421,9 +423,13 @@ Results dry_run_results(const Problem& problem, const Results& further, Assembly
         estimate.peak_bytes,
         estimate.factor_bytes + estimate_viscoelastic(problem.assembly, problem.springs.springs, effects).peak_bytes);
   }
+  // Motions, forces and stresses of the state that is drawn.
+  constexpr double bytes_of_drawn_disc = 80, bytes_of_drawn_contact = 32;
+  const double drawing = more.bytes_of_picture + bytes_of_drawn_disc * static_cast<double>(problem.assembly.size()) +
+                         bytes_of_drawn_contact * static_cast<double>(problem.assembly.contacts.size());
   return problem_results(problem, effects, keys)
       .append(further)
-      .append(estimate_results(estimate, resident, problem.resolved.solver.memory_limit));
+      .append(estimate_results(estimate, resident, drawing, problem.resolved.solver.memory_limit));
 }
 
 Results moduli_results(const EffectiveModuli& m, const std::string& name, bool of_solid) {

@@ -168,6 +168,7 @@ struct MoreMemory {
   bool of_complex = false;        ///< factors of complex numbers follow, beside that of the others
   std::optional<double> inertia;  ///< L D L^T decides it, with so many vectors kept beside it
   double bytes_of_disc = 0;       ///< kept while it solves
+  double bytes_of_picture = 0;    ///< drawn when the solver is there no longer
 };
 /// The problem, further results, size, memory and work of a factorization, for --dry-run.
 Results dry_run_results(const Problem& problem, const Results& further = {}, AssemblyKeys keys = AssemblyKeys::all,

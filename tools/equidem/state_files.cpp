@@ -100,6 +100,10 @@ void write_state(const CommonOptions& options, const OutputCase& wanted, const s
   if (wanted.vtk) write_vtk(*options.out, "state" + suffix, state, options.overwrite);
 }
 
+double bytes_of_state_picture(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly) {
+  return options.out && wanted.picture ? bytes_of_picture(assembly) : 0;
+}
+
 void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                          const AssemblyState& state, const PictureOptions& picture) {
   if (wanted.picture) write_picture(*options.out, "picture" + suffix, state, picture, options.overwrite);

@@ -68,6 +68,8 @@ void remove_state(const CommonOptions& options, const OutputCase& wanted, const 
 void write_state(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                  const AssemblyState& state);
 
+/// Memory that the picture takes beside the state, where one is asked for.
+double bytes_of_state_picture(const CommonOptions& options, const OutputCase& wanted, const Assembly& assembly);
 /// The picture, where [output] asks for it.
 void write_state_picture(const CommonOptions& options, const OutputCase& wanted, const std::string& suffix,
                          const AssemblyState& state, const PictureOptions& picture);

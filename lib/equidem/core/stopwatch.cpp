@@ -139,12 +139,8 @@ void set_progress_display(std::function<void(const std::string&)> shown_by) {
   display = std::move(shown_by);
 }
 
-bool stop_is_asked() {
-  return stop_asked != 0;
-}
-
 void stop_if_interrupted() {
-  if (stop_is_asked() && !StopsHeldBack::any()) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
+  if (stop_asked != 0 && !StopsHeldBack::any()) throw Error(ErrorKind::interrupted, "stopped as asked", "", "");
 }
 
 namespace {

@@ -75,8 +75,6 @@ class Progress {
 void catch_interrupts();
 /// \throws Error of kind interrupted where the user asked to stop
 void stop_if_interrupted();
-/// Whether the user asked to stop.
-bool stop_is_asked();
 
 /// While one exists, stop_if_interrupted returns in this thread, and in the loops that it shares out: what was done
 /// before the user asked to stop is evaluated and written to its end.

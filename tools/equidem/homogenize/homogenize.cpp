@@ -588,12 +588,14 @@ int dry_run_homogenization(const CommonOptions& options, const Problem& problem,
     add_solver_of_complex(results, problem.resolved.solver);
   }
   if (accuracy) results.append(accuracy_plan(*accuracy, bound_is_compared));
-  deliver(options, "dry_run",
-          dry_run_results(problem, results, AssemblyKeys::all,
-                          {.of_complex = problem.resolved.viscoelastic.has_value(),
-                           .inertia = {},
-                           .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0}),
-          problem.times);
+  deliver(
+      options, "dry_run",
+      dry_run_results(problem, results, AssemblyKeys::all,
+                      {.of_complex = problem.resolved.viscoelastic.has_value(),
+                       .inertia = {},
+                       .bytes_of_disc = boundaries.size() > 1 ? bytes_beside_others : 0,
+                       .bytes_of_picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly)}),
+      problem.times);
   return 0;
 }
 

@@ -24,6 +24,7 @@
 #include "problem.hpp"
 #include "quasistatic/quasistatic_files.hpp"
 #include "quasistatic/quasistatic_results.hpp"
+#include "state_files.hpp"
 #include "verbs.hpp"
 
 namespace equidem {
@@ -167,7 +168,10 @@ int dry_run_path(const CommonOptions& options, Sequence& sequence) {
   Problem& problem = sequence.problem;
   problem.resolved.solver = sequence.solver();
   Results further = path_results(sequence.scene(), sequence.cut.size(), sequence.residual_friction());
-  deliver(options, "dry_run", dry_run_results(problem, further), problem.times);
+  const double picture = bytes_of_state_picture(options, problem.resolved.output, problem.assembly);
+  deliver(options, "dry_run",
+          dry_run_results(problem, further, AssemblyKeys::all, {.inertia = {}, .bytes_of_picture = picture}),
+          problem.times);
   return 0;
 }
 

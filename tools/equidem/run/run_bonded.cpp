@@ -304,8 +304,7 @@ Results BondedRun::events() const {
 std::optional<WaveStiffness> BondedRun::stiffness_of_waves() const {
   constexpr std::size_t most_discs = 200000;  // more take longer to homogenize than most runs
   const Assembly& assembly = problem_.assembly;
-  if (stop_is_asked() || waves_.empty() || !assembly.periodic() || assembly.size() > most_discs ||
-      simulation_.effects().restrained)
+  if (waves_.empty() || !assembly.periodic() || assembly.size() > most_discs || simulation_.effects().restrained)
     return std::nullopt;
   double mass = 0;
   for (const Inertia& inertia : scene_.inertia) mass += inertia.mass;
@@ -378,7 +377,7 @@ Results BondedRun::scene() const {
             : order() > 2 && !scene_.walls.empty()
                 ? " (2 over steps in which a disc touches or leaves a wall: its force has a kink)"
                 : "")
-      .add("", "", static_cast<int>(scheme.stages(1, 0).size()), "force evaluation", {Shown::count})
+      .add("", "", scheme.force_evaluations, "force evaluation", {Shown::count})
       .note(" a step");
 }
 

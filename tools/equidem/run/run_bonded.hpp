@@ -12,6 +12,7 @@
 #include "equidem/dynamics/simulation.hpp"
 #include "equidem/dynamics/time_step.hpp"
 #include "equidem/dynamics/watch.hpp"
+#include "equidem/output/pictures/picture.hpp"
 
 #include "accuracy.hpp"
 #include "problem.hpp"
@@ -58,6 +59,9 @@ class BondedRun final : public RunJob {
   [[nodiscard]] Results events() const override;
   [[nodiscard]] Results advice(const Balance& balance) const override;
   [[nodiscard]] std::vector<OutputPart> parts(const RunResult& result) const override;
+  [[nodiscard]] double bytes_of_drawing() const override {
+    return problem_.resolved.output.picture ? bytes_of_picture(problem_.assembly) : 0;
+  }
   [[nodiscard]] bool goes_to_rest() const override { return run().until_rest.has_value(); }
   Results relax(StageTimes& times) override;
 

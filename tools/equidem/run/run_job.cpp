@@ -110,7 +110,9 @@ Results dry_run_results(RunJob& job, bool with_files) {
   Results out = job.scene();
   // the scene, its lists and the contacts of its files take their memory as in a run
   if (const AnySimulation& simulation = job.simulation(); with_files) static_cast<void>(simulation.body_contacts());
-  out.line("process").add("peak_bytes", "", peak_resident_memory(), "of memory at the peak", {Shown::bytes});
+  const double drawing = with_files ? job.bytes_of_drawing() : 0;
+  out.line("process").add("peak_bytes", "", std::max(peak_resident_memory(), resident_memory() + drawing),
+                          "of memory at the peak", {Shown::bytes});
   if (job.goes_to_rest()) return out.append(memory_results(job));
   out.append(step_results(job, plan));
   if (plan.frame_interval) {

@@ -52,6 +52,9 @@ class RunJob {
   /// The state at the end, plots, the case. The job and the result must stay where they are.
   [[nodiscard]] virtual std::vector<OutputPart> parts(const RunResult& result) const = 0;
 
+  /// Memory that the picture of the end takes beside the run.
+  [[nodiscard]] virtual double bytes_of_drawing() const { return 0; }
+
   /// Whether the case asks for relaxation in place of steps.
   [[nodiscard]] virtual bool goes_to_rest() const { return false; }
   /// Relax the scene to rest, the state that parts() then write.

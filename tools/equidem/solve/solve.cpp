@@ -301,7 +301,10 @@ int solve(const CommonOptions& options, const std::optional<double>& accuracy) {
   if (options.dry_run) {
     Results further;
     if (accuracy) further = accuracy_plan(*accuracy, searched ? plan_of_blocks : bound_is_compared);
-    deliver(options, "dry_run", dry_run_results(*problem, further), problem->times);
+    const double picture = bytes_of_state_picture(options, problem->resolved.output, problem->assembly);
+    deliver(options, "dry_run",
+            dry_run_results(*problem, further, AssemblyKeys::all, {.inertia = {}, .bytes_of_picture = picture}),
+            problem->times);
     return 0;
   }
   solve_once(options, problem, accuracy, nullptr);

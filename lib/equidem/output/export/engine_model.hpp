@@ -219,6 +219,9 @@ struct EngineFile {
   std::string text;
 };
 
+/// Rows of a file that are written between two looks for a signal.
+inline constexpr std::size_t rows_between_looks = 65536;
+
 /// LAMMPS: in.equidem, assembly.data, and the loads where bodies have some. Bonds: BPM's bpm/rotational with a bond
 /// type for each pair of kN and kT. Grains: gran/hooke/history, or, where dashpots or groups differ, the style granular
 /// (LAMMPS of 2023 or later).

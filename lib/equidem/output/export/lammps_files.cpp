@@ -55,7 +55,7 @@ class LammpsWriter {
     text += bounds();
     line(text, "\nAtoms # {}\n", style());
     for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
-      if (k % between_looks == 0) stop_if_interrupted();
+      if (k % rows_between_looks == 0) stop_if_interrupted();
       const EngineBody& body = model_.bodies[k];
       const double volume = 4.0 / 3 * std::numbers::pi * body.radius * body.radius * body.radius;
       line(text, "{} {}{} {} {} {} {} 0", k + 1, model_.bonded ? "1 " : "", types_.at(body.kind),
@@ -65,7 +65,7 @@ class LammpsWriter {
     if (model_.bonds.empty()) return text;
     text += "\nBonds\n\n";
     for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
-      if (k % between_looks == 0) stop_if_interrupted();
+      if (k % rows_between_looks == 0) stop_if_interrupted();
       const EngineBond& bond = model_.bonds[k];
       line(text, "{} {} {} {}", k + 1, bond_types_.at(coefficients_of(bond)), bond.i + 1, bond.j + 1);
     }

@@ -73,7 +73,7 @@ class YadeWriter {
         "# x y radius mass moment_of_inertia vx vy spin Fx Fy moment material, held: ux uy rotation or -\nBODIES = "
         "\"\"\"\n";
     for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
-      if (k % between_looks == 0) stop_if_interrupted();
+      if (k % rows_between_looks == 0) stop_if_interrupted();
       const EngineBody& body = model_.bodies[k];
       const double radius = model_.bonded ? model_.lever_radii[k] : body.radius;
       for (const double value :
@@ -90,7 +90,7 @@ class YadeWriter {
   [[nodiscard]] std::string bonds() const {
     std::string text = "# i j kn ks, periods to the image of j\nBONDS = \"\"\"\n";
     for (std::size_t k = 0; k < model_.bonds.size(); ++k) {
-      if (k % between_looks == 0) stop_if_interrupted();
+      if (k % rows_between_looks == 0) stop_if_interrupted();
       const EngineBond& bond = model_.bonds[k];
       fmt::format_to(std::back_inserter(text), "{} {} {} {} {} {}\n", bond.i, bond.j, exact(bond.springs.kN),
                      exact(bond.springs.kT), bond.shift_x, bond.shift_y);

@@ -12,7 +12,7 @@
 namespace equidem {
 namespace {
 
-constexpr std::int64_t between_looks = 65536;  // for a signal: rows
+constexpr std::int64_t entries_between_looks = 65536;  // for a signal
 
 /// The first lines, with room for as many numbers.
 std::string banner(std::string_view kind, const std::string& comment, std::int64_t numbers, double bytes_per_number) {
@@ -34,7 +34,7 @@ std::string matrix_market(const CompressedColumns& lower, const std::string& com
   const auto end = std::back_inserter(text);
   fmt::format_to(end, "{} {} {}\n", lower.size, lower.size, entries);
   for (std::int64_t c = 0; c < lower.size; ++c) {
-    if (c % between_looks == 0) stop_if_interrupted();
+    if (c % entries_between_looks == 0) stop_if_interrupted();
     for (std::int64_t e = lower.first[c]; e < lower.first[c + 1]; ++e)
       fmt::format_to(end, "{} {} {}\n", lower.rows[e] + 1, c + 1, lower.values[e]);
   }
@@ -49,7 +49,7 @@ std::string matrix_market(std::span<const std::vector<double>> columns, const st
   fmt::format_to(end, "{} {}\n", rows, columns.size());
   for (const std::vector<double>& column : columns) {
     for (std::size_t k = 0; k < column.size(); ++k) {
-      if (k % between_looks == 0) stop_if_interrupted();
+      if (k % entries_between_looks == 0) stop_if_interrupted();
       fmt::format_to(end, "{}\n", column[k]);
     }
   }

@@ -78,6 +78,9 @@ struct PictureOptions {
 /// \param largest, side both in m
 double visible_scale(double largest, double side);
 
+/// Memory that write_picture takes beside the state, about: mostly that of the image that many discs are painted in.
+double bytes_of_picture(const Assembly& assembly);
+
 /// Write NAME.svg and NAME.png, 1000 pixels wide. Positions are those of the discs moved by the scaled displacements;
 /// lines along the branches show normal forces, where the mean radius is at least 5 pixels; a contact through the
 /// period is drawn as two halves. Numbers of both signs are coloured on a diverging map, of one sign on a sequential
