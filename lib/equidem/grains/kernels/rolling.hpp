@@ -35,6 +35,7 @@ EQUIDEM_ALWAYS_INLINE RollingMemory<Lanes> rolling_memory(const ContactEffects& 
   return {load<Lanes>(of.impulse), load<Lanes>(of.stretch)};
 }
 
+using simd::store;
 template <class Lanes>
 EQUIDEM_ALWAYS_INLINE void store(const RollingMemory<Lanes>& memory, ContactEffects& of) {
   store(memory.impulse, of.impulse);
