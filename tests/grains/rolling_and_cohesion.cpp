@@ -85,11 +85,11 @@ TEST_CASE("a_disc_that_rolls_on_a_floor_stops_after_the_way_of_its_rolling_frict
   const Stepping stepping = GENERATE(from_range(force_steppings));
   const double duration = 0.02, mu = GENERATE(0.1, 0.3);
   const GrainOptions options = options_for(stepping, duration);
-  GrainScene scene = scene_of({ball({0, 1}, 1)}, {line("floor", {0, 0}, {0, 1})}, rough(stepping.law, duration, mu),
-                              {0, -1});
-  scene.grains[0].position.y = 1 - (stepping.law == NormalLaw::hertz_dashpot
-                                        ? std::pow(1 / scene.pairs[0].stiffness, 2.0 / 3)
-                                        : 1 / scene.pairs[0].stiffness);
+  GrainScene scene =
+      scene_of({ball({0, 1}, 1)}, {line("floor", {0, 0}, {0, 1})}, rough(stepping.law, duration, mu), {0, -1});
+  scene.grains[0].position.y =
+      1 - (stepping.law == NormalLaw::hertz_dashpot ? std::pow(1 / scene.pairs[0].stiffness, 2.0 / 3)
+                                                    : 1 / scene.pairs[0].stiffness);
   scene.grains[0].velocity.x = 0.6;
   scene.grains[0].spin = -0.6;
   GrainSimulation simulation(scene, options);
@@ -134,17 +134,17 @@ TEST_CASE("a_disc_hangs_as_long_as_its_weight_is_below_the_cohesion") {
   const Stepping stepping = GENERATE(from_range(force_steppings));
   const double duration = 0.05, cohesion = 2, share = GENERATE(0.99, 1.01);
   const GrainOptions options = options_for(stepping, duration);
-  GrainSimulation simulation(
-      scene_of({ball({0, -1}, 1)}, {line("lid", {0, 0}, {0, -1})}, sticky(stepping.law, duration, cohesion, 0.05),
-               {0, -share * cohesion}),
-      options);
+  GrainSimulation simulation(scene_of({ball({0, -1}, 1)}, {line("lid", {0, 0}, {0, -1})},
+                                      sticky(stepping.law, duration, cohesion, 0.05), {0, -share * cohesion}),
+                             options);
   run(simulation, 40, options);
   CAPTURE(stepping.name(), share, simulation.grains()[0].position.y);
   CHECK((simulation.grains()[0].position.y > -1.1) == (share < 1));
 }
 
 TEST_CASE("two_discs_part_where_their_motion_exceeds_the_work_of_cohesion") {
-  // from rest at the overlap d = F/k: F (d + range) - k d²/2 = F range + F²/(2 k); hertz: F range + 3/5 F d, d = (F/k)^(2/3)
+  // from rest at the overlap d = F/k: F (d + range) - k d²/2 = F range + F²/(2 k); hertz: F range + 3/5 F d, d =
+  // (F/k)^(2/3)
   const Stepping stepping = GENERATE(from_range(force_steppings));
   const double duration = 0.05, cohesion = 2, range = 0.05, share = GENERATE(0.98, 1.02);
   const GrainOptions options = options_of(stepping, duration / 400);
@@ -176,9 +176,8 @@ TEST_CASE("friction_of_a_cohesive_contact_is_limited_by_the_repulsion") {
   pair.cohesion_range = 0.05;
   const double depth = stepping.law == NormalLaw::hertz_dashpot ? std::pow(cohesion / pair.stiffness, 2.0 / 3)
                                                                 : cohesion / pair.stiffness;
-  GrainSimulation simulation(scene_of({ball({1 - depth, 0}, 1)}, {line("left", {0, 0}, {1, 0})}, pair,
-                                      {0, -share * 0.4 * cohesion}),
-                             options);
+  GrainSimulation simulation(
+      scene_of({ball({1 - depth, 0}, 1)}, {line("left", {0, 0}, {1, 0})}, pair, {0, -share * 0.4 * cohesion}), options);
   run(simulation, 1, options);
   const double before = simulation.grains()[0].velocity.y;
   run(simulation, 2, options);

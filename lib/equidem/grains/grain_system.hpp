@@ -77,7 +77,7 @@ struct ContactState {
   double overlap = 0, closing = 0;
   Vec2 normal = {};
   double impulse = 0, moment = 0, tangential_impulse = 0, stretch = 0;
-  Vec2 arm_i = {}, arm_j = {};  ///< from the centres of mass to the contact point, m; {} for a wall
+  Vec2 arm_i = {}, arm_j = {};                      ///< from the centres of mass to the contact point, m; {} for a wall
   double rolling_stretch = 0, rolling_impulse = 0;  ///< as in ContactEffects
   double lever = 0;                                 ///< R of rolling, m; not saved
 
@@ -221,9 +221,9 @@ struct GrainSystem {
   GrainOptions options;
   double length = 0;                 ///< d_c
   std::vector<double> dissipations;  ///< Law::dissipation of scene.pairs
-  bool friction = false;  ///< contacts turn bodies: they have friction, or effects
+  bool friction = false;             ///< contacts turn bodies: they have friction, or effects
   bool rolling = false, cohesion = false;
-  double range = 0;  ///< the largest of cohesion, m
+  double range = 0;            ///< the largest of cohesion, m
   double smallest_radius = 0;  ///< smallest radius of the inscribed circles of all parts, m
 
   GrainBodies bodies;

@@ -46,7 +46,9 @@ struct EnergyLedger {
   double work_of_stages = 0;
   double initial = 0;  ///< kinetic + elastic at the start
 
-  [[nodiscard]] double elastic() const { return elastic_bonded + elastic_normal + elastic_tangential + elastic_rolling + elastic_bond; }
+  [[nodiscard]] double elastic() const {
+    return elastic_bonded + elastic_normal + elastic_tangential + elastic_rolling + elastic_bond;
+  }
   [[nodiscard]] double lost() const;
   [[nodiscard]] double work() const;
   /// Error of the balance: stored - sway + lost - work - initial.

@@ -107,8 +107,9 @@ std::string describe_pair(const GrainCase& resolved, const PairContact& pair) {
     if (p.rolling_friction > 0)
       found += fmt::format(", rolling friction {}, k_r/(kN R²) {:.6g}", p.rolling_friction, p.rolling_ratio);
     if (p.rolling_damping > 0) found += fmt::format(", rolling damping {}", p.rolling_damping);
-    if (p.cohesion > 0) found += fmt::format(", cohesion {:.6g} {} within {:.6g} m", p.cohesion,
-                                             resolved.body == Body::disc ? "N/m" : "N", p.cohesion_range);
+    if (p.cohesion > 0)
+      found += fmt::format(", cohesion {:.6g} {} within {:.6g} m", p.cohesion,
+                           resolved.body == Body::disc ? "N/m" : "N", p.cohesion_range);
     return found;
   };
   if (p.friction == 0) return text + ", no friction" + effects();

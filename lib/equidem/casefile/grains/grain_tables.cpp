@@ -115,7 +115,8 @@ std::vector<Key<PairOptions>> contact_keys() {
       key("rolling_damping", &P::rolling_damping, not_negative,
           "zeta of the rolling dashpot, with rolling_friction; left out: as tangential_damping"),
       key("cohesion", &P::cohesion, unit("N (discs: per m of depth)"), not_negative,
-          "constant attraction of bodies closer than cohesion_range, overlapping ones too; friction then holds up to mu "
+          "constant attraction of bodies closer than cohesion_range, overlapping ones too; friction then holds up to "
+          "mu "
           "times the sum of the normal force and it; laws that give a force"),
       key("cohesion_range", &P::cohesion_range, unit("m"), not_negative,
           "largest gap at which cohesion acts; with cohesion")};

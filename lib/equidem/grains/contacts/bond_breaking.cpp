@@ -45,8 +45,7 @@ NewContact contact_of(const GrainSystem& system, const TiedPair& bond) {
 void replace_impulses(GrainSystem& system, const TiedPair& bond, const NewContact& contact) {
   const auto i = static_cast<std::size_t>(bond.i), j = static_cast<std::size_t>(bond.j);
   const Vec2 branch = branch_of(system, bond);
-  const double force =
-      contact.stiffness * std::pow(contact.overlap, system.law().spring_power) - contact.attraction;
+  const double force = contact.stiffness * std::pow(contact.overlap, system.law().spring_power) - contact.attraction;
   const Vec2 push = system.dt() * force / norm(branch) * branch;
   const auto [of_i, of_j] = impulses_of_bond(system, bond);
   BodyImpulse &on_i = system.bodies.impulses[i], &on_j = system.bodies.impulses[j];

@@ -225,11 +225,12 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
   const NearPairs& near = system.contacts.near;
   PairBlock& block = system.contacts.near.blocks[b];
   const PairLaw& law = near.law;
-  const LoopNumbers<Lanes> numbers{
-      {system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-       spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                    all<Lanes>(1 / law.tangential_stiffness), system.dt())},
-      system.dt(), system.step + (system.options.verlet() ? 0 : 1), near.record};
+  const LoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
+                                    spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                 all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                   system.dt(),
+                                   system.step + (system.options.verlet() ? 0 : 1),
+                                   near.record};
   block.records.resize(near.record ? block.groups.size() : 0);
   LaneSums<Lanes> sums;
   const PairBody* bodies = near.bodies.data();
@@ -248,9 +249,9 @@ void CollidePairs<Law, kind>::run(GrainSystem& system, std::size_t b) {
     for (std::size_t g = 0; g < here; ++g) measure<kind>(bodies, groups[first + g], geometry[g]);
     for (std::size_t g = 0; g < here; ++g) {
       respond_discs<Law, kind>(numbers, bodies, geometry[g], groups[first + g],
-                               kind.friction ? slips + (first + g) : nullptr,
-                               kind.equal ? nullptr : laws + (first + g), effects_at<kind>(effects, first + g),
-                               near.record ? records + (first + g) : nullptr, sums, outcome[g]);
+                               kind.friction ? slips + (first + g) : nullptr, kind.equal ? nullptr : laws + (first + g),
+                               effects_at<kind>(effects, first + g), near.record ? records + (first + g) : nullptr,
+                               sums, outcome[g]);
     }
     if (first + here <= block.first_outward) {
       for (std::size_t g = 0; g < here; ++g) give<kind, false>(groups[first + g], outcome[g], to, outward, sums);

@@ -173,12 +173,11 @@ struct HardLanes {
   for (std::size_t k = 0; k < lanes_of_pairs; ++k) {
     if (lanes.hard[k] == 0) continue;
     const auto number = [&](PartGroup::Column column) { return group.numbers[column][k]; };
-    const EllipseContact contact =
-        contact_of_parts({number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
-                         {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
-                         {lanes.branch_x[k], lanes.branch_y[k]}, group.since[k] > PairGroup::apart,
-                         {number(PartGroup::normal_x), number(PartGroup::normal_y)},
-                         effects == nullptr ? 0 : effects->range[k]);
+    const EllipseContact contact = contact_of_parts(
+        {number(PartGroup::a_i), number(PartGroup::b_i), {lanes.axis_i_x[k], lanes.axis_i_y[k]}},
+        {number(PartGroup::a_j), number(PartGroup::b_j), {lanes.axis_j_x[k], lanes.axis_j_y[k]}},
+        {lanes.branch_x[k], lanes.branch_y[k]}, group.since[k] > PairGroup::apart,
+        {number(PartGroup::normal_x), number(PartGroup::normal_y)}, effects == nullptr ? 0 : effects->range[k]);
     lanes.gap[k] = contact.gap;
     lanes.normal_x[k] = contact.normal.x;
     lanes.normal_y[k] = contact.normal.y;

@@ -368,11 +368,12 @@ template <class Law, PartLoopKind kind>
 template <class Lanes>
 void CollideParts<Law, kind>::run(GrainSystem& system, NearParts::List& list, std::size_t block) {
   const PairLaw law = system.contacts.near_parts.law.value_or(PairLaw{});
-  const PartLoopNumbers<Lanes> numbers{
-      {system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
-       spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
-                    all<Lanes>(1 / law.tangential_stiffness), system.dt())},
-      system.dt(), system.step + (kind.response.verlet ? 0 : 1), system.contacts.near.record};
+  const PartLoopNumbers<Lanes> numbers{{system.dt() * all<Lanes>(law.stiffness), all<Lanes>(law.least),
+                                        spring_lanes(all<Lanes>(law.friction), all<Lanes>(law.tangential_stiffness),
+                                                     all<Lanes>(1 / law.tangential_stiffness), system.dt())},
+                                       system.dt(),
+                                       system.step + (kind.response.verlet ? 0 : 1),
+                                       system.contacts.near.record};
   LaneSums<Lanes> sums;
   const bool shapes = !system.shapes.parts.empty();
   const Receivers to{system.bodies.impulses.data(), static_cast<std::int32_t>(system.bodies.blocks.end(block)),

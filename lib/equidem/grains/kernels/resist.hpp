@@ -127,14 +127,13 @@ EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, 
   const Bits<Lanes>& touch = at.touch;
   Lanes stretched = stretch;
   if constexpr (kind.verlet) {
-    if (at.any || at.first)
-        [[unlikely]]  // its place before is not known: the slip at the instant is that of the step
+    if (at.any || at.first) [[unlikely]]  // its place before is not known: the slip at the instant is that of the step
       stretched += only(at.first ? touch : at.begun, (velocity - mean_velocity) * dt);
   } else {
     velocity -= mobility * impulse;  // without this contact's own part in it
   }
-  Tangent<Lanes> tangent = slide<kind.verlet, kind.equal>(law, dashpot, stretched, velocity, mean_velocity, mobility,
-                                                          impulse, yield, dt);
+  Tangent<Lanes> tangent =
+      slide<kind.verlet, kind.equal>(law, dashpot, stretched, velocity, mean_velocity, mobility, impulse, yield, dt);
   if constexpr (!kind.bounded) {
     tangent.impulse = only(touch, tangent.impulse);
     tangent.stretch = only(touch, tangent.stretch);
@@ -149,8 +148,7 @@ EQUIDEM_ALWAYS_INLINE SpringLosses<Lanes> resist(const SpringLanes<Lanes>& law, 
   if (at.any) [[unlikely]] {
     losses.released = law.half_spring * stretched * stretched;
     if constexpr (kind.verlet) {
-      const FirstSlip<Lanes> first =
-          first_slip_of(law, tangent, dashpot * velocity, on_j, mean_velocity, at.begun);
+      const FirstSlip<Lanes> first = first_slip_of(law, tangent, dashpot * velocity, on_j, mean_velocity, at.begun);
       tangent.slip_loss += first.slip_loss;
       tangent.dashpot_loss += first.dashpot_loss;
       losses.released -= 0.5 * impulse * mean_velocity;

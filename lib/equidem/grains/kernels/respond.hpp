@@ -17,9 +17,8 @@
 
 #include "equidem/core/simd.hpp"
 #include "equidem/grains/grain_system.hpp"
-#include "equidem/grains/kernels/cohesion.hpp"
+#include "equidem/grains/kernels/effect_lanes.hpp"
 #include "equidem/grains/kernels/resist.hpp"
-#include "equidem/grains/kernels/rolling.hpp"
 
 namespace equidem::eight {
 
@@ -105,23 +104,6 @@ struct ContactMemory {
   RollingMemory<Lanes> rolling;
 };
 
-/// Where the kind has them.
-template <class Lanes>
-struct EffectLanes {
-  RollingLanes<Lanes> rolling;
-  CohesionLanes<Lanes> cohesion;
-};
-
-/// The response of a scene that has some.
-template <bool verlet>
-constexpr ResponseKind with_effects{.friction = true, .verlet = verlet, .rolling = true, .cohesion = true};
-
-/// Those of a group, in loops that read them.
-template <ResponseKind kind>
-EQUIDEM_ALWAYS_INLINE ContactEffects* effects_at(ContactEffects* effects, std::size_t group) {
-  return kind.rolling || kind.cohesion ? effects + group : nullptr;
-}
-
 template <class Lanes>
 struct ContactLosses {
   Lanes normal, slip, dashpot, rolling, released;  ///< J; the last is what the springs of ended contacts held
@@ -166,8 +148,8 @@ EQUIDEM_ALWAYS_INLINE ContactLosses<Lanes> respond(const LawLanes<Lanes>& law, c
   if constexpr (kind.friction) {
     const Lanes carried = larger(impulse, zero);
     const SpringLosses<Lanes> slip =
-        resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility, law.slip.friction * carried,
-                     at, dt, memory.tangential, memory.stretch);
+        resist<kind>(law.slip, slip_dashpot, motion.slip, motion.mean_slip, motion.mobility,
+                     law.slip.friction * carried, at, dt, memory.tangential, memory.stretch);
     losses.slip = slip.slip;
     losses.dashpot = slip.dashpot;
     losses.released = slip.released;

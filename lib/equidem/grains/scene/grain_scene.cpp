@@ -143,8 +143,9 @@ void check_effects(const PairProperties& pair, const GrainOptions& options) {
     bad_input(fmt::format("rolling friction {} is given without a rolling spring", pair.rolling_friction),
               "contacts stick by one", "Give rolling_ratio > 0, such as 2/7");
   if ((pair.cohesion > 0) != (pair.cohesion_range > 0))
-    bad_input(pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
-              "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
+    bad_input(
+        pair.cohesion > 0 ? "cohesion is given without its range" : "a range of cohesion is given without a force",
+        "bodies attract by a force within a gap", "Give cohesion and cohesion_range > 0");
   if (!(pair.rolling_friction > 0) && !(pair.cohesion > 0)) return;
   const char* what = pair.rolling_friction > 0 ? "rolling friction" : "cohesion";
   if (!gives_force(options.law))

@@ -166,8 +166,7 @@ void set_effects(const PairOptions& options, NormalLaw law, double tangential_ze
   const double usual = properties.tangential_ratio > 0 ? properties.tangential_ratio : 2.0 / 7;
   properties.rolling_friction = options.rolling_friction;
   properties.rolling_ratio = options.rolling_ratio.value_or(usual);
-  properties.rolling_damping =
-      options.rolling_damping.value_or(options.tangential_damping.value_or(tangential_zeta));
+  properties.rolling_damping = options.rolling_damping.value_or(options.tangential_damping.value_or(tangential_zeta));
 }
 
 /// Sets stiffness, dimensionless or duration of a contact whose other properties are known.

@@ -170,7 +170,8 @@ class LammpsWriter {
 
   /// Whether one pair of coefficients per mass holds for all contacts, as gran/hooke/history takes it.
   [[nodiscard]] bool by_mass() const {
-    if ((!equal_masses(model_) && model_.graded_dashpots) || model_.found.contains(EngineFeature::rolling)) return false;
+    if ((!equal_masses(model_) && model_.graded_dashpots) || model_.found.contains(EngineFeature::rolling))
+      return false;
     const PairProperties& first = model_.between(types_.begin()->first, types_.begin()->first);
     for (const auto& [a, type_a] : types_)
       for (const auto& [b, type_b] : types_)
@@ -234,7 +235,8 @@ class LammpsWriter {
                                          std::sqrt(tangential_mass_share() * stiffness_along(pair) / pair.stiffness);
     return fmt::format("hooke {} {} tangential linear_history {} {} {}{} damping coeff_restitution{}",
                        exact(pair.stiffness), exact(restitution_of(zeta, ContactEnd::at_zero_overlap)),
-                       exact(stiffness_along(pair)), exact(along), exact(pair.friction), rolling(pair, wall), limit(pair));
+                       exact(stiffness_along(pair)), exact(along), exact(pair.friction), rolling(pair, wall),
+                       limit(pair));
   }
 
   [[nodiscard]] static const char* limit(const PairProperties& pair) {
