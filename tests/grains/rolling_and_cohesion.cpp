@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "equidem/core/text.hpp"
+
 #include "grains/bonded_scenes.hpp"
 #include "grains/cell_scenes.hpp"
 #include "grains/resuming.hpp"
@@ -189,17 +191,6 @@ TEST_CASE("friction_of_a_cohesive_contact_is_limited_by_the_repulsion") {
 
 namespace {
 
-GrainScene with_effects(GrainScene scene, double weight = 1) {
-  for (PairProperties& pair : scene.pairs) {
-    pair.rolling_friction = 0.3;
-    pair.rolling_ratio = 0.4;
-    pair.rolling_damping = 0.2;
-    pair.cohesion = weight;
-    pair.cohesion_range = 0.03;
-  }
-  return scene;
-}
-
 enum class ShapeOfTest { disc, ellipse, clump };
 
 /// Of mass 1, whose side lies at x = +-0.5 at the height of its centre.
@@ -241,6 +232,7 @@ TEST_CASE("bodies_of_all_shapes_attract_each_other_within_the_range_and_keep_the
     const std::vector<Grain> now = simulation.grains();
     return now[0].velocity.x - (at_wall ? 0 : now[1].velocity.x);
   };
+  simulation.advance(1);
   while (simulation.step() < 20000 && !simulation.contacts().empty() && simulation.contacts()[0].overlap <= 0)
     simulation.advance(1);
   CAPTURE(stepping.name(), static_cast<int>(first), static_cast<int>(second), at_wall, simulation.step());
@@ -316,8 +308,8 @@ TEST_CASE("stages_take_over_rolling_and_cohesion_and_the_ledger_closes_over_them
   GrainScene rolling = effects;
   rolling.pairs[0].cohesion = rolling.pairs[0].cohesion_range = 0;
   std::vector<GrainStage> stages;
-  for (const GrainScene* scene : {&plain, &effects, &rolling, &plain})
-    stages.push_back({.name = fmt::format("stage {}", stages.size()), .scene = *scene, .steps = 300});
+  for (const GrainScene& scene : {plain, effects, rolling, plain})
+    stages.push_back({.name = fmt::format("stage {}", stages.size()), .scene = scene, .steps = 300});
   for (GrainStage& stage : stages)
     for (Wall& wall : stage.scene.walls) wall.move_x = wall.move_y = {};
   const StagedSimulation last = check_resuming(stages, options_of(stepping, 0.002), 100);
